@@ -1,0 +1,36 @@
+# What every target of the house has in common: C++20, warnings as errors, one folder for executables, ccache.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+
+find_program(KILN_CCACHE ccache)
+if(KILN_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${KILN_CCACHE})
+endif()
+
+add_library(kiln_flags INTERFACE)
+# -Wrestrict of GCC 12 misfires on std::string concatenation (GCC bug 105651).
+target_compile_options(kiln_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wno-restrict -Werror)
+target_include_directories(kiln_flags INTERFACE ${PROJECT_SOURCE_DIR}/stages/core ${PROJECT_SOURCE_DIR}/stages)
+target_compile_definitions(kiln_flags INTERFACE KILN_VERSION="${PROJECT_VERSION}")
+if(KILN_SANITIZE)
+  target_compile_options(kiln_flags INTERFACE -fsanitize=${KILN_SANITIZE} -fno-omit-frame-pointer)
+  target_link_options(kiln_flags INTERFACE -fsanitize=${KILN_SANITIZE})
+endif()
+
+# kiln_library(NAME SOURCES... LINK libraries...): a static library of the house.
+function(kiln_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(${name} PUBLIC kiln_flags ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK})
+endfunction()
+
+# kiln_program(NAME SOURCES... LINK libraries...): an executable in build/<preset>/bin.
+function(kiln_program name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE kiln_flags ${ARG_LINK})
+endfunction()

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "atlas/atlas_settings.h"
+#include "atlas/measure.h"
+#include "base/progress.h"
+#include "mesh/triangle_mesh.h"
+
+namespace kiln {
+
+struct AtlasResult {
+  TriangleMesh mesh;  ///< positions, normals and uvs; vertices are split at seams
+  int size = 0;
+  int gutter = 0;
+  int unfolded_charts = 0;  ///< charts by what their map started from: their parts, laid side by side
+  int lscm_charts = 0;
+  int arap_charts = 0;
+  int mean_value_charts = 0;
+  int split_charts = 0;          ///< had to be taken apart, since no way of flattening gave a valid map
+  int degenerate_triangles = 0;  ///< have no area: they lie in a point of the atlas and cover nothing
+  double seconds = 0;
+  double chart_seconds = 0;  ///< of it, cutting and flattening
+  double pack_seconds = 0;
+
+  Json to_json() const;
+};
+
+/// Cuts a mesh into charts, flattens and packs them. Every triangle lands in the atlas once, in the mesh's order; none
+/// is flipped and none overlaps another. Normals are taken over, or computed where there are none. Throws WrongUsage
+/// where the atlas is too small for the charts, BadInput (naming `name`) where no triangle has an area.
+AtlasResult make_atlas(const TriangleMesh& low, const AtlasSettings& settings, const std::string& name = "the mesh",
+                       const ProgressFunction& progress = no_progress);
+
+/// What an atlas is once it was written to a file and read again.
+struct WrittenAtlas {
+  TriangleMesh mesh;
+  AtlasMeasures measures;
+  int position_bits = 0;
+  int uv_bits = 0;
+
+  Json to_json() const;
+};
+
+/// Writes the atlas as a Draco file and measures what the file holds. Positions and uvs get 16 bits, or more where
+/// rounding to 16 would take a triangle's area or turn it over. Throws std::runtime_error where two triangles cover one
+/// texel or the gutter is not kept: a defect of Kiln.
+WrittenAtlas write_atlas(const std::filesystem::path& file, const AtlasResult& atlas);
+
+}  // namespace kiln

@@ -1,0 +1,109 @@
+#include "atlas/chart.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+namespace kiln {
+
+namespace {
+
+struct Segment {
+  std::uint32_t from, to;
+};
+
+/// Edges with a triangle on one side only.
+std::vector<Segment> border_segments(const Chart& chart) {
+  std::vector<std::pair<std::uint64_t, Segment>> edges;
+  edges.reserve(3 * chart.triangles.size());
+  for (const Triangle& t : chart.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t from = t[k], to = t[(k + 1) % 3];
+      edges.push_back({(std::uint64_t{std::min(from, to)} << 32) | std::max(from, to), {from, to}});
+    }
+  std::sort(edges.begin(), edges.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.first, a.second.from) < std::tie(b.first, b.second.from);
+  });
+  std::vector<Segment> result;
+  for (std::size_t i = 0; i < edges.size();) {
+    std::size_t end = i + 1;
+    while (end < edges.size() && edges[end].first == edges[i].first) ++end;
+    if (end - i == 1) result.push_back(edges[i].second);
+    i = end;
+  }
+  return result;
+}
+
+bool within_box(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return p.x() >= std::min(a.x(), b.x()) && p.x() <= std::max(a.x(), b.x()) && p.y() >= std::min(a.y(), b.y()) &&
+         p.y() <= std::max(a.y(), b.y());
+}
+
+/// Whether two segments with no common end meet, a touch included.
+bool segments_meet(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
+                   const Eigen::Vector2d& d) {
+  const double abc = cross(a, b, c), abd = cross(a, b, d), cda = cross(c, d, a), cdb = cross(c, d, b);
+  if (((abc > 0) != (abd > 0)) && ((cda > 0) != (cdb > 0)) && abc != 0 && abd != 0 && cda != 0 && cdb != 0) return true;
+  return (abc == 0 && within_box(c, a, b)) || (abd == 0 && within_box(d, a, b)) || (cda == 0 && within_box(a, c, d)) ||
+         (cdb == 0 && within_box(b, c, d));
+}
+
+}  // namespace
+
+bool is_flip_free(const Chart& chart) {
+  for (const Eigen::Vector2d& uv : chart.uvs)
+    if (!uv.allFinite()) return false;
+  return std::all_of(chart.triangles.begin(), chart.triangles.end(),
+                     [&](const Triangle& t) { return cross(chart.uvs[t[0]], chart.uvs[t[1]], chart.uvs[t[2]]) > 0; });
+}
+
+bool has_simple_border(const Chart& chart) {
+  const std::vector<Segment> border = border_segments(chart);
+  if (border.empty()) return false;
+
+  // A grid of cells about as large as a border segment; only segments that share a cell are compared.
+  Eigen::Vector2d lowest = chart.uvs[border[0].from], highest = lowest;
+  double length = 0;
+  for (const Segment& s : border) {
+    lowest = lowest.cwiseMin(chart.uvs[s.from]);
+    highest = highest.cwiseMax(chart.uvs[s.from]);
+    length += (chart.uvs[s.to] - chart.uvs[s.from]).norm();
+  }
+  const double extent = (highest - lowest).maxCoeff();
+  const double cell = std::max(length / static_cast<double>(border.size()), extent / 4096);
+  if (!(cell > 0)) return false;
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells;
+  for (std::uint32_t index = 0; index < border.size(); ++index) {
+    const Eigen::Vector2d a = (chart.uvs[border[index].from] - lowest) / cell,
+                          b = (chart.uvs[border[index].to] - lowest) / cell;
+    const auto [first_x, last_x] = std::minmax({static_cast<int>(a.x()), static_cast<int>(b.x())});
+    const auto [first_y, last_y] = std::minmax({static_cast<int>(a.y()), static_cast<int>(b.y())});
+    for (int y = first_y; y <= last_y; ++y)
+      for (int x = first_x; x <= last_x; ++x) {
+        std::vector<std::uint32_t>& neighbours =
+            cells[(std::uint64_t(static_cast<std::uint32_t>(y)) << 32) | static_cast<std::uint32_t>(x)];
+        for (const std::uint32_t other : neighbours) {
+          const Segment &s = border[index], &o = border[other];
+          if (s.from == o.from || s.to == o.to) return false;  // the border passes through a vertex twice
+          if (s.from == o.to || s.to == o.from) continue;
+          if (segments_meet(chart.uvs[s.from], chart.uvs[s.to], chart.uvs[o.from], chart.uvs[o.to])) return false;
+        }
+        neighbours.push_back(index);
+      }
+  }
+  return true;
+}
+
+void equalise_area(const Surface& surface, Chart& chart) {
+  double area = 0, uv_area = 0;
+  for (std::size_t i = 0; i < chart.faces.size(); ++i) {
+    const Triangle& t = chart.triangles[i];
+    area += surface.rest[chart.faces[i]].area;
+    uv_area += 0.5 * cross(chart.uvs[t[0]], chart.uvs[t[1]], chart.uvs[t[2]]);
+  }
+  if (!(uv_area > 0)) return;
+  const double scale = std::sqrt(area / uv_area);
+  for (Eigen::Vector2d& uv : chart.uvs) uv *= scale;
+}
+
+}  // namespace kiln

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "atlas/chart.h"
+
+namespace kiln {
+
+/// Consecutive texels of a row, both ends included.
+struct TexelRun {
+  int first = 0;
+  int last = 0;
+};
+
+/// The texels a chart needs for itself when it is turned by `angle` and scaled, row by row from the bottom, as runs.
+/// Texel (0, 0) has its lower left corner at `origin` of the turned and scaled uvs.
+struct ChartBitmap {
+  int width = 0;
+  int height = 0;
+  std::vector<std::vector<TexelRun>> rows;
+  std::int64_t texels = 0;
+  double angle = 0;  ///< radians, counter-clockwise
+  Eigen::Vector2d origin = Eigen::Vector2d::Zero();
+};
+
+struct BitmapSettings {
+  double texels_per_unit = 1;
+  double angle = 0;
+  double margin = 0.02;        ///< texels by which the chart may come out larger than given, through rounding
+  bool every_touched = false;  ///< also texels that are touched outside their centre
+};
+
+/// A texel is needed where its centre lies in the chart or within the margin of it. Slivers between centres need the
+/// texels they touch too, where no needed texel is next to those: two charts with two texels between them then never
+/// overlap. With `every_touched`, all touched texels are needed and no distance is.
+ChartBitmap rasterise_chart(const Chart& chart, const BitmapSettings& settings);
+
+/// Rotates a uv as the bitmap's chart is.
+Eigen::Vector2d turned(const Eigen::Vector2d& uv, double angle);
+
+}  // namespace kiln

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "atlas/chart.h"
+#include "base/progress.h"
+
+namespace kiln {
+
+struct ChartSettings {
+  double largest_l2 = 1.01;    ///< stretch of one chart (stretch.h)
+  double largest_linf = 2;     ///< of any triangle
+  double crease_degrees = 75;  ///< a border that bends more on average stays a seam
+};
+
+struct ChartSet {
+  std::vector<Chart> charts;
+  int split_charts = 0;  ///< had to be taken apart since no way of flattening them was valid
+};
+
+/// Cuts a surface into charts, each a topological disk with a valid map to the plane (parameterise.h): every face that
+/// is not degenerate lies in just one. Nearly flat disks are grown first (grow.h), then neighbours are merged as long
+/// as the result flattens within the bounds, those first that share most of their border. A single triangle always
+/// flattens, so this always ends. Independent of the number of threads.
+ChartSet cut_into_charts(const Surface& surface, const ChartSettings& settings,
+                         const ProgressFunction& progress = no_progress);
+
+}  // namespace kiln

@@ -1,0 +1,91 @@
+#include "atlas/drawing.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "atlas/measure.h"
+#include "atlas/surface.h"
+#include "mesh/uv_raster.h"
+
+namespace kiln {
+
+namespace {
+
+using Colour = std::array<double, 3>;
+
+/// Hues a golden section apart, so that charts of neighbouring numbers differ most; two brightnesses.
+Colour chart_colour(std::uint32_t chart) {
+  const double hue = std::fmod(0.618033988749895 * chart, 1.0) * 6;
+  const double value = chart % 2 == 0 ? 235 : 185;
+  Colour colour;
+  for (int channel = 0; channel < 3; ++channel) {
+    const double k = std::fmod(5.0 - 2 * channel + hue, 6.0);
+    colour[channel] = value * (1 - 0.55 * std::clamp(std::min(k, 4 - k), 0.0, 1.0));
+  }
+  return colour;
+}
+
+/// Distance in pixels from a point of a triangle to its nearest side.
+double side_distance(const TriangleMesh& atlas, const TexelSource& source, double pixels) {
+  const Triangle& t = atlas.triangles[source.triangle];
+  const double weights[3] = {1.0 - source.u - source.v, source.u, source.v};
+  const auto point = [&](int k) { return Eigen::Vector2d(atlas.uvs[t[k]].cast<double>() * pixels); };
+  const double twice_area = std::abs(cross(point(0), point(1), point(2)));
+  double least = pixels;
+  for (int k = 0; k < 3; ++k) {
+    const double side = (point((k + 2) % 3) - point((k + 1) % 3)).norm();
+    if (side > 0) least = std::min(least, weights[k] * twice_area / side);
+  }
+  return least;
+}
+
+/// Whether something is covered within `reach` pixels, per pixel: a square window, first along rows, then columns.
+std::vector<std::uint8_t> near_covered(const UvRaster& raster, int reach) {
+  const int size = raster.width;
+  std::vector<std::uint8_t> along(raster.texels.size()), result(raster.texels.size());
+  for (const bool columns : {false, true}) {
+    const std::size_t stride = columns ? size : 1, line_stride = columns ? 1 : size;
+    for (int line = 0; line < size; ++line) {
+      int last = -size - reach;
+      const auto index = [&](int i) { return line * line_stride + i * stride; };
+      const auto on = [&](int i) { return columns ? along[index(i)] != 0 : raster.texels[index(i)].covered(); };
+      for (int i = 0; i < size + reach; ++i) {
+        if (i < size && on(i)) last = i;
+        const int centre = i - reach;  // its window ends at i
+        if (centre >= 0) (columns ? result : along)[index(centre)] = last >= centre - reach;
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+Image<std::uint8_t> draw_atlas(const TriangleMesh& atlas, int size, int gutter_texels) {
+  const int zoom = (1024 + size - 1) / size;
+  const int pixels = size * std::max(1, zoom);
+  const UvRaster raster = rasterise_uvs(atlas, pixels, pixels);
+  const std::vector<std::uint32_t> chart_of = charts_of_triangles(atlas);
+  const std::vector<std::uint8_t> gutter = near_covered(raster, gutter_texels * zoom);
+
+  Image<std::uint8_t> picture(pixels, pixels, 3);
+  for (int j = 0; j < pixels; ++j)
+    for (int i = 0; i < pixels; ++i) {
+      const TexelSource& source = raster.at(i, j);
+      Colour colour{30, 30, 34};
+      if (source.covered()) {
+        colour = chart_colour(chart_of[source.triangle]);
+        // An edge is a line one pixel wide on each side.
+        const double edge = std::clamp(1.5 - side_distance(atlas, source, pixels), 0.0, 1.0);
+        for (double& channel : colour) channel *= 1 - 0.6 * edge;
+      } else if (gutter[static_cast<std::size_t>(j) * pixels + i]) {
+        colour = {82, 82, 88};
+      }
+      for (int channel = 0; channel < 3; ++channel)
+        picture.at(i, j, channel) = static_cast<std::uint8_t>(std::lround(colour[channel]));
+    }
+  return picture;
+}
+
+}  // namespace kiln

@@ -1,0 +1,318 @@
+#include "atlas/merge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <queue>
+#include <tbb/parallel_for.h>
+
+#include "atlas/parameterise.h"
+#include "atlas/relax.h"
+
+namespace kiln {
+
+namespace {
+
+class UnionFind {
+ public:
+  explicit UnionFind(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0u); }
+  std::uint32_t find(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = find(a);
+    b = find(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+/// Place of a face in a chart, whose faces ascend.
+std::uint32_t slot_of(const Chart& chart, std::uint32_t face) {
+  return static_cast<std::uint32_t>(std::lower_bound(chart.faces.begin(), chart.faces.end(), face) -
+                                    chart.faces.begin());
+}
+
+std::uint32_t local_origin(const Chart& chart, std::uint32_t h) {
+  return chart.triangles[slot_of(chart, h / 3)][h % 3];
+}
+std::uint32_t local_target(const Chart& chart, std::uint32_t h) {
+  return chart.triangles[slot_of(chart, h / 3)][(h % 3 + 1) % 3];
+}
+
+/// A vertex of one chart and the vertex of the other (or the same) that it is glued to.
+using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+Pairs vertex_pairs(const Disks& disks, const Disks::Run& run, const Chart& here, const Chart& there) {
+  Pairs pairs;
+  for (std::uint32_t h = run.first;; h = disks.next(h)) {
+    const std::uint32_t twin = disks.surface().twins[h];
+    pairs.emplace_back(local_origin(here, h), local_target(there, twin));
+    pairs.emplace_back(local_target(here, h), local_origin(there, twin));
+    if (h == run.last) return pairs;
+  }
+}
+
+/// Turns and moves the uvs of `there` so that paired vertices come together as well as they can.
+std::vector<Eigen::Vector2d> aligned_uvs(const Chart& here, const Chart& there, const Pairs& pairs) {
+  Eigen::Vector2d mean_here = Eigen::Vector2d::Zero(), mean_there = Eigen::Vector2d::Zero();
+  for (const auto& [a, b] : pairs) {
+    mean_here += here.uvs[a] / static_cast<double>(pairs.size());
+    mean_there += there.uvs[b] / static_cast<double>(pairs.size());
+  }
+  std::complex<double> turn = 0;
+  for (const auto& [a, b] : pairs) {
+    const Eigen::Vector2d p = here.uvs[a] - mean_here, q = there.uvs[b] - mean_there;
+    turn += std::complex(p.x(), p.y()) * std::conj(std::complex(q.x(), q.y()));
+  }
+  turn = std::abs(turn) > 0 ? turn / std::abs(turn) : 1;
+  Eigen::Matrix2d rotation;
+  rotation << turn.real(), -turn.imag(), turn.imag(), turn.real();
+  std::vector<Eigen::Vector2d> result;
+  for (const Eigen::Vector2d& uv : there.uvs) result.push_back(mean_here + rotation * (uv - mean_there));
+  return result;
+}
+
+/// Keeps one vertex of each class, with the mean of their uvs, and sorts the faces.
+Chart compact(Chart chart, UnionFind& classes) {
+  std::vector<std::uint32_t> new_index(chart.vertices.size(), no_index);
+  Chart result;
+  std::vector<double> members;
+  for (std::uint32_t v = 0; v < chart.vertices.size(); ++v) {
+    std::uint32_t& index = new_index[classes.find(v)];  // the least of its class, so met first
+    if (index == no_index) {
+      index = static_cast<std::uint32_t>(result.vertices.size());
+      result.vertices.push_back(chart.vertices[v]);
+      if (!chart.uvs.empty()) result.uvs.push_back(Eigen::Vector2d::Zero());
+      members.push_back(0);
+    }
+    if (!chart.uvs.empty()) result.uvs[index] += chart.uvs[v];
+    members[index] += 1;
+  }
+  for (std::size_t v = 0; v < result.uvs.size(); ++v) result.uvs[v] /= members[v];
+
+  std::vector<std::uint32_t> order(chart.faces.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return chart.faces[a] < chart.faces[b]; });
+  for (const std::uint32_t i : order) {
+    result.faces.push_back(chart.faces[i]);
+    Triangle t = chart.triangles[i];
+    for (std::uint32_t& corner : t) corner = new_index[classes.find(corner)];
+    result.triangles.push_back(t);
+  }
+  return result;
+}
+
+/// The chart that gluing along a run gives, started from the uvs of its parts.
+Chart glued_chart(const Disks& disks, const Disks::Run& run, const Chart& here, const Chart& there) {
+  const Pairs pairs = vertex_pairs(disks, run, here, there);
+  Chart both = here;
+  std::uint32_t offset = 0;
+  if (&here != &there) {
+    offset = static_cast<std::uint32_t>(here.vertices.size());
+    both.faces.insert(both.faces.end(), there.faces.begin(), there.faces.end());
+    both.vertices.insert(both.vertices.end(), there.vertices.begin(), there.vertices.end());
+    const std::vector<Eigen::Vector2d> uvs = aligned_uvs(here, there, pairs);
+    both.uvs.insert(both.uvs.end(), uvs.begin(), uvs.end());
+    for (Triangle t : there.triangles) {
+      for (std::uint32_t& corner : t) corner += offset;
+      both.triangles.push_back(t);
+    }
+  }
+  UnionFind classes(both.vertices.size());
+  for (const auto& [a, b] : pairs) classes.join(a, b + offset);
+  return compact(std::move(both), classes);
+}
+
+/// Area of the convex hull (Andrew's monotone chain).
+double hull_area(std::vector<Eigen::Vector2d> points) {
+  std::sort(points.begin(), points.end(), [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+  });
+  double area = 0;
+  for (int side = 0; side < 2; ++side) {
+    std::vector<Eigen::Vector2d> chain;
+    for (const Eigen::Vector2d& p : points) {
+      while (chain.size() >= 2 && cross(chain[chain.size() - 2], chain.back(), p) <= 0) chain.pop_back();
+      chain.push_back(p);
+    }
+    for (std::size_t i = 1; i < chain.size(); ++i)
+      area += 0.5 * (chain[i - 1].x() * chain[i].y() - chain[i - 1].y() * chain[i].x());
+    std::reverse(points.begin(), points.end());
+  }
+  return area;
+}
+
+std::optional<Chart> flattened(const Surface& surface, Chart chart, const ChartSettings& settings) {
+  if (is_flip_free(chart)) {
+    relax(surface, chart, {8, 1e-2});
+    if (!has_simple_border(chart)) return {};
+    equalise_area(surface, chart);
+  } else if (!parameterise_quickly(surface, chart)) {
+    return {};
+  }
+  const Stretch stretch = measure_stretch(surface, chart);
+  if (!(stretch.l2 <= settings.largest_l2 && stretch.linf <= settings.largest_linf)) return {};
+  static const double hf = getenv("HF") ? atof(getenv("HF")) : 0, hs = getenv("HS") ? atof(getenv("HS")) : 0.05;
+  double ca = 0;
+  for (auto f : chart.faces) ca += surface.rest[f].area;
+  if (ca > hs * surface.area && ca / hull_area(chart.uvs) < hf) return {};
+  static const double ex = getenv("EX") ? atof(getenv("EX")) : 100;
+  double far = 0;
+  for (int k = 0; k < 16; ++k) {
+    Eigen::Vector2d d(std::cos(k * std::numbers::pi / 16), std::sin(k * std::numbers::pi / 16));
+    double l = 1e300, h = -1e300;
+    for (auto& p : chart.uvs) l = std::min(l, d.dot(p)), h = std::max(h, d.dot(p));
+    far = std::max(far, h - l);
+  }
+  if (far > ex * std::sqrt(surface.area)) return {};
+  return chart;
+}
+
+struct Candidate {
+  double score;
+  std::uint32_t half_edge;
+  std::uint32_t version_here, version_there;
+
+  bool operator<(const Candidate& other) const {  // the queue's top is the largest: the best score
+    return score != other.score ? score < other.score : half_edge > other.half_edge;
+  }
+};
+
+class Merger {
+ public:
+  Merger(Disks& disks, std::vector<Chart>& charts, const ChartSettings& settings)
+      : disks_(disks), charts_(charts), settings_(settings) {}
+
+  void run(const ProgressFunction& progress) {
+    const std::vector<std::uint32_t> ids = disks_.ids();
+    for (const std::uint32_t id : ids) push_runs(id, false);
+    double most_left = 1;
+    while (!queue_.empty()) {
+      most_left = std::max(most_left, static_cast<double>(queue_.size()));
+      progress(1 - static_cast<double>(queue_.size()) / most_left);
+      try_batch();
+    }
+  }
+
+ private:
+  /// Takes the best candidates that have no chart in common, tries them side by side and glues those that work. The
+  /// size of the batch does not depend on the number of threads, so neither does the result.
+  void try_batch() {
+    constexpr std::size_t batch_size = 8;
+    struct Trial {
+      Candidate candidate;
+      Disks::Run run;
+      std::uint32_t here, there;
+      std::optional<Chart> result;
+    };
+    std::vector<Trial> trials;
+    std::vector<Candidate> later;
+    while (!queue_.empty() && trials.size() < batch_size && later.size() < batch_size) {
+      const Candidate candidate = queue_.top();
+      queue_.pop();
+      const std::uint32_t h = candidate.half_edge;
+      if (!disks_.on_border(h)) continue;
+      const std::uint32_t here = disks_.disk_of(h), there = disks_.disk_of(disks_.surface().twins[h]);
+      if (disks_.disk(here).version != candidate.version_here || disks_.disk(there).version != candidate.version_there)
+        continue;
+      const bool taken = std::any_of(trials.begin(), trials.end(), [&](const Trial& t) {
+        return t.here == here || t.here == there || t.there == here || t.there == there;
+      });
+      if (taken)
+        later.push_back(candidate);
+      else
+        trials.push_back({candidate, disks_.run_through(h), here, there, {}});
+    }
+    tbb::parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
+      Trial& t = trials[i];
+      t.result = flattened(disks_.surface(), glued_chart(disks_, t.run, charts_[t.here], charts_[t.there]), settings_);
+    });
+    for (const Candidate& candidate : later) queue_.push(candidate);
+    for (Trial& t : trials) {
+      if (!t.result) continue;
+      const std::uint32_t id = disks_.glue(t.run);
+      charts_[id == t.here ? t.there : t.here] = Chart{};
+      charts_[id] = std::move(*t.result);
+      push_runs(id, true);
+    }
+  }
+
+  /// The best run to each neighbour, and every slit's end.
+  void push_runs(std::uint32_t id, bool to_all) {
+    std::uint32_t start = no_index;
+    for (const std::uint32_t face : disks_.disk(id).faces)
+      for (std::uint32_t k = 0; k < 3 && start == no_index; ++k)
+        if (disks_.on_border(3 * face + k)) start = 3 * face + k;
+    std::vector<std::pair<std::uint32_t, Candidate>> best;
+    std::uint32_t h = start;
+    do {
+      const std::uint32_t twin = disks_.surface().twins[h];
+      if (twin != no_index) {
+        const Disks::Run run = disks_.run_through(h);
+        if (run.possible() && run.first == h) consider(id, disks_.disk_of(twin), run, best);
+      }
+      h = disks_.next(h);
+    } while (h != start);
+    for (const auto& [neighbour, candidate] : best)
+      if (to_all || id <= neighbour) queue_.push(candidate);
+  }
+
+  void consider(std::uint32_t here, std::uint32_t there, const Disks::Run& run,
+                std::vector<std::pair<std::uint32_t, Candidate>>& best) const {
+    if (run.bend > settings_.crease_degrees * std::numbers::pi / 180) return;
+    const Disks::Disk &a = disks_.disk(here), &b = disks_.disk(there);
+    // The share of a chart's border that would no longer be a seam.
+    const double score = run.length / std::min(a.perimeter, b.perimeter);
+    if (score < 0.1 && here != there) return;
+    const Candidate candidate{score, run.first, a.version, b.version};
+    const auto known = std::find_if(best.begin(), best.end(), [&](const auto& entry) { return entry.first == there; });
+    if (known == best.end())
+      best.emplace_back(there, candidate);
+    else if (known->second < candidate)
+      known->second = candidate;
+  }
+
+  Disks& disks_;
+  std::vector<Chart>& charts_;
+  const ChartSettings& settings_;
+  std::priority_queue<Candidate> queue_;
+};
+
+}  // namespace
+
+Chart chart_of_disk(const Disks& disks, std::uint32_t id) {
+  const Surface& surface = disks.surface();
+  Chart chart;
+  chart.faces = disks.disk(id).faces;
+  std::sort(chart.faces.begin(), chart.faces.end());
+  // Every corner is a vertex of its own until glued edges make some of them one.
+  for (std::uint32_t i = 0; i < chart.faces.size(); ++i) {
+    const Triangle& t = surface.mesh->triangles[chart.faces[i]];
+    chart.vertices.insert(chart.vertices.end(), t.begin(), t.end());
+    chart.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  UnionFind classes(chart.vertices.size());
+  for (const std::uint32_t face : chart.faces)
+    for (std::uint32_t h = 3 * face; h < 3 * face + 3; ++h) {
+      if (disks.on_border(h)) continue;
+      const std::uint32_t twin = surface.twins[h];
+      classes.join(local_origin(chart, h), local_target(chart, twin));
+      classes.join(local_target(chart, h), local_origin(chart, twin));
+    }
+  return compact(std::move(chart), classes);
+}
+
+void merge_charts(Disks& disks, std::vector<Chart>& charts, const ChartSettings& settings,
+                  const ProgressFunction& progress) {
+  Merger(disks, charts, settings).run(progress);
+}
+
+}  // namespace kiln

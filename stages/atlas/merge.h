@@ -1,0 +1,20 @@
+#pragma once
+
+#include <vector>
+
+#include "atlas/charts.h"
+#include "atlas/disks.h"
+#include "base/progress.h"
+
+namespace kiln {
+
+/// The chart of a disk, without uvs.
+Chart chart_of_disk(const Disks& disks, std::uint32_t id);
+
+/// Merges neighbouring charts, `charts[id]` belonging to disk `id` and being valid, while the result stays within the
+/// bounds of `settings`; then zips slits where that does. Greedy: the runs of the largest share of a chart's border
+/// first.
+void merge_charts(Disks& disks, std::vector<Chart>& charts, const ChartSettings& settings,
+                  const ProgressFunction& progress);
+
+}  // namespace kiln

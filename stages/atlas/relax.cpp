@@ -1,0 +1,190 @@
+// Smith and Schaefer, "Bijective parameterization with free boundaries", 2015 (energy and line search); Rabinovich,
+// Poranne, Panozzo and Sorkine-Hornung, "Scalable locally injective mappings", 2017 (reweighted proxies).
+#include "atlas/relax.h"
+
+#include <Eigen/LU>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace kiln {
+
+namespace {
+
+using Matrix2 = Eigen::Matrix2d;
+using Uvs = std::vector<Eigen::Vector2d>;
+
+Matrix2 jacobian(const RestTriangle& rest, const Triangle& t, const Uvs& uvs) {
+  return uvs[t[0]] * rest.gradients[0].transpose() + uvs[t[1]] * rest.gradients[1].transpose() +
+         uvs[t[2]] * rest.gradients[2].transpose();
+}
+
+/// Singular values and the nearest rotation of a 2x2 matrix with positive determinant.
+struct Decomposition {
+  double larger, smaller;
+  Matrix2 rotation;
+};
+
+Decomposition decompose(const Matrix2& j) {
+  const double e = 0.5 * (j(0, 0) + j(1, 1)), f = 0.5 * (j(0, 0) - j(1, 1));
+  const double g = 0.5 * (j(1, 0) + j(0, 1)), h = 0.5 * (j(1, 0) - j(0, 1));
+  const double q = std::hypot(e, h), r = std::hypot(f, g);
+  Decomposition d{q + r, q - r, {}};
+  d.rotation << e, -h, h, e;
+  d.rotation /= q;
+  return d;
+}
+
+/// Squared weight of the proxy for one singular value: that with which the gradient of weight^2 (s - 1)^2 is the
+/// energy's.
+double proxy_weight(double s) { return (s + 1) * (s * s + 1) / (s * s * s); }
+
+/// The largest step along `move` before a triangle has no area.
+double largest_step(const Chart& chart, const Uvs& uvs, const Uvs& move) {
+  double largest = std::numeric_limits<double>::infinity();
+  for (const Triangle& t : chart.triangles) {
+    const Eigen::Vector2d p = uvs[t[1]] - uvs[t[0]], q = uvs[t[2]] - uvs[t[0]];
+    const Eigen::Vector2d dp = move[t[1]] - move[t[0]], dq = move[t[2]] - move[t[0]];
+    const auto det = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); };
+    // Area as a quadratic of the step; its smallest positive root, in the form that does not cancel.
+    const double a = det(dp, dq), b = det(p, dq) + det(dp, q), c = det(p, q);
+    const double discriminant = b * b - 4 * a * c;
+    if (discriminant < 0) continue;
+    const double sum = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
+    for (const double root : {sum / a, c / sum})
+      if (root > 0 && root < largest) largest = root;
+  }
+  return largest;
+}
+
+class Relaxation {
+ public:
+  Relaxation(const Surface& surface, Chart& chart) : surface_(surface), chart_(chart) { build_pattern(); }
+
+  double energy(const Uvs& uvs) const {
+    double sum = 0, area = 0;
+    for (std::size_t i = 0; i < chart_.triangles.size(); ++i) {
+      const RestTriangle& rest = surface_.rest[chart_.faces[i]];
+      const Matrix2 j = jacobian(rest, chart_.triangles[i], uvs);
+      const double determinant = j.determinant();
+      if (!(determinant > 0)) return std::numeric_limits<double>::infinity();
+      const double square = j.squaredNorm();
+      sum += rest.area * square * (1 + 1 / (determinant * determinant));
+      area += rest.area;
+    }
+    return sum / area;
+  }
+
+  /// One step; the new energy, or the old one where it cannot be lowered.
+  double step(double old_energy) {
+    assemble();
+    if (factorisation_.factorize(matrix_); factorisation_.info() != Eigen::Success) return old_energy;
+    const Eigen::VectorXd solution = factorisation_.solve(right_side_);
+    if (!solution.allFinite()) return old_energy;
+    Uvs move(chart_.uvs.size());
+    for (std::size_t v = 0; v < move.size(); ++v)
+      move[v] = solution.segment<2>(2 * static_cast<Eigen::Index>(v)) - chart_.uvs[v];
+
+    double length = std::min(1.0, 0.8 * largest_step(chart_, chart_.uvs, move));
+    Uvs trial(move.size());
+    for (int halvings = 0; halvings < 20; ++halvings, length *= 0.5) {
+      for (std::size_t v = 0; v < move.size(); ++v) trial[v] = chart_.uvs[v] + length * move[v];
+      const double new_energy = energy(trial);
+      if (new_energy < old_energy) {
+        chart_.uvs = std::move(trial);
+        return new_energy;
+      }
+    }
+    return old_energy;
+  }
+
+ private:
+  /// The matrix's pattern is the same in every step: remember where each triangle's entries lie.
+  void build_pattern() {
+    const auto size = 2 * static_cast<Eigen::Index>(chart_.uvs.size());
+    std::vector<Eigen::Triplet<double>> triplets;
+    triplets.reserve(chart_.triangles.size() * 21 + size);
+    for_each_entry([&](std::size_t, std::size_t, Eigen::Index row, Eigen::Index column) {
+      triplets.emplace_back(row, column, 0.0);
+    });
+    for (Eigen::Index i = 0; i < size; ++i) triplets.emplace_back(i, i, 0.0);
+    matrix_.resize(size, size);
+    matrix_.setFromTriplets(triplets.begin(), triplets.end());
+    slots_.assign(chart_.triangles.size(), {});
+    for_each_entry([&](std::size_t triangle, std::size_t entry, Eigen::Index row, Eigen::Index column) {
+      slots_[triangle][entry] = &matrix_.coeffRef(row, column) - matrix_.valuePtr();
+    });
+    right_side_.resize(size);
+    factorisation_.analyzePattern(matrix_);
+  }
+
+  /// The entries of the lower triangle that each chart triangle adds to.
+  template <class Visit>
+  void for_each_entry(Visit&& visit) const {
+    for (std::size_t i = 0; i < chart_.triangles.size(); ++i) {
+      const Triangle& t = chart_.triangles[i];
+      std::size_t entry = 0;
+      for (int a = 0; a < 6; ++a)
+        for (int b = 0; b < 6; ++b) {
+          const Eigen::Index row = 2 * Eigen::Index{t[a / 2]} + a % 2, column = 2 * Eigen::Index{t[b / 2]} + b % 2;
+          if (row >= column) visit(i, entry++, row, column);
+        }
+    }
+  }
+
+  void assemble() {
+    constexpr double proximal = 1e-5;  // fixes the translation
+    std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
+    for (Eigen::Index i = 0; i < matrix_.rows(); ++i) matrix_.valuePtr()[matrix_.outerIndexPtr()[i]] = proximal;
+    for (std::size_t v = 0; v < chart_.uvs.size(); ++v)
+      right_side_.segment<2>(2 * static_cast<Eigen::Index>(v)) = proximal * chart_.uvs[v];
+
+    for (std::size_t i = 0; i < chart_.triangles.size(); ++i) {
+      const Triangle& t = chart_.triangles[i];
+      const RestTriangle& rest = surface_.rest[chart_.faces[i]];
+      const Matrix2 j = jacobian(rest, t, chart_.uvs);
+      const Decomposition d = decompose(j);
+      // The proxy's metric has the left singular vectors of j, so it is a combination of the identity and j j^T.
+      const double weight_larger = proxy_weight(d.larger), weight_smaller = proxy_weight(d.smaller);
+      const double gap = d.larger * d.larger - d.smaller * d.smaller;
+      const double slope = gap > 1e-9 ? (weight_larger - weight_smaller) / gap : 0;
+      const Matrix2 metric =
+          rest.area * ((weight_larger - slope * d.larger * d.larger) * Matrix2::Identity() + slope * j * j.transpose());
+      const Matrix2 goal = metric * d.rotation;
+      std::size_t entry = 0;
+      for (int a = 0; a < 6; ++a)
+        for (int b = 0; b < 6; ++b) {
+          const std::uint32_t row = 2 * t[a / 2] + a % 2, column = 2 * t[b / 2] + b % 2;
+          if (row < column) continue;
+          matrix_.valuePtr()[slots_[i][entry++]] +=
+              rest.gradients[a / 2].dot(rest.gradients[b / 2]) * metric(a % 2, b % 2);
+        }
+      for (int k = 0; k < 3; ++k) right_side_.segment<2>(2 * Eigen::Index{t[k]}) += goal * rest.gradients[k];
+    }
+  }
+
+  const Surface& surface_;
+  Chart& chart_;
+  Eigen::SparseMatrix<double> matrix_;  // lower triangle; the first entry of a column is its diagonal
+  Eigen::VectorXd right_side_;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factorisation_;
+  std::vector<std::array<Eigen::Index, 21>> slots_;
+};
+
+}  // namespace
+
+double relax(const Surface& surface, Chart& chart, const RelaxSettings& settings) {
+  Relaxation relaxation(surface, chart);
+  constexpr double isometry = 4;
+  double energy = relaxation.energy(chart.uvs);
+  for (int i = 0; i < settings.iterations; ++i) {
+    const double old_energy = energy;
+    energy = relaxation.step(old_energy);
+    if (old_energy - energy <= settings.tolerance * (old_energy - isometry) || energy - isometry < 1e-9) break;
+  }
+  return energy;
+}
+
+}  // namespace kiln

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "atlas/chart.h"
+
+namespace kiln {
+
+struct RelaxSettings {
+  int iterations = 8;
+  double tolerance =
+      1e-4;  ///< stop when an iteration lowers the energy's excess over that of an isometry by less than this share
+};
+
+/// Moves the uvs of a flip-free chart towards an isometry without ever flipping a triangle: minimises the symmetric
+/// Dirichlet energy, the mean over the surface of s1^2 + s2^2 + 1/s1^2 + 1/s2^2 (4 for an isometry), by reweighted
+/// least squares steps. Returns the energy.
+double relax(const Surface& surface, Chart& chart, const RelaxSettings& settings);
+
+}  // namespace kiln

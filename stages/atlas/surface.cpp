@@ -1,0 +1,82 @@
+#include "atlas/surface.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace kiln {
+
+namespace {
+
+/// Lays the triangle down with its first side on the x axis. False where it has no usable area.
+bool flatten_triangle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                      RestTriangle& rest) {
+  const double side = (b - a).norm();
+  const double longest = std::max({side, (c - b).norm(), (a - c).norm()});
+  const double twice_area = (b - a).cross(c - a).norm();
+  if (!(twice_area > 1e-6 * longest * longest)) return false;
+  rest.corners = {Eigen::Vector2d(0, 0), Eigen::Vector2d(side, 0),
+                  Eigen::Vector2d((c - a).dot(b - a) / side, twice_area / side)};
+  rest.area = 0.5 * twice_area;
+  for (int k = 0; k < 3; ++k) {
+    // The gradient is the opposite side turned by 90 degrees, over twice the area.
+    const Eigen::Vector2d opposite = rest.corners[(k + 2) % 3] - rest.corners[(k + 1) % 3];
+    rest.gradients[k] = Eigen::Vector2d(-opposite.y(), opposite.x()) / twice_area;
+  }
+  return true;
+}
+
+}  // namespace
+
+Surface analyse_surface(const TriangleMesh& mesh) {
+  Surface surface;
+  surface.mesh = &mesh;
+  const auto faces = static_cast<std::uint32_t>(mesh.triangles.size());
+  surface.rest.resize(faces);
+  surface.face_normals.assign(faces, Eigen::Vector3d::UnitY());
+  surface.degenerate.assign(faces, 0);
+  surface.edge_lengths.resize(std::size_t{3} * faces);
+  surface.twins.assign(std::size_t{3} * faces, no_index);
+
+  for (std::uint32_t f = 0; f < faces; ++f) {
+    std::array<Eigen::Vector3d, 3> p;
+    for (int k = 0; k < 3; ++k) p[k] = mesh.positions[mesh.triangles[f][k]].cast<double>();
+    for (int k = 0; k < 3; ++k) surface.edge_lengths[3 * f + k] = (p[(k + 1) % 3] - p[k]).norm();
+    if (!flatten_triangle(p[0], p[1], p[2], surface.rest[f])) {
+      surface.degenerate[f] = 1;
+      continue;
+    }
+    surface.face_normals[f] = (p[1] - p[0]).cross(p[2] - p[0]).normalized();
+    surface.area += surface.rest[f].area;
+  }
+
+  // Half-edges between the same two vertices lie side by side once sorted; a proper edge has just two, one each way.
+  struct Entry {
+    std::uint32_t low, high, half_edge;
+  };
+  std::vector<Entry> entries;
+  entries.reserve(surface.twins.size());
+  for (std::uint32_t h = 0; h < surface.half_edge_count(); ++h) {
+    if (surface.degenerate[h / 3]) continue;
+    const auto [low, high] = std::minmax({surface.origin(h), surface.target(h)});
+    entries.push_back({low, high, h});
+  }
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return std::tie(a.low, a.high, a.half_edge) < std::tie(b.low, b.high, b.half_edge);
+  });
+  for (std::size_t begin = 0; begin < entries.size();) {
+    std::size_t end = begin + 1;
+    while (end < entries.size() && entries[end].low == entries[begin].low && entries[end].high == entries[begin].high)
+      ++end;
+    if (end - begin == 2) {
+      const std::uint32_t h = entries[begin].half_edge, t = entries[begin + 1].half_edge;
+      if (surface.origin(h) == surface.target(t)) {
+        surface.twins[h] = t;
+        surface.twins[t] = h;
+      }
+    }
+    begin = end;
+  }
+  return surface;
+}
+
+}  // namespace kiln

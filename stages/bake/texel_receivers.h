@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "detail/detail_maps.h"
+#include "mesh/triangle_mesh.h"
+#include "sh/transfer.h"
+
+namespace kiln {
+
+/// The covered texels of an atlas as receivers, tile after tile, so that neighbours in the list are neighbours on the
+/// surface.
+struct TexelReceivers {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint32_t> texels;  ///< j * width + i, rows from the bottom
+  std::vector<Eigen::Vector3f> positions;
+  std::vector<Eigen::Vector3f> normals;
+
+  Receivers view() const { return {positions, normals}; }
+  std::vector<std::uint8_t> covered() const;  ///< 1 or 0 per texel
+};
+
+/// Texels stand at the high mesh's points, with its normals.
+TexelReceivers receivers_on_high(const DetailMaps& detail);
+
+/// Texels stand on the low mesh itself; with the high mesh's normals where `detail` is given (the thesis's
+/// variant, 4.2.4), else with the low mesh's, interpolated.
+TexelReceivers receivers_on_low(const TriangleMesh& atlas, int width, int height, const DetailMaps* detail);
+
+}  // namespace kiln

@@ -1,0 +1,174 @@
+#include "base/command_line.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <tbb/global_control.h>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <new>
+#include <thread>
+
+#include "base/errors.h"
+
+namespace kiln {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+void require_exists(const fs::path& path) {
+  std::error_code error;
+  if (!fs::exists(path, error))
+    throw BadInput(path.string(), "does not exist", "an input file", "check the path");
+}
+
+int fail(const std::string& program, ExitCode code, const std::string& message) {
+  std::fprintf(stderr, "%s: %s\n", program.c_str(), message.c_str());
+  return static_cast<int>(code);
+}
+
+}  // namespace
+
+CommandLine::CommandLine(std::string program, const std::string& purpose)
+    : program_(std::move(program)), stage_(program_.substr(program_.find('-') + 1)), app_(purpose, program_) {
+  app_.set_version_flag("--version", std::string(KILN_VERSION));
+  app_.get_formatter()->column_width(38);
+  app_.add_flag("--json", json_, "Print the result as one JSON object on stdout")->group("Common");
+  app_.add_flag("--quiet", quiet_, "Print errors only")->group("Common");
+  app_.add_option("--threads", threads_, "Threads, 0 for all cores (default 0; 0 to 1024)")->check(CLI::Range(0, 1024))->group("Common");
+  app_.add_option("--seed", seed_, "Seed of everything random (default 1; 0 to 2147483647)")
+      ->check(CLI::Range(0, 2147483647))->group("Common");
+}
+
+void CommandLine::input(const std::string& name, fs::path& path, const std::string& help) {
+  app_.add_option(name, path, help)->required();
+  inputs_.push_back(&path);
+}
+
+void CommandLine::output(fs::path& path, const std::string& help) {
+  app_.add_option("-o,--output", path, help)->required();
+}
+
+void CommandLine::input_option(const std::string& name, fs::path& path, const std::string& help) {
+  app_.add_option("--" + name, path, help);
+  inputs_.push_back(&path);
+}
+
+void CommandLine::input_option(const std::string& name, std::vector<fs::path>& paths, const std::string& help) {
+  // One path an option, so that a positional input after it is not swallowed.
+  app_.add_option("--" + name, paths, help)->expected(1)->take_all();
+  input_lists_.push_back(&paths);
+}
+
+void CommandLine::options(const std::string& heading, const OptionSet& options) {
+  option_sets_.push_back(options);
+  for (const Option& option : option_sets_.back().options()) {
+    const Json value = option.get();
+    if (option.is_switch) {
+      app_.add_flag_callback("--" + option.name, [set = option.set] { set("true"); }, option.help)->group(heading);
+      continue;
+    }
+    const std::string shown = value.is_string() ? value.get<std::string>() : value.dump();
+    app_.add_option_function<std::string>("--" + option.name, [set = option.set](const std::string& text) {
+          try {
+            set(text);
+          } catch (const WrongUsage& error) {
+            throw CLI::ValidationError(std::string("--") + error.what());
+          }
+        }, fmt::format("{} (default {}; {})", option.help, shown.empty() ? "none" : shown, option.value_range))
+        ->type_name("")
+        ->group(heading);
+  }
+}
+
+void CommandLine::parse(int argc, char** argv) {
+  try {
+    app_.parse(argc, argv);
+  } catch (const CLI::Success& asked_for_help) {
+    app_.exit(asked_for_help);
+    throw;
+  }
+  if (threads_ == 0) threads_ = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  thread_limit_ = std::make_shared<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads_);
+  for (const fs::path* path : inputs_)
+    if (!path->empty()) require_exists(*path);
+  for (const auto* list : input_lists_)
+    for (const fs::path& path : *list) require_exists(path);
+}
+
+ProgressFunction CommandLine::progress(const std::string& label) const {
+  return [bar = std::make_shared<ProgressBar>(label, quiet_)](double fraction) { (*bar)(fraction); };
+}
+
+void CommandLine::say(const std::string& line) const {
+  if (!quiet_) std::fprintf(stderr, "%s: %s\n", program_.c_str(), line.c_str());
+}
+
+Json CommandLine::result(double seconds, const Json& metrics) const {
+  Json settings = Json::object();
+  for (const OptionSet& set : option_sets_) settings.update(set.to_json());
+  settings["seed"] = seed_;
+  Json inputs = Json::object();
+  const auto add = [&](const fs::path& path) {
+    if (!path.empty() && fs::is_regular_file(path)) inputs[path.string()] = hash_file(path);
+  };
+  for (const fs::path* path : inputs_) add(*path);
+  for (const auto* list : input_lists_)
+    for (const fs::path& path : *list) add(path);
+  Json result = {{"stage", stage_},     {"version", KILN_VERSION}, {"settings", settings},
+                 {"inputs", inputs}, {"seconds", seconds},      {"peak_memory_bytes", peak_memory_bytes()}};
+  result.update(metrics);
+  return result;
+}
+
+void CommandLine::finish(OutputSet& outputs, const Json& result) const {
+  outputs.add_text(stage_ + ".json", result.dump(2) + "\n");
+  finish_without_record(outputs, result);
+}
+
+void CommandLine::finish_without_record(OutputSet& outputs, const Json& result) const {
+  throw_if_interrupted();
+  outputs.commit();
+  if (json_) std::printf("%s\n", result.dump().c_str());
+}
+
+long long peak_memory_bytes() {
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<long long>(usage.ru_maxrss) * 1024;
+}
+
+int run_program(const std::string& program, const std::function<void()>& body) {
+  stop_on_signals();
+  try {
+    body();
+    return static_cast<int>(ExitCode::done);
+  } catch (const CLI::Success&) {
+    return static_cast<int>(ExitCode::done);  // --help or --version, printed by parse()
+  } catch (const CLI::ParseError& error) {
+    return fail(program, ExitCode::wrong_usage, std::string(error.what()) + "; see " + program + " --help");
+  } catch (const WrongUsage& error) {
+    return fail(program, ExitCode::wrong_usage, std::string(error.what()) + "; see " + program + " --help");
+  } catch (const BadInput& error) {
+    return fail(program, ExitCode::bad_input, error.what());
+  } catch (const BudgetMissed& error) {
+    return fail(program, ExitCode::budget_missed, error.what());
+  } catch (const MachineLacks& error) {
+    return fail(program, ExitCode::machine_lacks, error.what());
+  } catch (const Interrupted&) {
+    std::fprintf(stderr, "%s: interrupted, nothing was written\n", program.c_str());
+    // Ending by the signal itself lets make and the shell see what happened.
+    std::signal(noted_signal(), SIG_DFL);
+    std::raise(noted_signal());
+    return static_cast<int>(ExitCode::failed);
+  } catch (const std::bad_alloc&) {
+    return fail(program, ExitCode::failed, "ran out of memory");
+  } catch (const std::exception& error) {
+    return fail(program, ExitCode::failed, std::string("failed inside: ") + error.what());
+  }
+}
+
+}  // namespace kiln

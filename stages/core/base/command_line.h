@@ -1,0 +1,95 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/options.h"
+#include "base/outputs.h"
+#include "base/progress.h"
+
+namespace kiln {
+
+/// The command line that all stages share: `kiln-<stage> INPUT... -o OUTPUT [options]` with --json, --quiet,
+/// --threads and --seed, the result as JSON, and the exit statuses.
+class CommandLine {
+ public:
+  /// `program` is "kiln-<stage>".
+  CommandLine(std::string program, const std::string& purpose);
+
+  /// A positional input, an existing file or folder; the hash of a file goes into the result.
+  void input(const std::string& name, std::filesystem::path& path, const std::string& help);
+
+  /// `-o OUTPUT`, required.
+  void output(std::filesystem::path& path, const std::string& help);
+
+  /// An optional input that is named by an option: `--detail FOLDER`.
+  void input_option(const std::string& name, std::filesystem::path& path, const std::string& help);
+  void input_option(const std::string& name, std::vector<std::filesystem::path>& paths, const std::string& help);
+
+  /// The settings of the stage, under a heading of --help.
+  void options(const std::string& heading, const OptionSet& options);
+
+  /// For what the above does not cover.
+  CLI::App& app() { return app_; }
+
+  /// Parses, limits the number of threads; throws CLI::ParseError (run_program knows it) and BadInput where an input
+  /// does not exist.
+  void parse(int argc, char** argv);
+
+  bool quiet() const { return quiet_; }
+  int threads() const { return threads_; }
+  int seed() const { return seed_; }
+
+  /// A progress bar as this command line wants it.
+  ProgressFunction progress(const std::string& label) const;
+
+  /// A line on stderr, unless --quiet.
+  void say(const std::string& line) const;
+
+  /// The result: stage, version, settings, inputs' hashes, seconds, peak_memory_bytes, then `metrics` at the same
+  /// level. `seconds` is the stage's own work, without reading and writing files.
+  Json result(double seconds, const Json& metrics) const;
+
+  /// Writes `result` to `<stage>.json` of `outputs`, commits them all, and prints `result` on stdout if --json was
+  /// given.
+  void finish(OutputSet& outputs, const Json& result) const;
+
+  /// The same without `<stage>.json`, for tools whose output is one file anywhere.
+  void finish_without_record(OutputSet& outputs, const Json& result) const;
+
+ private:
+  std::string program_;
+  std::string stage_;
+  CLI::App app_;
+  bool json_ = false;
+  bool quiet_ = false;
+  int threads_ = 0;
+  int seed_ = 1;
+  std::vector<const std::filesystem::path*> inputs_;
+  std::vector<const std::vector<std::filesystem::path>*> input_lists_;
+  std::vector<OptionSet> option_sets_;
+  std::shared_ptr<void> thread_limit_;
+};
+
+/// Wall-clock seconds since construction.
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// Peak resident memory of this process.
+long long peak_memory_bytes();
+
+/// Runs the body of a main(): maps exceptions to exit statuses and one message on stderr each, and ends by the signal
+/// where one interrupted it. `program` starts the message.
+int run_program(const std::string& program, const std::function<void()>& body);
+
+}  // namespace kiln

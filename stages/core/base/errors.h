@@ -1,0 +1,50 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace kiln {
+
+/// Exit statuses of every executable, the same in all of them.
+enum class ExitCode : int {
+  done = 0,
+  failed = 1,         ///< failed inside: a defect of Kiln, or the machine ran out of something
+  wrong_usage = 2,    ///< an option that does not exist or whose value is out of range
+  bad_input = 3,      ///< a file that cannot be read, understood or written
+  budget_missed = 4,  ///< everything ran, a quality budget was not met
+  machine_lacks = 5,  ///< the machine lacks something, such as a GL driver
+};
+
+/// A file (or folder) is not what the stage needs.
+class BadInput : public std::runtime_error {
+ public:
+  /// The message reads "FILE: FOUND; expected EXPECTED; REMEDY".
+  BadInput(const std::string& file, const std::string& found, const std::string& expected, const std::string& remedy)
+      : std::runtime_error(file + ": " + found + "; expected " + expected + "; " + remedy) {}
+};
+
+/// The command line asks for something that does not exist.
+class WrongUsage : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A quality budget was missed; the outputs are written nevertheless.
+class BudgetMissed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The machine has no such device, driver or limit.
+class MachineLacks : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Ctrl-C, or a polite kill.
+class Interrupted : public std::runtime_error {
+ public:
+  Interrupted() : std::runtime_error("interrupted") {}
+};
+
+}  // namespace kiln

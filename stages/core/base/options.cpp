@@ -1,0 +1,92 @@
+#include "base/options.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <optional>
+
+#include "base/errors.h"
+
+namespace kiln {
+
+namespace {
+
+template <class Number>
+std::optional<Number> parse(const std::string& text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace
+
+OptionSet& OptionSet::integer(std::string name, int& value, int lowest, int highest, std::string help) {
+  const std::string range = fmt::format("{} to {}", lowest, highest);
+  auto set = [=, &value](const std::string& text) {
+    const std::optional<int> parsed = parse<int>(text);
+    if (!parsed || *parsed < lowest || *parsed > highest)
+      throw WrongUsage(fmt::format("{}: found '{}'; expected a whole number, {}", name, text, range));
+    value = *parsed;
+  };
+  options_.push_back({name, std::move(help), range, false, set, [&value] { return Json(value); }});
+  return *this;
+}
+
+OptionSet& OptionSet::number(std::string name, double& value, double lowest, double highest, std::string help) {
+  const std::string range = fmt::format("{:g} to {:g}", lowest, highest);
+  auto set = [=, &value](const std::string& text) {
+    const std::optional<double> parsed = parse<double>(text);
+    if (!parsed || !std::isfinite(*parsed) || *parsed < lowest || *parsed > highest)
+      throw WrongUsage(fmt::format("{}: found '{}'; expected a number, {}", name, text, range));
+    value = *parsed;
+  };
+  options_.push_back({name, std::move(help), range, false, set, [&value] { return Json(value); }});
+  return *this;
+}
+
+OptionSet& OptionSet::toggle(std::string name, bool& value, std::string help) {
+  auto set = [name, &value](const std::string& text) {
+    if (text != "true" && text != "false")
+      throw WrongUsage(fmt::format("{}: found '{}'; expected true or false", name, text));
+    value = text == "true";
+  };
+  options_.push_back({name, std::move(help), "", true, set, [&value] { return Json(value); }});
+  return *this;
+}
+
+OptionSet& OptionSet::text(std::string name, std::string& value, std::string help) {
+  auto set = [&value](const std::string& text) { value = text; };
+  options_.push_back({std::move(name), std::move(help), "text", false, set, [&value] { return Json(value); }});
+  return *this;
+}
+
+OptionSet& OptionSet::choice_by_index(std::string name, std::vector<std::string> words,
+                                      std::function<void(std::size_t)> set, std::function<std::size_t()> get,
+                                      std::string help) {
+  std::string range;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    range += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
+  auto set_text = [=](const std::string& text) {
+    for (std::size_t i = 0; i < words.size(); ++i)
+      if (words[i] == text) return set(i);
+    throw WrongUsage(fmt::format("{}: found '{}'; expected {}", name, text, range));
+  };
+  options_.push_back({name, std::move(help), range, false, set_text, [words, get] { return Json(words[get()]); }});
+  return *this;
+}
+
+const Option* OptionSet::find(const std::string& name) const {
+  for (const Option& option : options_)
+    if (option.name == name) return &option;
+  return nullptr;
+}
+
+Json OptionSet::to_json() const {
+  Json json = Json::object();
+  for (const Option& option : options_) json[option.name] = option.get();
+  return json;
+}
+
+}  // namespace kiln

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace kiln {
+
+using Json = nlohmann::ordered_json;
+
+/// One setting, as the command line, pipeline.yaml and the reports know it.
+struct Option {
+  std::string name;                             ///< as in `--name`
+  std::string help;                             ///< one sentence, with the unit in it
+  std::string value_range;                      ///< "1 to 24", "fibonacci or stratified"; empty for a switch
+  bool is_switch = false;                       ///< takes no value on the command line; true or false in pipeline.yaml
+  std::function<void(const std::string&)> set;  ///< throws WrongUsage that says what was found and expected
+  std::function<Json()> get;
+};
+
+/// The settings of one stage, bound to its settings struct, which must outlive the set. The struct's values at the time
+/// of binding are the defaults.
+class OptionSet {
+ public:
+  /// An integer of `lowest` to `highest`.
+  OptionSet& integer(std::string name, int& value, int lowest, int highest, std::string help);
+
+  /// A number of `lowest` to `highest`, both included, finite; pass an `unset` value that stands for "not given" or
+  /// "automatic".
+  OptionSet& number(std::string name, double& value, double lowest, double highest, std::string help);
+
+  /// A switch, off unless given.
+  OptionSet& toggle(std::string name, bool& value, std::string help);
+
+  /// Any text.
+  OptionSet& text(std::string name, std::string& value, std::string help);
+
+  /// One of several words, each standing for a value of an enumeration.
+  template <class Enum>
+  OptionSet& choice(std::string name, Enum& value, std::vector<std::pair<std::string, Enum>> words, std::string help) {
+    std::vector<std::string> names;
+    for (const auto& word : words) names.push_back(word.first);
+    return choice_by_index(
+        std::move(name), names, [&value, words](std::size_t index) { value = words[index].second; },
+        [&value, words] {
+          for (std::size_t i = 0; i < words.size(); ++i)
+            if (words[i].second == value) return i;
+          return std::size_t{0};
+        },
+        std::move(help));
+  }
+
+  const std::vector<Option>& options() const { return options_; }
+
+  /// The option of that name, or null.
+  const Option* find(const std::string& name) const;
+
+  /// Every setting by name, for <stage>.json.
+  Json to_json() const;
+
+ private:
+  OptionSet& choice_by_index(std::string name, std::vector<std::string> words, std::function<void(std::size_t)> set,
+                             std::function<std::size_t()> get, std::string help);
+  std::vector<Option> options_;
+};
+
+}  // namespace kiln

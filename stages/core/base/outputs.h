@@ -1,0 +1,55 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace kiln {
+
+/// The files that one run of a stage writes into one folder. They are written under a temporary folder inside that
+/// folder and renamed to their final names together, by commit(); a run that ends before leaves nothing behind.
+class OutputSet {
+ public:
+  /// Makes `folder` (and its parents) if need be. Throws BadInput where it cannot be written.
+  explicit OutputSet(std::filesystem::path folder);
+  ~OutputSet();
+  OutputSet(const OutputSet&) = delete;
+  OutputSet& operator=(const OutputSet&) = delete;
+
+  /// Where to write the file that will be `folder/name`. Files become visible in the order they were added, so add
+  /// the one that describes the others last.
+  std::filesystem::path add(const std::string& name);
+
+  /// Writes a text file.
+  void add_text(const std::string& name, const std::string& text);
+
+  /// Has commit() remove `folder/name`, which an earlier run left and this one does not write.
+  void remove_stale(const std::string& name);
+
+  /// Renames all files to their final names. Throws BadInput where that is not possible.
+  void commit();
+
+  const std::filesystem::path& folder() const { return folder_; }
+
+  /// Where the files are until commit(), for measuring what was written.
+  const std::filesystem::path& staging() const { return staging_; }
+
+ private:
+  std::filesystem::path folder_;
+  std::filesystem::path staging_;
+  std::vector<std::filesystem::path> made_folders_;
+  std::vector<std::string> names_;
+  std::vector<std::string> stale_;
+  bool committed_ = false;
+};
+
+/// The folder that holds `file`: "." for a bare name.
+std::filesystem::path folder_of(const std::filesystem::path& file);
+
+/// The whole content of a file. Throws BadInput.
+std::string read_text(const std::filesystem::path& file);
+
+/// XXH3 (128 bits) of a file's bytes, in hexadecimal. Throws BadInput.
+std::string hash_file(const std::filesystem::path& file);
+
+}  // namespace kiln

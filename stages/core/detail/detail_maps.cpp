@@ -1,0 +1,153 @@
+#include "detail/detail_maps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "base/errors.h"
+#include "base/outputs.h"
+#include "image/gutter.h"
+#include "image/image_file.h"
+#include "mesh/tangent_space.h"
+
+namespace kiln {
+
+namespace {
+
+constexpr float full_scale = 65535;
+
+using Pixel = Eigen::Map<Eigen::Vector3f>;
+
+Pixel pixel(Image<float>& image, int i, int j) { return Pixel(image.pixel(i, j).data()); }
+
+/// Means of unit vectors are shorter than one; opposite ones may cancel, for which there is `substitute`.
+void normalise(Image<float>& image, const Eigen::Vector3f& substitute) {
+  for (int j = 0; j < image.height(); ++j)
+    for (int i = 0; i < image.width(); ++i) {
+      const float length = pixel(image, i, j).norm();
+      if (length > 1e-6f)
+        pixel(image, i, j) /= length;
+      else
+        pixel(image, i, j) = substitute;
+    }
+}
+
+void require_raster_of(const UvRaster& raster, int width, int height, int channels) {
+  if (raster.width != width || raster.height != height || channels != 3)
+    throw std::invalid_argument("a normal map of three channels and the raster's size is needed");
+}
+
+/// Calls convert(low normal, frame, pixel) for every covered texel.
+template <class Convert>
+void convert_covered(Image<float>& image, const TriangleMesh& atlas, const UvRaster& raster, const Convert& convert) {
+  const std::vector<TangentFrame> frames = tangent_frames(atlas);
+  for (int j = 0; j < raster.height; ++j)
+    for (int i = 0; i < raster.width; ++i) {
+      const TexelSource& source = raster.at(i, j);
+      if (!source.covered()) continue;
+      const Eigen::Vector3f value = pixel(image, i, j);
+      pixel(image, i, j) =
+          convert(value, interpolate(atlas, atlas.normals, source), interpolate(atlas, frames, source)).normalized();
+    }
+}
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& found, const std::string& expected) {
+  throw BadInput(file.string(), found, expected, "run kiln-normals on this atlas again");
+}
+
+NormalSpace read_space(const std::filesystem::path& file) {
+  const std::string expected = "the result of kiln-normals";
+  const nlohmann::json result = nlohmann::json::parse(read_text(file), nullptr, false);
+  if (!result.is_object() || !result.contains("settings") || !result["settings"].is_object() ||
+      !result["settings"].contains("space"))
+    refuse(file, "no settings.space in it", expected);
+  const nlohmann::json& space = result["settings"]["space"];
+  if (space == "object") return NormalSpace::object;
+  if (space == "tangent") return NormalSpace::tangent;
+  refuse(file, "space " + space.dump(), "object or tangent");
+}
+
+template <class T>
+std::string size_text(const Image<T>& image) {
+  return std::to_string(image.width()) + " x " + std::to_string(image.height()) + " texels of " +
+         std::to_string(image.channels()) + (image.channels() == 1 ? " channel" : " channels");
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> coverage_of(const UvRaster& raster) {
+  std::vector<std::uint8_t> covered(raster.texels.size());
+  std::transform(raster.texels.begin(), raster.texels.end(), covered.begin(),
+                 [](const TexelSource& source) { return source.covered() ? 1 : 0; });
+  return covered;
+}
+
+Image<std::uint16_t> encode_normals(const Image<float>& normal_object, NormalSpace space, const TriangleMesh& atlas,
+                                    const UvRaster& raster) {
+  require_raster_of(raster, normal_object.width(), normal_object.height(), normal_object.channels());
+  Image<float> map = normal_object;
+  if (space == NormalSpace::tangent) convert_covered(map, atlas, raster, to_tangent_space);
+  fill_gutters(map, coverage_of(raster));
+  normalise(map, space == NormalSpace::tangent ? Eigen::Vector3f::UnitZ() : Eigen::Vector3f::UnitY());
+
+  Image<std::uint16_t> encoded(map.width(), map.height(), 3);
+  std::transform(map.values().begin(), map.values().end(), encoded.values().begin(), [](float value) {
+    return static_cast<std::uint16_t>(std::lround((std::clamp(value, -1.0f, 1.0f) * 0.5f + 0.5f) * full_scale));
+  });
+  return encoded;
+}
+
+Image<float> decode_normals(const Image<std::uint16_t>& encoded, NormalSpace space, const TriangleMesh& atlas,
+                            const UvRaster& raster) {
+  require_raster_of(raster, encoded.width(), encoded.height(), encoded.channels());
+  Image<float> map(encoded.width(), encoded.height(), 3);
+  std::transform(encoded.values().begin(), encoded.values().end(), map.values().begin(),
+                 [](std::uint16_t value) { return static_cast<float>(value) / full_scale * 2 - 1; });
+  if (space == NormalSpace::tangent) {
+    convert_covered(map, atlas, raster, to_object_space);
+    // Outside the charts there is no frame to convert by.
+    fill_gutters(map, coverage_of(raster));
+  }
+  normalise(map, Eigen::Vector3f::UnitY());
+  return map;
+}
+
+DetailMaps load_detail_maps(const std::filesystem::path& folder, const TriangleMesh& atlas) {
+  if (!std::filesystem::is_directory(folder))
+    throw BadInput(folder.string(), "no such folder", "the output folder of kiln-normals", "check the path");
+  const NormalSpace space = read_space(folder / "normals.json");
+  const Image<std::uint8_t> coverage = read_png8(folder / "coverage.png");
+  const Image<std::uint16_t> encoded = read_png16(folder / "normal.png");
+  DetailMaps maps;
+  maps.position = read_float_image(folder / "position.exr");
+  maps.width = coverage.width();
+  maps.height = coverage.height();
+
+  // One size for all.
+  if (coverage.channels() != 1) refuse(folder / "coverage.png", size_text(coverage), "a grey picture");
+  const std::string expected = std::to_string(maps.width) + " x " + std::to_string(maps.height) +
+                               " texels of 3 channels, as coverage.png has texels";
+  if (encoded.width() != maps.width || encoded.height() != maps.height || encoded.channels() != 3)
+    refuse(folder / "normal.png", size_text(encoded), expected);
+  if (maps.position.width() != maps.width || maps.position.height() != maps.height || maps.position.channels() != 3)
+    refuse(folder / "position.exr", size_text(maps.position), expected);
+
+  // Made from this very atlas.
+  if (atlas.normals.size() != atlas.positions.size() || atlas.uvs.size() != atlas.positions.size())
+    throw std::invalid_argument("load_detail_maps: the atlas mesh needs normals and uvs");
+  const UvRaster raster = rasterise_uvs(atlas, maps.width, maps.height);
+  maps.covered = coverage_of(raster);
+  for (std::size_t k = 0; k < maps.covered.size(); ++k)
+    if ((coverage.values()[k] != 0) != (maps.covered[k] != 0))
+      refuse(folder / "coverage.png", "a coverage that is not the atlas mesh's", "maps made from the same atlas");
+
+  maps.normal_object = decode_normals(encoded, space, atlas, raster);
+  if (!std::all_of(maps.position.values().begin(), maps.position.values().end(),
+                   [](float v) { return std::isfinite(v); }))
+    refuse(folder / "position.exr", "positions that are not finite", "finite positions");
+  return maps;
+}
+
+}  // namespace kiln

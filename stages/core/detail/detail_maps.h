@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "detail/normal_space.h"
+#include "image/image.h"
+#include "mesh/triangle_mesh.h"
+#include "mesh/uv_raster.h"
+
+namespace kiln {
+
+/// What the normals stage found out about every texel of an atlas: the point of the high mesh that it stands for.
+struct DetailMaps {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> covered;  ///< 1 or 0 per texel, rows from the bottom
+  Image<float> position;              ///< 3 channels, object space; gutters filled
+  Image<float> normal_object;         ///< 3 channels, unit vectors in object space; gutters filled
+};
+
+/// 1 per covered texel, else 0, rows from the bottom.
+std::vector<std::uint8_t> coverage_of(const UvRaster& raster);
+
+/// Unit vectors in object space (3 channels, one per covered texel of `raster`) as normal.png holds them: in the map's
+/// space, gutters filled there, n * 0.5 + 0.5 of 65,535. `atlas` has normals and uvs, `raster` is its own.
+Image<std::uint16_t> encode_normals(const Image<float>& normal_object, NormalSpace space, const TriangleMesh& atlas,
+                                    const UvRaster& raster);
+
+/// The inverse of encode_normals: unit vectors in object space, gutters filled.
+Image<float> decode_normals(const Image<std::uint16_t>& encoded, NormalSpace space, const TriangleMesh& atlas,
+                            const UvRaster& raster);
+
+/// Reads normals.json, coverage.png, position.exr and normal.png of a folder that the normals stage made from `atlas`
+/// (decoded, with normals and uvs). Throws BadInput where one is missing or damaged, where sizes disagree, or where the
+/// coverage is not that of `atlas`.
+DetailMaps load_detail_maps(const std::filesystem::path& folder, const TriangleMesh& atlas);
+
+}  // namespace kiln

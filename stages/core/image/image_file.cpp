@@ -1,0 +1,195 @@
+#include "image/image_file.h"
+
+#include <OpenImageIO/imageio.h>
+#include <array>
+#include <cctype>
+#include <iomanip>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "base/errors.h"
+#include "base/outputs.h"
+
+namespace kiln {
+
+namespace {
+
+/// The stages' threads are TBB's, limited by --threads; OpenImageIO and OpenEXR shall not add their own.
+void keep_to_one_thread() {
+  [[maybe_unused]] static const bool done = [] {
+    OIIO::attribute("threads", 1);
+    OIIO::attribute("exr_threads", -1);
+    return true;
+  }();
+}
+
+template <class T>
+OIIO::TypeDesc type_of() {
+  return OIIO::TypeDesc(OIIO::BaseTypeFromC<T>::value);
+}
+
+template <class T>
+void write_image(const std::filesystem::path& file, const Image<T>& image, const char* format, OIIO::ImageSpec spec) {
+  keep_to_one_thread();
+  if (image.values().empty()) throw std::invalid_argument("write_image: a picture without pixels");
+  const auto fail = [&](const std::string& reason) {
+    throw BadInput(file.string(), "cannot be written (" + reason + ")", "a place for a picture",
+                   "check that the folder exists, may be written to and has room");
+  };
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
+  if (!output) throw std::runtime_error("OpenImageIO cannot write " + std::string(format) + ": " + OIIO::geterror());
+  if (!output->open(file.string(), spec)) fail(output->geterror());
+  // Files are top row first.
+  const auto row_bytes = static_cast<OIIO::stride_t>(sizeof(T)) * image.width() * image.channels();
+  const auto* bytes = reinterpret_cast<const char*>(image.values().data());
+  if (!output->write_image(type_of<T>(), bytes + row_bytes * (image.height() - 1), OIIO::AutoStride, -row_bytes))
+    fail(output->geterror());
+  if (!output->close()) fail(output->geterror());
+}
+
+template <class T>
+void write_png_of(const std::filesystem::path& file, const Image<T>& image) {
+  if (image.channels() != 1 && image.channels() != 3 && image.channels() != 4)
+    throw std::invalid_argument("write_png: 1, 3 or 4 channels");
+  OIIO::ImageSpec spec(image.width(), image.height(), image.channels(), type_of<T>());
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  write_image(file, image, "png", spec);
+}
+
+struct PngHeader {
+  int bits = 0;
+  bool palette = false;
+};
+
+[[noreturn]] void fail_reading(const std::filesystem::path& file, const std::string& found,
+                               const std::string& expected) {
+  throw BadInput(file.string(), found, expected, "write the file again, or name another one");
+}
+
+void check_present(const std::filesystem::path& file, const std::string& expected) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) fail_reading(file, "no such file", expected);
+  if (std::filesystem::is_directory(file, error)) fail_reading(file, "is a folder", expected);
+  if (std::filesystem::file_size(file, error) == 0) fail_reading(file, "an empty file", expected);
+}
+
+/// The checksum of PNG (Portable Network Graphics specification, second edition, annex D).
+std::uint32_t crc32(std::string_view bytes) {
+  static constexpr auto table = [] {
+    std::array<std::uint32_t, 256> rows{};
+    for (std::uint32_t n = 0; n < 256; ++n) {
+      std::uint32_t c = n;
+      for (int k = 0; k < 8; ++k) c = (c & 1) != 0 ? 0xedb88320u ^ (c >> 1) : c >> 1;
+      rows[n] = c;
+    }
+    return rows;
+  }();
+  std::uint32_t c = ~0u;
+  for (const char byte : bytes) c = table[(c ^ static_cast<unsigned char>(byte)) & 0xff] ^ (c >> 8);
+  return ~c;
+}
+
+/// Walks the chunks of a PNG: a whole one starts with IHDR and ends with IEND, and every checksum is right. Left to
+/// itself libpng complains about such things on stderr.
+PngHeader check_png(const std::filesystem::path& file) {
+  const std::string expected = "a whole PNG";
+  check_present(file, expected);
+  const std::string bytes = read_text(file);
+  const auto number = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t k = 0; k < 4; ++k) value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
+    return value;
+  };
+  constexpr std::string_view signature("\x89PNG\r\n\x1a\n");
+  if (!bytes.starts_with(signature)) fail_reading(file, "not a PNG", expected);
+
+  PngHeader header;
+  for (std::size_t at = signature.size();;) {
+    if (at + 12 > bytes.size()) fail_reading(file, "a truncated PNG", expected);
+    const std::size_t length = number(at);
+    if (length > bytes.size() - at - 12) fail_reading(file, "a truncated PNG", expected);
+    const std::string_view kind_and_body(bytes.data() + at + 4, 4 + length);
+    if (crc32(kind_and_body) != number(at + 8 + length)) fail_reading(file, "a damaged PNG", expected);
+    if (at == signature.size()) {
+      if (!kind_and_body.starts_with("IHDR") || length != 13) fail_reading(file, "a PNG without a header", expected);
+      header.bits = bytes[at + 16];
+      header.palette = bytes[at + 17] == 3;
+    }
+    if (kind_and_body.starts_with("IEND")) return header;
+    at += 12 + length;
+  }
+}
+
+/// Reads through OpenImageIO, as T, bottom row first.
+template <class T>
+Image<T> read_image(const std::filesystem::path& file, const std::string& expected) {
+  keep_to_one_thread();
+  OIIO::ImageSpec configuration;
+  configuration.attribute("oiio:UnassociatedAlpha", 1);
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string(), &configuration);
+  if (!input) fail_reading(file, "cannot be understood (" + OIIO::geterror() + ")", expected);
+  const OIIO::ImageSpec& spec = input->spec();
+  if (spec.depth > 1 || spec.deep) fail_reading(file, "not a flat picture", expected);
+  Image<T> image(spec.width, spec.height, spec.nchannels);
+  const auto row_bytes = static_cast<OIIO::stride_t>(sizeof(T)) * spec.width * spec.nchannels;
+  auto* bytes = reinterpret_cast<char*>(image.values().data());
+  if (!input->read_image(0, 0, 0, spec.nchannels, type_of<T>(), bytes + row_bytes * (spec.height - 1), OIIO::AutoStride,
+                         -row_bytes))
+    fail_reading(file, "damaged (" + input->geterror() + ")", expected);
+  return image;
+}
+
+template <class T>
+Image<T> read_png_of(const std::filesystem::path& file) {
+  const int bits = 8 * static_cast<int>(sizeof(T));
+  const std::string expected = "a PNG of " + std::to_string(bits) + " bits per channel";
+  const PngHeader header = check_png(file);
+  if (header.palette) fail_reading(file, "a PNG with a palette", expected);
+  if (header.bits != bits)
+    fail_reading(file, "a PNG of " + std::to_string(header.bits) + " bits per channel", expected);
+  return read_image<T>(file, expected);
+}
+
+}  // namespace
+
+void write_png(const std::filesystem::path& file, const Image<std::uint8_t>& image) { write_png_of(file, image); }
+
+void write_png(const std::filesystem::path& file, const Image<std::uint16_t>& image) { write_png_of(file, image); }
+
+void write_exr(const std::filesystem::path& file, const Image<float>& image) {
+  OIIO::ImageSpec spec(image.width(), image.height(), image.channels(), OIIO::TypeDesc::FLOAT);
+  spec.attribute("compression", "zip");
+  spec.attribute("DateTime", "");  // else OpenImageIO notes the time of writing
+  if (image.channels() > 4) {
+    // OpenEXR sorts channels by name.
+    spec.channelnames.clear();
+    for (int c = 0; c < image.channels(); ++c) {
+      std::ostringstream name;
+      name << 'c' << std::setw(5) << std::setfill('0') << c;
+      spec.channelnames.push_back(name.str());
+    }
+    spec.alpha_channel = spec.z_channel = -1;
+  }
+  write_image(file, image, "openexr", spec);
+}
+
+Image<std::uint8_t> read_png8(const std::filesystem::path& file) { return read_png_of<std::uint8_t>(file); }
+
+Image<std::uint16_t> read_png16(const std::filesystem::path& file) { return read_png_of<std::uint16_t>(file); }
+
+Image<float> read_float_image(const std::filesystem::path& file) {
+  const std::string expected = "an OpenEXR or Radiance HDR picture";
+  check_present(file, expected);
+  std::string extension = file.extension().string();
+  for (char& letter : extension) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  if (extension != ".exr" && extension != ".hdr")
+    fail_reading(file, extension.empty() ? "a file without an extension" : "a file that ends in " + extension,
+                 expected);
+  return read_image<float>(file, expected);
+}
+
+}  // namespace kiln

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+
+#include "image/image.h"
+
+namespace kiln {
+
+/// Writes a PNG of 1 (grey), 3 (RGB) or 4 (RGBA, not premultiplied) channels; not interlaced, no time stamp: the same
+/// pixels give the same bytes. Throws BadInput where the file cannot be written.
+void write_png(const std::filesystem::path& file, const Image<std::uint8_t>& image);
+void write_png(const std::filesystem::path& file, const Image<std::uint16_t>& image);
+
+/// Writes a 32-bit float OpenEXR of any number of channels, losslessly compressed.
+void write_exr(const std::filesystem::path& file, const Image<float>& image);
+
+/// Reads a PNG of 8 or 16 bits per channel without any conversion of values. Throws BadInput where it is no whole PNG
+/// or has another depth.
+Image<std::uint8_t> read_png8(const std::filesystem::path& file);
+Image<std::uint16_t> read_png16(const std::filesystem::path& file);
+
+/// Reads EXR or HDR (Radiance) as floats. Throws BadInput.
+Image<float> read_float_image(const std::filesystem::path& file);
+
+}  // namespace kiln

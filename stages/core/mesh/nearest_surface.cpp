@@ -1,0 +1,136 @@
+#include "mesh/nearest_surface.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace kiln {
+
+namespace {
+
+struct Face {
+  Eigen::Vector3d a, ab, ac;
+  std::uint32_t index;
+
+  Eigen::Vector3d middle() const { return a + (ab + ac) / 3; }
+};
+
+struct Node {
+  Eigen::AlignedBox3d box;
+  std::uint32_t begin = 0;  ///< of its faces
+  std::uint32_t end = 0;
+  std::uint32_t right = 0;  ///< the second child, the first is the next node; 0 for a leaf
+};
+
+constexpr std::uint32_t leaf_faces = 4;
+
+/// Ericson, "Real-Time Collision Detection" (2005), section 5.1.5.
+Eigen::Vector3d closest_on(const Face& face, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d ap = point - face.a;
+  const double d1 = face.ab.dot(ap), d2 = face.ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return face.a;
+  const Eigen::Vector3d bp = ap - face.ab;
+  const double d3 = face.ab.dot(bp), d4 = face.ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return face.a + face.ab;
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return face.a + d1 / (d1 - d3) * face.ab;
+  const Eigen::Vector3d cp = ap - face.ac;
+  const double d5 = face.ab.dot(cp), d6 = face.ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return face.a + face.ac;
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return face.a + d2 / (d2 - d6) * face.ac;
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 >= d3 && d5 >= d6)
+    return face.a + face.ab + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (face.ac - face.ab);
+  return face.a + (vb * face.ab + vc * face.ac) / (va + vb + vc);
+}
+
+}  // namespace
+
+struct NearestSurface::Hierarchy {
+  std::vector<Face> faces;
+  std::vector<Node> nodes;
+
+  /// Halves the faces along the widest direction of their middles.
+  std::uint32_t add(std::uint32_t begin, std::uint32_t end) {
+    const auto index = static_cast<std::uint32_t>(nodes.size());
+    Node node;
+    node.begin = begin;
+    node.end = end;
+    Eigen::AlignedBox3d middles;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      node.box.extend(faces[i].a).extend(faces[i].a + faces[i].ab).extend(faces[i].a + faces[i].ac);
+      middles.extend(faces[i].middle());
+    }
+    nodes.push_back(node);
+    if (end - begin <= leaf_faces) return index;
+    Eigen::Index axis;
+    middles.sizes().maxCoeff(&axis);
+    const std::uint32_t half = begin + (end - begin) / 2;
+    std::nth_element(faces.begin() + begin, faces.begin() + half, faces.begin() + end,
+                     [&](const Face& l, const Face& r) {
+                       return std::pair(l.middle()[axis], l.index) < std::pair(r.middle()[axis], r.index);
+                     });
+    add(begin, half);
+    nodes[index].right = add(half, end);
+    return index;
+  }
+};
+
+NearestSurface::NearestSurface(const TriangleMesh& mesh) : hierarchy_(std::make_unique<Hierarchy>()) {
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    std::array<Eigen::Vector3d, 3> corner;
+    for (int k = 0; k < 3; ++k) corner[k] = mesh.positions[mesh.triangles[i][k]].cast<double>();
+    const Face face{corner[0], corner[1] - corner[0], corner[2] - corner[0], i};
+    if (face.ab.cross(face.ac).squaredNorm() > 0) hierarchy_->faces.push_back(face);
+  }
+  if (hierarchy_->faces.empty()) throw std::invalid_argument("NearestSurface: the mesh has no area");
+  hierarchy_->nodes.reserve(hierarchy_->faces.size());
+  hierarchy_->add(0, static_cast<std::uint32_t>(hierarchy_->faces.size()));
+}
+
+NearestSurface::~NearestSurface() = default;
+NearestSurface::NearestSurface(NearestSurface&&) noexcept = default;
+NearestSurface& NearestSurface::operator=(NearestSurface&&) noexcept = default;
+
+NearestSurface::Hit NearestSurface::nearest(const Eigen::Vector3d& point, std::uint32_t hint) const {
+  const auto& [faces, nodes] = *hierarchy_;
+  Hit hit;
+  const auto look_at = [&](std::uint32_t face, double to_beat) {
+    const Eigen::Vector3d closest = closest_on(faces[face], point);
+    const double squared = (closest - point).squaredNorm();
+    if (squared < to_beat) hit = {closest, squared, faces[face].index, face};
+  };
+  look_at(hint, std::numeric_limits<double>::infinity());
+
+  // The nearer child first; a stack of 64 is deep enough for halves of 2^32 faces.
+  std::array<std::pair<double, std::uint32_t>, 64> stack;
+  std::size_t depth = 0;
+  stack[depth++] = {nodes[0].box.squaredExteriorDistance(point), 0};
+  while (depth > 0) {
+    const auto [squared, index] = stack[--depth];
+    if (squared >= hit.squared_distance) continue;
+    const Node& node = nodes[index];
+    if (node.right == 0) {
+      for (std::uint32_t i = node.begin; i < node.end; ++i) look_at(i, hit.squared_distance);
+      continue;
+    }
+    std::pair<double, std::uint32_t> near{nodes[index + 1].box.squaredExteriorDistance(point), index + 1};
+    std::pair<double, std::uint32_t> far{nodes[node.right].box.squaredExteriorDistance(point), node.right};
+    if (far.first < near.first) std::swap(near, far);
+    stack[depth++] = far;
+    stack[depth++] = near;
+  }
+  return hit;
+}
+
+Eigen::Vector3d NearestSurface::normal(const Hit& hit) const {
+  const Face& face = hierarchy_->faces[hit.hint];
+  return face.ab.cross(face.ac).normalized();
+}
+
+}  // namespace kiln

@@ -1,0 +1,64 @@
+#include "mesh/triangle_mesh.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace kiln {
+
+BoundingBox bounding_box(const TriangleMesh& mesh) {
+  BoundingBox box;
+  for (const Triangle& triangle : mesh.triangles)
+    for (std::uint32_t vertex : triangle) {
+      box.lowest = box.lowest.cwiseMin(mesh.positions[vertex]);
+      box.highest = box.highest.cwiseMax(mesh.positions[vertex]);
+    }
+  return box;
+}
+
+void compute_vertex_normals(TriangleMesh& mesh) {
+  std::vector<Eigen::Vector3d> sums(mesh.positions.size(), Eigen::Vector3d::Zero());
+  for (const Triangle& triangle : mesh.triangles) {
+    std::array<Eigen::Vector3d, 3> corner;
+    for (int i = 0; i < 3; ++i) corner[i] = mesh.positions[triangle[i]].cast<double>();
+    const Eigen::Vector3d cross = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+    const double length = cross.norm();
+    if (!(length > 0)) continue;
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Vector3d a = corner[(i + 1) % 3] - corner[i];
+      const Eigen::Vector3d b = corner[(i + 2) % 3] - corner[i];
+      sums[triangle[i]] += std::atan2(length, a.dot(b)) / length * cross;
+    }
+  }
+  mesh.normals.resize(mesh.positions.size());
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const double length = sums[i].norm();
+    mesh.normals[i] = length > 0 ? Eigen::Vector3f((sums[i] / length).cast<float>()) : Eigen::Vector3f::UnitY();
+  }
+}
+
+bool is_closed(const TriangleMesh& mesh) {
+  std::vector<std::uint64_t> edges, opposite;
+  for (const Triangle& triangle : mesh.triangles)
+    for (int i = 0; i < 3; ++i) {
+      const std::uint64_t from = triangle[i], to = triangle[(i + 1) % 3];
+      edges.push_back(from << 32 | to);
+      opposite.push_back(to << 32 | from);
+    }
+  std::sort(edges.begin(), edges.end());
+  std::sort(opposite.begin(), opposite.end());
+  return edges == opposite && std::adjacent_find(edges.begin(), edges.end()) == edges.end();
+}
+
+double surface_area(const TriangleMesh& mesh) {
+  double area = 0;
+  for (const Triangle& triangle : mesh.triangles) {
+    const Eigen::Vector3d a = mesh.positions[triangle[0]].cast<double>();
+    const Eigen::Vector3d b = mesh.positions[triangle[1]].cast<double>();
+    const Eigen::Vector3d c = mesh.positions[triangle[2]].cast<double>();
+    area += 0.5 * (b - a).cross(c - a).norm();
+  }
+  return area;
+}
+
+}  // namespace kiln

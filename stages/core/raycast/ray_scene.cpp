@@ -1,0 +1,223 @@
+#include "raycast/ray_scene.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <embree3/rtcore.h>
+#include <limits>
+#include <new>
+#include <stdexcept>
+#include <tbb/task_arena.h>
+
+#include "base/errors.h"
+
+namespace kiln {
+
+namespace {
+
+constexpr std::size_t stream_rays = 256;
+
+/// Where in the segment from a to b, 0 to 1, the closest point to p lies.
+double closest_in_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const Eigen::Vector3d ab = b - a;
+  const double squared_length = ab.squaredNorm();
+  return squared_length > 0 ? std::clamp((p - a).dot(ab) / squared_length, 0.0, 1.0) : 0;
+}
+
+/// closest_weights of a triangle without area: the best of its sides.
+Eigen::Vector2d closest_side_weights(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                     const Eigen::Vector3d& c) {
+  const double on_ab = closest_in_segment(p, a, b), on_ac = closest_in_segment(p, a, c),
+               on_bc = closest_in_segment(p, b, c);
+  Eigen::Vector2d best(on_ab, 0);
+  double least = (a + on_ab * (b - a) - p).squaredNorm();
+  for (const Eigen::Vector2d& other : {Eigen::Vector2d(0, on_ac), Eigen::Vector2d(1 - on_bc, on_bc)}) {
+    const double squared_distance = (a + other.x() * (b - a) + other.y() * (c - a) - p).squaredNorm();
+    if (squared_distance < least) {
+      least = squared_distance;
+      best = other;
+    }
+  }
+  return best;
+}
+
+/// Closest point of a triangle to p, as weights of its second and third corner (Ericson, "Real-Time Collision
+/// Detection", 2005, section 5.1.5). In double, because slivers leave float32 no digits.
+Eigen::Vector2d closest_weights(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                const Eigen::Vector3d& c) {
+  const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a;
+  const double squared_area = ab.cross(ac).squaredNorm();
+  if (!(squared_area > 1e-24 * ab.squaredNorm() * ac.squaredNorm())) return closest_side_weights(p, a, b, c);
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return {0, 0};
+  const Eigen::Vector3d bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return {1, 0};
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {d1 / (d1 - d3), 0};
+  const Eigen::Vector3d cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return {0, 1};
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {0, d2 / (d2 - d6)};
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
+    const double w = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+    return {1 - w, w};
+  }
+  const double sum = va + vb + vc;
+  if (!(sum > 0)) return closest_side_weights(p, a, b, c);
+  return {vb / sum, vc / sum};
+}
+
+/// Embree keeps its own copy of the buffers, padded as its wide loads need.
+void attach_triangles(RTCDevice device, RTCScene scene, const std::vector<Eigen::Vector3f>& positions,
+                      const std::vector<Triangle>& triangles) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertex_buffer = static_cast<float*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), positions.size()));
+  auto* index_buffer = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), triangles.size()));
+  if (vertex_buffer == nullptr || index_buffer == nullptr) {
+    rtcReleaseGeometry(geometry);
+    throw std::bad_alloc();
+  }
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis) vertex_buffer[3 * i + axis] = positions[i][axis];
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    for (int corner = 0; corner < 3; ++corner) index_buffer[3 * i + corner] = triangles[i][corner];
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene, geometry);
+  rtcReleaseGeometry(geometry);
+}
+
+}  // namespace
+
+struct RayScene::Implementation {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  std::vector<Eigen::Vector3f> positions;
+  std::vector<Triangle> triangles;
+
+  ~Implementation() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+    if (device != nullptr) rtcReleaseDevice(device);
+  }
+
+  /// The closest point, of triangles that face `facing` if that is not null.
+  SurfacePoint closest(const Eigen::Vector3f& point, const Eigen::Vector3f* facing, float farthest) const;
+};
+
+SurfacePoint RayScene::Implementation::closest(const Eigen::Vector3f& point, const Eigen::Vector3f* facing,
+                                               float farthest) const {
+  struct Search {
+    const Implementation* scene;
+    Eigen::Vector3f point;
+    const Eigen::Vector3f* facing;
+    SurfacePoint best;
+  } search = {this, point, facing, {}};
+  RTCPointQuery query = {point.x(), point.y(), point.z(), 0, farthest};
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(
+      scene, &query, &context,
+      [](RTCPointQueryFunctionArguments* arguments) {
+        Search& own = *static_cast<Search*>(arguments->userPtr);
+        const Triangle& t = own.scene->triangles[arguments->primID];
+        const Eigen::Vector3f &a = own.scene->positions[t[0]], &b = own.scene->positions[t[1]],
+                              &c = own.scene->positions[t[2]];
+        if (own.facing != nullptr && !((b - a).cross(c - a).dot(*own.facing) > 0)) return false;
+        const Eigen::Vector3d p = own.point.cast<double>(), first = a.cast<double>();
+        const Eigen::Vector2d weights = closest_weights(p, first, b.cast<double>(), c.cast<double>());
+        const Eigen::Vector3d at =
+            first + weights.x() * (b.cast<double>() - first) + weights.y() * (c.cast<double>() - first);
+        const auto distance = static_cast<float>((at - p).norm());
+        if (distance > arguments->query->radius || (own.best.found() && distance >= own.best.distance)) return false;
+        own.best = {arguments->primID, static_cast<float>(weights.x()), static_cast<float>(weights.y()), distance};
+        arguments->query->radius = distance;
+        return true;
+      },
+      &search);
+  return search.best;
+}
+
+RayScene::RayScene(const TriangleMesh& mesh) : RayScene(mesh.positions, mesh.triangles) {}
+
+RayScene::RayScene(std::span<const Eigen::Vector3f> positions, std::span<const Triangle> triangles)
+    : implementation_(std::make_unique<Implementation>()) {
+  Implementation& own = *implementation_;
+  own.positions.assign(positions.begin(), positions.end());
+  own.triangles.assign(triangles.begin(), triangles.end());
+  own.device = rtcNewDevice(nullptr);
+  if (own.device == nullptr) throw MachineLacks("Embree finds no device it can run on");
+  own.scene = rtcNewScene(own.device);
+  // Robust: no ray slips through between two triangles.
+  rtcSetSceneFlags(own.scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(own.scene, RTC_BUILD_QUALITY_HIGH);
+  if (!own.triangles.empty()) attach_triangles(own.device, own.scene, own.positions, own.triangles);
+  // Built by one thread, so that the tree, and with it which of two triangles a query on their edge gets, does not
+  // depend on the number of threads.
+  tbb::task_arena one_thread(1);
+  one_thread.execute([&] { rtcCommitScene(own.scene); });
+  if (rtcGetDeviceError(own.device) != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot build the scene");
+}
+
+RayScene::~RayScene() = default;
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+
+SurfacePoint RayScene::first_hit(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest,
+                                 float farthest) const {
+  RTCRayHit query = {};
+  query.ray = {origin.x(), origin.y(), origin.z(), nearest, direction.x(), direction.y(), direction.z(), 0,
+               farthest,   ~0u,        0,          0};
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(implementation_->scene, &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  return {query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar};
+}
+
+SurfacePoint RayScene::closest_point(const Eigen::Vector3f& point, float farthest) const {
+  return implementation_->closest(point, nullptr, farthest);
+}
+
+SurfacePoint RayScene::closest_facing_point(const Eigen::Vector3f& point, const Eigen::Vector3f& facing,
+                                            float farthest) const {
+  return implementation_->closest(point, &facing, farthest);
+}
+
+void RayScene::occluded(std::span<const Eigen::Vector3f> origins, const Eigen::Vector3f& direction, float nearest,
+                        std::span<std::uint8_t> occluded) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  std::array<RTCRay, stream_rays> rays;
+  for (std::size_t begin = 0; begin < origins.size(); begin += stream_rays) {
+    const std::size_t count = std::min(stream_rays, origins.size() - begin);
+    for (std::size_t k = 0; k < count; ++k) {
+      const Eigen::Vector3f& o = origins[begin + k];
+      rays[k] = {o.x(),
+                 o.y(),
+                 o.z(),
+                 nearest,
+                 direction.x(),
+                 direction.y(),
+                 direction.z(),
+                 0,
+                 std::numeric_limits<float>::infinity(),
+                 ~0u,
+                 0,
+                 0};
+    }
+    rtcOccluded1M(implementation_->scene, &context, rays.data(), static_cast<unsigned>(count), sizeof(RTCRay));
+    // Embree marks an occluded ray by setting its far end to minus infinity.
+    for (std::size_t k = 0; k < count; ++k) occluded[begin + k] = rays[k].tfar < 0 ? 1 : 0;
+  }
+}
+
+std::string ray_library_name() { return "Embree " RTC_VERSION_STRING; }
+
+}  // namespace kiln

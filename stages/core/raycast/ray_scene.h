@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "mesh/triangle_mesh.h"
+
+namespace kiln {
+
+/// A point of a surface: which triangle, and where in it.
+struct SurfacePoint {
+  static constexpr std::uint32_t none = ~0u;
+  std::uint32_t triangle = none;  ///< `none`: nothing was hit or found
+  float u = 0;                    ///< weight of the triangle's second corner
+  float v = 0;                    ///< weight of the third
+  float distance = 0;             ///< from the query, in object units
+
+  bool found() const { return triangle != none; }
+};
+
+/// A mesh in a bounding volume hierarchy (Embree 3). All queries may be called from many threads at once.
+class RayScene {
+ public:
+  /// Keeps no reference to `mesh`.
+  explicit RayScene(const TriangleMesh& mesh);
+  RayScene(std::span<const Eigen::Vector3f> positions, std::span<const Triangle> triangles);
+  ~RayScene();
+  RayScene(RayScene&&) noexcept;
+  RayScene& operator=(RayScene&&) noexcept;
+
+  /// The first hit of the ray from `origin` along the unit vector `direction` at a distance of `nearest` to `farthest`.
+  SurfacePoint first_hit(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest,
+                         float farthest) const;
+
+  /// The surface point closest to `point`, at most `farthest` away.
+  SurfacePoint closest_point(const Eigen::Vector3f& point, float farthest) const;
+
+  /// closest_point among the triangles that face `facing`: whose normal by winding has a positive dot product with it.
+  SurfacePoint closest_facing_point(const Eigen::Vector3f& point, const Eigen::Vector3f& facing, float farthest) const;
+
+  /// Casts one ray from each origin along the one unit vector `direction`, from `nearest` to infinity, as one stream of
+  /// neighbouring rays (rtcOccluded1M, 256 at a time); occluded[k] becomes 1 where origin k is in shadow, else 0.
+  void occluded(std::span<const Eigen::Vector3f> origins, const Eigen::Vector3f& direction, float nearest,
+                std::span<std::uint8_t> occluded) const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// The ray library and its version, for the record.
+std::string ray_library_name();
+
+}  // namespace kiln

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "sh/lights.h"
+
+namespace kiln {
+
+/// A light as a person writes it down: colour in linear RGB.
+struct LightSpec {
+  enum class Kind {
+    directional,  ///< distant, towards azimuth and elevation; a white surface that faces it gets the radiance `colour`
+    ambient,      ///< the radiance `colour` from everywhere (a furnace)
+  };
+  Kind kind = Kind::directional;
+  double azimuth_degrees = 45;    ///< 0 is +Z, 90 is +X
+  double elevation_degrees = 30;  ///< 90 is +Y
+  std::array<float, 3> colour = {1, 1, 1};
+};
+
+/// Reads "AZIMUTH,ELEVATION[,R,G,B]" (degrees; also with "directional:" before it), or "ambient:RADIANCE" or
+/// "ambient:R,G,B". Azimuths of -360 to 360, elevations of -90 to 90, colours of 0 to 1e6. Throws WrongUsage.
+LightSpec parse_light_spec(std::string_view text);
+
+/// A text that parse_light_spec reads as the same light.
+std::string to_text(const LightSpec& spec);
+
+/// Numbers between commas, as in "1,0.9,0.8"; all finite and within `lowest` to `highest`. Throws WrongUsage, which
+/// calls the value `name`, for anything else.
+std::vector<double> parse_numbers(std::string_view name, std::string_view text, double lowest, double highest);
+
+/// One grey number or R,G,B, as parse_numbers has them.
+std::array<float, 3> parse_colour(std::string_view name, std::string_view text, double lowest, double highest);
+
+/// The light in spherical harmonics, three channels (R, G, B), without a window.
+LightCoefficients light_coefficients(const LightSpec& spec, int bands);
+
+/// The sum of two lights of the same number of bands and channels.
+LightCoefficients add_lights(const LightCoefficients& a, const LightCoefficients& b);
+
+/// How the bands of a light are weighted.
+enum class LightWindow {
+  none,
+  hann,  ///< apply_hann_window: leaves band 0, and with it ambient light, as it is
+};
+
+/// The sum of the lights, three channels, `window` applied.
+LightCoefficients light_coefficients(std::span<const LightSpec> specs, int bands, LightWindow window);
+
+}  // namespace kiln

@@ -1,0 +1,39 @@
+#include "base/command_line.h"
+#include "base/errors.h"
+#include "image/image_file.h"
+#include "mesh/draco_file.h"
+#include "mesh/mesh_file.h"
+#include "normals/normals.h"
+
+int main(int argc, char** argv) {
+  using namespace kiln;
+  return run_program("kiln-normals", [&] {
+    // Parse.
+    CommandLine command("kiln-normals", "Finds the point and normal of the high mesh for every texel of an atlas.");
+    std::filesystem::path high_file, atlas_file, folder;
+    NormalsSettings settings;
+    command.input("HIGH", high_file, "The high mesh: OBJ, PLY, STL, OFF or DRC");
+    command.input("ATLAS", atlas_file, "The low mesh with its atlas, a Draco file of kiln-atlas");
+    command.output(folder, "The folder for normal.png, position.exr, coverage.png and normals.json");
+    command.options("Normals", normals_options(settings));
+    command.parse(argc, argv);
+
+    // Load.
+    const TriangleMesh high = load_mesh(high_file);
+    const TriangleMesh atlas = load_atlas(atlas_file);
+    if (atlas.normals.empty())
+      throw BadInput(atlas_file.string(), "a mesh without normals", "the atlas mesh of kiln-atlas",
+                     "run kiln-atlas again");
+
+    // Run.
+    const NormalsResult result =
+        make_normals(high, atlas, settings, read_asset_hints(folder_of(atlas_file)), command.progress("normals"));
+
+    // Save.
+    OutputSet outputs(folder);
+    write_png(outputs.add("normal.png"), result.normal);
+    write_exr(outputs.add("position.exr"), result.position);
+    write_png(outputs.add("coverage.png"), result.coverage);
+    command.finish(outputs, command.result(result.seconds, result.to_json()));
+  });
+}

@@ -1,0 +1,101 @@
+#include "normals/surface_match.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kiln {
+
+namespace {
+
+constexpr int most_hits_per_ray = 64;
+
+/// A ray's hit farther than this many times the nearest agreeing point is on another part of the object: rays along an
+/// interpolated normal lengthen distances by the cosine between it and the high surface, which seldom is below a
+/// quarter.
+constexpr float largest_detour = 4;
+
+Eigen::Vector3f face_normal(const TriangleMesh& mesh, std::uint32_t triangle) {
+  const Triangle& t = mesh.triangles[triangle];
+  const Eigen::Vector3f a = mesh.positions[t[0]];
+  return (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a).normalized();
+}
+
+struct RayHit {
+  SurfacePoint point;
+  float cosine = 0;  ///< between the low normal and the high surface's
+
+  /// What the hit with the least of wins: its distance, longer the more oblique it is.
+  float cost() const { return point.distance / cosine; }
+};
+
+/// The first hit along `direction` whose face and interpolated normal agree with `low_normal`.
+RayHit first_agreeing_hit(const TriangleMesh& high, const RayScene& scene, const Eigen::Vector3f& low_point,
+                          const Eigen::Vector3f& direction, const Eigen::Vector3f& low_normal,
+                          const MatchLimits& limits) {
+  // Starting a little behind the low point, a surface that coincides with the low one is not missed by rounding.
+  const Eigen::Vector3f origin = low_point - limits.surface_tolerance * direction;
+  const float farthest = limits.cage_distance + limits.surface_tolerance;
+  float nearest = 0;
+  for (int k = 0; k < most_hits_per_ray; ++k) {
+    SurfacePoint hit = scene.first_hit(origin, direction, nearest, farthest);
+    if (!hit.found()) return {};
+    const float cosine =
+        std::min(face_normal(high, hit.triangle).dot(low_normal), normal_at(high, hit).dot(low_normal));
+    if (cosine > 0) {
+      nearest = hit.distance;
+      hit.distance = std::abs(hit.distance - limits.surface_tolerance);
+      return {hit, cosine};
+    }
+    // On past it, by more than rounding.
+    nearest = hit.distance + std::max(0.01f * limits.surface_tolerance, hit.distance * 1e-6f);
+  }
+  return {};
+}
+
+}  // namespace
+
+Eigen::Vector3f position_at(const TriangleMesh& mesh, const SurfacePoint& point) {
+  const Triangle& t = mesh.triangles[point.triangle];
+  return (1 - point.u - point.v) * mesh.positions[t[0]] + point.u * mesh.positions[t[1]] +
+         point.v * mesh.positions[t[2]];
+}
+
+Eigen::Vector3f normal_at(const TriangleMesh& mesh, const SurfacePoint& point) {
+  const Triangle& t = mesh.triangles[point.triangle];
+  const Eigen::Vector3f sum =
+      (1 - point.u - point.v) * mesh.normals[t[0]] + point.u * mesh.normals[t[1]] + point.v * mesh.normals[t[2]];
+  const float length = sum.norm();
+  // Vertex normals that cancel each other leave the face's.
+  return length > 1e-6f ? Eigen::Vector3f(sum / length) : face_normal(mesh, point.triangle);
+}
+
+SurfaceMatch match_surface(const TriangleMesh& high, const RayScene& scene, const Eigen::Vector3f& low_point,
+                           const Eigen::Vector3f& low_normal, const MatchLimits& limits) {
+  // Rays both ways; the less far and less oblique hit.
+  const RayHit outwards = first_agreeing_hit(high, scene, low_point, low_normal, low_normal, limits);
+  const RayHit inwards = first_agreeing_hit(high, scene, low_point, -low_normal, low_normal, limits);
+  if (outwards.point.found() || inwards.point.found()) {
+    const bool take_outwards = outwards.point.found() && (!inwards.point.found() || outwards.cost() <= inwards.cost());
+    const SurfacePoint& hit = take_outwards ? outwards.point : inwards.point;
+
+    // Is there surface of the same side much nearer?
+    const float believable = (hit.distance - limits.surface_tolerance) / largest_detour;
+    const SurfacePoint nearer =
+        believable > 0 ? scene.closest_facing_point(low_point, low_normal, believable) : SurfacePoint{};
+    if (!nearer.found()) return {hit, take_outwards ? MatchWay::ray_outwards : MatchWay::ray_inwards, true};
+    return {nearer, MatchWay::nearest_point, true};
+  }
+
+  // A point of the other side would be worse than one that is a little far.
+  const SurfacePoint agreeing =
+      scene.closest_facing_point(low_point, low_normal, largest_detour * limits.cage_distance);
+  if (agreeing.found()) return {agreeing, MatchWay::nearest_point, true};
+  SurfaceMatch nearest{scene.closest_point(low_point, std::numeric_limits<float>::infinity()), MatchWay::nearest_point,
+                       false};
+  nearest.agrees = face_normal(high, nearest.point.triangle).dot(low_normal) > 0;
+  return nearest;
+}
+
+}  // namespace kiln

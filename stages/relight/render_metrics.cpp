@@ -1,0 +1,30 @@
+#include "relight/render_metrics.h"
+
+#include <array>
+
+namespace kiln {
+
+Json render_metrics(const PrtAsset& asset, const std::vector<LightSpec>& lights, const Image<float>& radiance,
+                    const EglContext& context) {
+  std::array<double, 4> sums = {};
+  for (std::size_t k = 0; k < radiance.values().size(); ++k) sums[k % 4] += radiance.values()[k];
+  Json mean = Json::array();
+  for (int c = 0; c < 3; ++c) mean.push_back(sums[3] > 0 ? sums[c] / sums[3] : 0.0);
+  Json light_texts = Json::array();
+  for (const LightSpec& light : lights) light_texts.push_back(to_text(light));
+  return {{"renderer", context.renderer()},
+          {"software_renderer", context.is_software()},
+          {"width", radiance.width()},
+          {"height", radiance.height()},
+          {"lights", light_texts},
+          {"bands", asset.bands},
+          {"channels", asset.channels},
+          {"bits", asset.bits},
+          {"atlas_width", asset.width},
+          {"atlas_height", asset.height},
+          {"triangles", asset.mesh.triangles.size()},
+          {"coverage", sums[3] / (static_cast<double>(radiance.width()) * radiance.height())},
+          {"mean_radiance", mean}};
+}
+
+}  // namespace kiln

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+
+#include "base/options.h"
+
+namespace kiln {
+
+/// A limit on one metric.
+struct Budget {
+  std::string metric;  ///< "simplify.hausdorff": a path into metrics.json
+  bool is_highest = true;
+  double limit = 0;
+};
+
+/// How a metric stands to its budget.
+struct BudgetVerdict {
+  Budget budget;
+  double value = 0;
+  bool met = false;
+};
+
+/// Reads "METRIC<=NUMBER" or "METRIC>=NUMBER". Throws WrongUsage.
+Budget parse_budget(const std::string& text);
+
+/// Looks the metric up in `metrics` (stages by name, their results beneath). A value that is not finite misses its
+/// budget, a truth counts 1 or 0. Throws WrongUsage where there is no such number, and says which there are.
+BudgetVerdict judge_budget(const Budget& budget, const Json& metrics);
+
+Json to_json(const BudgetVerdict& verdict);
+
+}  // namespace kiln

@@ -1,0 +1,163 @@
+#include "report/comparison.h"
+
+#include <fmt/format.h>
+
+#include "base/command_line.h"
+#include "base/errors.h"
+#include "image/image_file.h"
+#include "mesh/draco_file.h"
+#include "mesh/mesh_file.h"
+#include "report/process.h"
+#include "report/reference.h"
+#include "sh/directions.h"
+#include "sh/light_spec.h"
+
+namespace kiln {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double field_of_view_degrees = 30;
+constexpr int supersample = 2;
+
+std::vector<LightSpec> parse_lights(const std::vector<std::string>& texts) {
+  std::vector<LightSpec> specs;
+  for (const std::string& text : texts) specs.push_back(parse_light_spec(text));
+  if (specs.empty()) throw WrongUsage("lights: found none; expected at least one, as in '45,30; ambient:1'");
+  return specs;
+}
+
+/// Draws the asset under one light into an EXR, and returns what kiln-render says of it.
+Json render(const AssetFolder& asset, const std::string& light, const ReportSettings& settings,
+            const ComparisonRun& run, const fs::path& file) {
+  std::string printed;
+  ProcessSettings process;
+  process.on_output_line = [&](const std::string& line) { printed += line; };
+  // Everything that the reference has to share is said, whatever the renderer's defaults are.
+  const std::string size = std::to_string(settings.picture_size);
+  const ProcessEnd end =
+      run_process({(program_folder() / "kiln-render").string(),
+                   asset.prt().string(),
+                   "-o",
+                   file.string(),
+                   "--light=" + light,
+                   "--window",
+                   "hann",
+                   fmt::format("--camera={},{}", settings.camera_azimuth_degrees, settings.camera_elevation_degrees),
+                   "--field-of-view",
+                   fmt::format("{}", field_of_view_degrees),
+                   "--width",
+                   size,
+                   "--height",
+                   size,
+                   "--supersample",
+                   std::to_string(supersample),
+                   "--albedo",
+                   fmt::format("{}", settings.albedo),
+                   "--background",
+                   "none",
+                   "--gl-device",
+                   settings.gl_device,
+                   "--threads",
+                   std::to_string(run.threads),
+                   "--quiet",
+                   "--json"},
+                  process);
+  throw_if_interrupted();
+  if (end.exit_status == static_cast<int>(ExitCode::machine_lacks))
+    throw MachineLacks("kiln-render cannot draw on this machine; it has said why");
+  if (end.exit_status == static_cast<int>(ExitCode::bad_input))
+    throw BadInput(asset.prt().string(), "could not be drawn by kiln-render, which has said why",
+                   "a whole output of kiln-bake", "run kiln-bake again");
+  if (end.exit_status == static_cast<int>(ExitCode::wrong_usage))
+    throw WrongUsage("kiln-render refuses its settings and has said why");
+  if (!end.succeeded()) throw std::runtime_error(fmt::format("kiln-render failed (exit status {})", end.exit_status));
+  return Json::parse(printed);
+}
+
+bool is_whole(float coverage) { return coverage > 0.9999f; }
+
+/// The difference over the pixels that both cover wholly: elsewhere the background would be compared.
+void compare(LightComparison& comparison, std::size_t& compared_pixels) {
+  std::vector<float> asset, reference;
+  for (int j = 0; j < comparison.asset.height(); ++j)
+    for (int i = 0; i < comparison.asset.width(); ++i) {
+      const std::span<const float> a = comparison.asset.pixel(i, j), b = comparison.reference.pixel(i, j);
+      if (!is_whole(a[3]) || !is_whole(b[3])) continue;
+      asset.insert(asset.end(), a.begin(), a.begin() + 3);
+      reference.insert(reference.end(), b.begin(), b.begin() + 3);
+    }
+  compared_pixels = asset.size() / 3;
+  const auto as_image = [&](std::vector<float>& values) {
+    Image<float> image(static_cast<int>(compared_pixels), 1, 3);
+    image.values() = std::move(values);
+    return image;
+  };
+  comparison.difference = compare_images(as_image(asset), as_image(reference));
+}
+
+double silhouette_difference(const LightComparison& comparison) {
+  std::size_t either = 0, one = 0;
+  for (std::size_t k = 3; k < comparison.asset.values().size(); k += 4) {
+    const bool in_asset = comparison.asset.values()[k] >= 0.5f, in_reference = comparison.reference.values()[k] >= 0.5f;
+    either += in_asset || in_reference;
+    one += in_asset != in_reference;
+  }
+  return either == 0 ? 0 : static_cast<double>(one) / static_cast<double>(either);
+}
+
+}  // namespace
+
+Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high_file, const ReportSettings& settings,
+                                  const ComparisonRun& run) {
+  const std::vector<std::string> lights = list_of_lights(settings);
+  const std::vector<LightSpec> specs = parse_lights(lights);
+  Comparison comparison;
+
+  // The asset, by the program that draws it from its files alone.
+  const Stopwatch render_watch;
+  for (std::size_t k = 0; k < lights.size(); ++k) {
+    const fs::path file = run.scratch / fmt::format("light_{}.exr", k);
+    const Json said = render(asset, lights[k], settings, run, file);
+    comparison.renderer = said.at("renderer").get<std::string>();
+    comparison.software_renderer = said.at("software_renderer").get<bool>();
+    LightComparison& light = comparison.lights.emplace_back();
+    light.light = lights[k];
+    light.asset = read_float_image(file);
+    if (light.asset.width() != settings.picture_size || light.asset.height() != settings.picture_size ||
+        light.asset.channels() != 4)
+      throw std::runtime_error("kiln-render drew another size or number of channels than asked");
+  }
+  comparison.render_seconds = render_watch.seconds();
+
+  // The high mesh, by rays from the same camera: that of the asset's own box.
+  const Stopwatch reference_watch;
+  const TriangleMesh high = load_mesh(high_file);
+  CameraSettings camera;
+  camera.azimuth_degrees = settings.camera_azimuth_degrees;
+  camera.elevation_degrees = settings.camera_elevation_degrees;
+  camera.field_of_view_degrees = field_of_view_degrees;
+  ReferenceView view;
+  view.width = view.height = settings.picture_size;
+  view.camera = make_camera(bounding_box(load_atlas(asset.prt() / "atlas.drc")), camera, view.width, view.height);
+  view.supersample = supersample;
+  view.albedo = static_cast<float>(settings.albedo);
+  std::vector<LightCoefficients> coefficients;
+  for (const LightSpec& spec : specs)
+    coefficients.push_back(light_coefficients(std::span(&spec, 1), asset.bands, LightWindow::hann));
+  // Not the bake's own directions: an error of theirs must not cancel.
+  const std::vector<Eigen::Vector3f> directions =
+      sample_directions(Sampling::fibonacci, settings.directions, static_cast<std::uint64_t>(run.seed) + 1);
+  std::vector<Image<float>> references = reference_pictures(high, view, coefficients, directions, run.progress);
+  comparison.reference_seconds = reference_watch.seconds();
+
+  for (std::size_t k = 0; k < lights.size(); ++k) {
+    comparison.lights[k].reference = std::move(references[k]);
+    compare(comparison.lights[k], comparison.compared_pixels);
+  }
+  comparison.silhouette_difference = silhouette_difference(comparison.lights.front());
+  return comparison;
+}
+
+}  // namespace kiln

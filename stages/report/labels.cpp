@@ -1,0 +1,163 @@
+#include "report/labels.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+#include <string_view>
+
+#include "sh/light_spec.h"
+
+namespace kiln {
+
+namespace {
+
+enum class Unit { plain, share, seconds, bytes, degrees };
+
+struct Known {
+  std::string_view key, label;
+  Unit unit;
+};
+
+constexpr Known known_metrics[] = {
+    {"seconds", "time", Unit::seconds},
+    {"peak_memory_bytes", "peak memory", Unit::bytes},
+    {"hausdorff", "Hausdorff distance, of diagonal", Unit::share},
+    {"rms", "RMS distance, of diagonal", Unit::share},
+    {"hausdorff_distance", "Hausdorff distance, object units", Unit::plain},
+    {"utilisation", "utilisation", Unit::share},
+    {"stretch_l2", "stretch L²", Unit::plain},
+    {"stretch_linf", "stretch L∞", Unit::plain},
+    {"texels_per_unit", "texels per unit length", Unit::plain},
+    {"seam_length_relative", "seam length, of √area", Unit::plain},
+    {"lscm_charts", "charts by LSCM", Unit::plain},
+    {"arap_charts", "charts by ARAP", Unit::plain},
+    {"mean_value_charts", "charts by mean value", Unit::plain},
+    {"found_by_ray_outwards", "found by ray outwards", Unit::share},
+    {"found_by_ray_inwards", "found by ray inwards", Unit::share},
+    {"found_by_nearest_point", "found by nearest point", Unit::share},
+    {"disagreeing", "normals disagreeing", Unit::share},
+    {"cage_distance", "cage distance, object units", Unit::plain},
+    {"mean_distance", "mean distance, object units", Unit::plain},
+    {"largest_distance", "largest distance, object units", Unit::plain},
+    {"normal_deviation_degrees_mean", "normal deviation, mean", Unit::degrees},
+    {"normal_deviation_degrees_largest", "normal deviation, largest", Unit::degrees},
+    {"quantisation_degrees_largest", "quantisation, largest", Unit::degrees},
+    {"texels", "covered texels", Unit::plain},
+    {"quantisation_error", "quantisation error, relative L²", Unit::share},
+    {"backend_difference", "difference from the other backend, relative L²", Unit::share},
+    {"integration_error", "integration error, relative L²", Unit::share},
+    {"error", "error of the stored planes, relative L²", Unit::share},
+    {"relighting_error", "expected relighting error", Unit::share},
+    {"relative_l2", "difference, relative L², worst light", Unit::share},
+    {"root_mean_square", "difference, RMS radiance, worst light", Unit::plain},
+    {"silhouette_difference", "silhouette difference", Unit::share},
+};
+
+const Known* find_known(const std::string& key) {
+  const auto found = std::find_if(std::begin(known_metrics), std::end(known_metrics),
+                                  [&](const Known& known) { return known.key == key; });
+  return found == std::end(known_metrics) ? nullptr : found;
+}
+
+Unit unit_of(const std::string& key) {
+  if (const Known* known = find_known(key)) return known->unit;
+  if (key.ends_with("_seconds")) return Unit::seconds;
+  if (key.ends_with("_bytes")) return Unit::bytes;
+  if (key.ends_with("_degrees")) return Unit::degrees;
+  if (key.ends_with("_error")) return Unit::share;
+  return Unit::plain;
+}
+
+/// Digits in groups of three, with narrow spaces that do not break.
+std::string grouped(long long value) {
+  std::string text = std::to_string(std::abs(value));
+  for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) text.insert(at, "\u202f");
+  return (value < 0 ? "−" : "") + text;
+}
+
+}  // namespace
+
+std::string rounded(double value, int digits) {
+  if (!std::isfinite(value)) return "not finite";
+  const double magnitude = std::abs(value);
+  std::string text;
+  if (magnitude >= std::pow(10.0, digits)) {
+    text = grouped(std::llround(magnitude));
+  } else if (magnitude == 0) {
+    text = "0";
+  } else if (magnitude < 1e-4) {
+    text = fmt::format("{:.{}e}", magnitude, digits - 1);
+  } else {
+    const int decimals = std::max(0, digits - 1 - static_cast<int>(std::floor(std::log10(magnitude))));
+    text = fmt::format("{:.{}f}", magnitude, decimals);
+  }
+  return (value < 0 ? "−" : "") + text;
+}
+
+std::string metric_label(const std::string& key) {
+  if (const Known* known = find_known(key)) return std::string(known->label);
+  std::string text = key;
+  std::replace(text.begin(), text.end(), '_', ' ');
+  return text;
+}
+
+std::string metric_value(const std::string& key, const Json& value) {
+  if (value.is_null()) return "not finite";
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  if (value.is_string()) return escaped(value.get<std::string>());
+  if (!value.is_number()) return escaped(value.dump());
+  const double number = value.get<double>();
+  switch (unit_of(key)) {
+    case Unit::share:
+      return rounded(100 * number, 3) + "&#8239;%";
+    case Unit::seconds:
+      return (number < 10 ? fmt::format("{:.2f}", number) : fmt::format("{:.1f}", number)) + "&#8239;s";
+    case Unit::bytes:
+      return rounded(number / (1024 * 1024), 3) + "&#8239;MiB";
+    case Unit::degrees:
+      return rounded(number, 3) + "°";
+    case Unit::plain:
+      break;
+  }
+  return value.is_number_integer() ? grouped(value.get<long long>()) : rounded(number, 4);
+}
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
+    }
+  }
+  return result;
+}
+
+std::string light_label(const std::string& light) {
+  const LightSpec spec = parse_light_spec(light);
+  const auto colour = [&] {
+    const auto& [r, g, b] = spec.colour;
+    return r == g && g == b ? fmt::format("{:g}", r) : fmt::format("{:g}, {:g}, {:g}", r, g, b);
+  };
+  if (spec.kind == LightSpec::Kind::ambient) return "Ambient, radiance " + colour();
+  const auto degrees = [](double angle) { return fmt::format("{}{:g}°", angle < 0 ? "−" : "", std::abs(angle)); };
+  std::string text =
+      "Directional, azimuth " + degrees(spec.azimuth_degrees) + ", elevation " + degrees(spec.elevation_degrees);
+  if (spec.colour != std::array<float, 3>{1, 1, 1}) text += ", radiance " + colour();
+  return text;
+}
+
+}  // namespace kiln

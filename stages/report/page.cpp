@@ -1,0 +1,249 @@
+#include "report/page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "report/labels.h"
+#include "report/page_style.h"
+#include "report/page_tables.h"
+#include "report/pictures.h"
+#include "sh/basis.h"
+
+namespace kiln {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double difference_gain = 8;
+constexpr int crop_margin = 12;  // pixels
+constexpr int texture_pixels = 640;
+constexpr int pyramid_bands = 6;  // more bands have rows too long to be seen
+constexpr int pyramid_pixels = 192;
+constexpr int sheet_pixels = 96;
+
+const char* plural(std::size_t count) { return count == 1 ? "" : "s"; }
+
+std::string image(const std::string& source, const std::string& description, int width, int height) {
+  return fmt::format("<img src='{}' alt='{}' width={} height={}>", source, escaped(description), width, height);
+}
+
+std::string image(const Image<std::uint8_t>& picture, const std::string& description, const fs::path& scratch) {
+  return image(data_uri(picture, scratch), description, picture.width(), picture.height());
+}
+
+std::string figure(const std::string& picture, const std::string& caption) {
+  return "<figure>" + picture + "<figcaption>" + caption + "</figcaption></figure>\n";
+}
+
+std::string verdict_badge(const Report& report) {
+  const std::size_t count = report.budgets.size(), missed = report.missed_budgets();
+  if (count == 0) return "<span class='badge plain'>No budgets set</span>";
+  if (missed == 0)
+    return fmt::format("<span class='badge good'>✓ {}</span>",
+                       count == 1 ? "Budget met" : fmt::format("All {} budgets met", count));
+  return fmt::format("<span class='badge bad'>✗ {} of {} budget{} missed</span>", missed, count, plural(count));
+}
+
+/// Pictures by a software renderer are right but slow: whoever reads timings has to know.
+std::string software_alarm(const AssetFolder& asset, const Report& report) {
+  const Json& bake = asset.record("bake");
+  const bool baked = bake.value("software_renderer", Json(false)) == Json(true);
+  const bool baked_by_gl = bake.value("settings", Json::object()).value("backend", Json()) == Json("egl");
+  std::string who;
+  if (baked && baked_by_gl) who = "The bake ran on " + bake.value("renderer", std::string("a software renderer"));
+  if (report.comparison.software_renderer)
+    who += (who.empty() ? "The pictures were drawn by " : "; the pictures were drawn by ") + report.comparison.renderer;
+  if (who.empty()) return "";
+  return "<div class=alarm><strong>⚠ Software renderer</strong>" + escaped(who) +
+         ". The results hold; the timings say nothing of a GPU.</div>\n";
+}
+
+std::string header(const AssetFolder& asset, const Report& report, const Json& metrics) {
+  const Json& simplify = asset.record("simplify");
+  const Json& bake = asset.record("bake");
+  const auto value = [](const Json& record, const char* key) {
+    return record.contains(key) ? metric_value(key, record[key]) : std::string("–");
+  };
+  double seconds = 0;
+  for (const StageRecord& record : asset.records) seconds += record.json.at("seconds").get<double>();
+  seconds += metrics.at("report").at("seconds").get<double>();
+
+  std::string html =
+      fmt::format("<header>\n<p class=overline>Kiln asset report</p>\n<h1>{}</h1>\n", escaped(asset.name));
+  html += fmt::format(
+      "<p class=lead>A mesh of {} triangles as {} triangles, a texture atlas, a normal map and {} transfer coefficient "
+      "planes of {} bits.</p>\n",
+      value(simplify, "input_triangles"), value(simplify, "triangles"), asset.planes.size(), asset.bits);
+  html += verdict_badge(report) + "\n" + software_alarm(asset, report);
+  html += "<dl class=figures>\n";
+  const auto figure_of = [&](const std::string& name, const std::string& number, const std::string& more) {
+    html += fmt::format("<div><dt>{}</dt><dd>{}</dd><small>{}</small></div>\n", name, number, more);
+  };
+  figure_of("Triangles", value(simplify, "triangles"), "of " + value(simplify, "input_triangles"));
+  figure_of("Hausdorff distance", value(simplify, "hausdorff"), "of the diagonal");
+  figure_of("Atlas", value(asset.record("atlas"), "utilisation"),
+            "used, " + value(asset.record("atlas"), "charts") + " charts");
+  figure_of("Bake", value(bake, "seconds"), value(bake, "directions") + " directions");
+  figure_of("Difference", metric_value("relative_l2", metrics.at("report").at("relative_l2")),
+            "relative L², worst light");
+  figure_of("All stages", metric_value("seconds", seconds), "without file access");
+  return html + "</dl>\n</header>\n";
+}
+
+/// The part of the pictures that shows anything, with a margin.
+struct Crop {
+  int left = 0, bottom = 0, width = 0, height = 0;
+};
+
+Crop crop_of(const LightComparison& light) {
+  const Image<float>& a = light.asset;
+  int left = a.width(), right = 0, bottom = a.height(), top = 0;
+  for (int j = 0; j < a.height(); ++j)
+    for (int i = 0; i < a.width(); ++i)
+      if (a.at(i, j, 3) > 0 || light.reference.at(i, j, 3) > 0) {
+        left = std::min(left, i);
+        right = std::max(right, i);
+        bottom = std::min(bottom, j);
+        top = std::max(top, j);
+      }
+  if (right < left) return {0, 0, a.width(), a.height()};
+  left = std::max(0, left - crop_margin);
+  bottom = std::max(0, bottom - crop_margin);
+  right = std::min(a.width() - 1, right + crop_margin);
+  top = std::min(a.height() - 1, top + crop_margin);
+  return {left, bottom, right - left + 1, top - bottom + 1};
+}
+
+Image<std::uint8_t> cropped(const Image<std::uint8_t>& picture, const Crop& crop) {
+  Image<std::uint8_t> part(crop.width, crop.height, picture.channels());
+  for (int j = 0; j < crop.height; ++j)
+    for (int i = 0; i < crop.width; ++i)
+      std::copy_n(picture.pixel(crop.left + i, crop.bottom + j).begin(), picture.channels(), part.pixel(i, j).begin());
+  return part;
+}
+
+std::string relit_section(const AssetFolder& asset, const Report& report, const Json& metrics,
+                          const fs::path& scratch) {
+  const Comparison& comparison = report.comparison;
+  const Json settings = metrics.at("report").value("settings", Json::object());
+  std::string html = fmt::format(
+      "<section><h2>Relit</h2>\n<p class=note>The asset, drawn by kiln-render from its own files, beside the high "
+      "mesh: the same transfer integral "
+      "by rays over {} directions at every sample, projected on the same {} bands and lit by the same windowed light. "
+      "Differences are "
+      "taken in linear radiance over the {} pixels that both cover; the silhouettes differ in {} of their "
+      "pixels.</p>\n",
+      settings.value("directions", Json("–")).dump(), asset.bands, metric_value("pixels", comparison.compared_pixels),
+      metric_value("silhouette_difference", comparison.silhouette_difference));
+  const Crop crop = crop_of(comparison.lights.front());
+  for (const LightComparison& light : comparison.lights) {
+    const std::string name = light_label(light.light);
+    html += "<div class=light><h3>" + escaped(name) + "</h3>\n<div class=trio>\n";
+    html += figure(image(cropped(shown_radiance(light.asset), crop), "Asset: " + name, scratch), "<b>Asset</b>");
+    html += figure(image(cropped(shown_radiance(light.reference), crop), "Reference: " + name, scratch),
+                   "<b>Reference</b>, high mesh by rays");
+    html += figure(image(cropped(shown_difference(light.asset, light.reference, difference_gain), crop),
+                         "Difference: " + name, scratch),
+                   fmt::format("<b>Difference × {:g}</b> · RMS {} · relative L² {} · largest {}"
+                               "<div class=scale></div><div class=axis><span>−{:g} "
+                               "darker</span><span>0</span><span>brighter +{:g}</span></div>",
+                               difference_gain, rounded(light.difference.root_mean_square, 3),
+                               metric_value("relative_l2", light.difference.relative_l2),
+                               rounded(light.difference.largest, 3), 1 / difference_gain, 1 / difference_gain));
+    html += "</div></div>\n";
+  }
+  return html + "</section>\n";
+}
+
+std::string textures_section(const AssetFolder& asset, const fs::path& scratch) {
+  const Json& normals = asset.record("normals");
+  const auto value = [](const Json& record, const char* key) {
+    return record.contains(key) ? metric_value(key, record[key]) : std::string("–");
+  };
+  const Json& atlas = asset.record("atlas");
+  std::string html = "<section><h2>Textures</h2>\n<div class=pair>\n";
+  html += figure(image(thumbnail(asset.folder / "atlas.png", 8, texture_pixels), "Charts of the atlas", scratch),
+                 fmt::format("<b>Charts</b> · {} charts, {} of the texels covered, stretch L² {}",
+                             value(atlas, "charts"), value(atlas, "utilisation"), value(atlas, "stretch_l2")));
+  html += figure(
+      image(thumbnail(asset.folder / "normals" / "normal.png", 16, texture_pixels), "Normal map", scratch),
+      fmt::format(
+          "<b>Normal map</b> · {} space, gutters filled; {} found by rays outwards, {} inwards, {} by nearest point",
+          value(normals, "space"), value(normals, "found_by_ray_outwards"), value(normals, "found_by_ray_inwards"),
+          value(normals, "found_by_nearest_point")));
+  return html + "</div></section>\n";
+}
+
+std::string plane_figure(const CoefficientPlane& plane, int bits, int pixels, const fs::path& scratch) {
+  const int l = band_of(plane.coefficient), m = plane.coefficient - coefficient_index(l, 0);
+  const std::string name = fmt::format("({}, {}{})", l, m < 0 ? "−" : "", std::abs(m));
+  return fmt::format("<figure class=plane>{}<figcaption><b>{}</b>{} … {}</figcaption></figure>\n",
+                     image(thumbnail(plane.file, bits, pixels), "Coefficient " + name, scratch), name,
+                     rounded(plane.lowest, 3), rounded(plane.highest, 3));
+}
+
+std::string coefficients_section(const AssetFolder& asset, const fs::path& scratch) {
+  std::string html =
+      "<section><h2>Transfer coefficients</h2>\n<p class=note>Each plane as it is stored, black its lowest and white "
+      "its highest value: band and order "
+      "(l, m), and the range. One row is one band.</p>\n";
+  for (int channel = 0; channel < asset.channels; ++channel) {
+    if (asset.channels > 1) html += fmt::format("<h3>Channel {}</h3>\n", channel);
+    if (asset.bands > pyramid_bands) {
+      html += "<div class=sheet>\n";
+      for (const CoefficientPlane& plane : asset.planes)
+        if (plane.channel == channel) html += plane_figure(plane, asset.bits, sheet_pixels, scratch);
+      html += "</div>\n";
+      continue;
+    }
+    // All rows share the width of one plane, so that they form a pyramid.
+    const int longest_row = 2 * asset.bands - 1;
+    for (int l = 0; l < asset.bands; ++l) {
+      html +=
+          fmt::format("<div class=band style='grid-template-columns:repeat({},minmax(0,calc((100% - {}px)/{})))'>\n",
+                      2 * l + 1, 8 * (longest_row - 1), longest_row);
+      for (const CoefficientPlane& plane : asset.planes)
+        if (plane.channel == channel && band_of(plane.coefficient) == l)
+          html += plane_figure(plane, asset.bits, pyramid_pixels, scratch);
+      html += "</div>\n";
+    }
+  }
+  return html + "</section>\n";
+}
+
+std::string footer(const Json& metrics) {
+  std::string html = "<footer>";
+  html += fmt::format(
+      "<p>Kiln {}. All figures of this page are in metrics.json beside it.</p>\n<details><summary>Inputs</summary>\n",
+      escaped(metrics.at("version").get<std::string>()));
+  std::vector<std::string> seen;
+  for (const auto& [stage, result] : metrics.items()) {
+    if (!result.is_object()) continue;
+    const Json inputs = result.value("inputs", Json::object());  // a temporary would not outlive items()
+    for (const auto& [file, hash] : inputs.items()) {
+      if (std::find(seen.begin(), seen.end(), file) != seen.end()) continue;
+      seen.push_back(file);
+      html += fmt::format("<div><code>{}</code> {}</div>\n",
+                          escaped(hash.is_string() ? hash.get<std::string>() : hash.dump()), escaped(file));
+    }
+  }
+  return html + "</details></footer>\n";
+}
+
+}  // namespace
+
+std::string page_html(const AssetFolder& asset, const Report& report, const Json& metrics,
+                      const fs::path& scratch_folder) {
+  const fs::path scratch = scratch_folder / "picture.png";
+  return "<!doctype html>\n<html lang=en>\n<head>\n<meta charset=utf-8>\n<meta name=viewport "
+         "content='width=device-width, initial-scale=1'>\n<title>" +
+         escaped(asset.name) + " · Kiln report</title>\n<style>\n" + page_style() +
+         "</style>\n</head>\n<body><main>\n" + header(asset, report, metrics) +
+         relit_section(asset, report, metrics, scratch) + budgets_section(report) + textures_section(asset, scratch) +
+         coefficients_section(asset, scratch) + verification_section(asset) + stages_section(metrics) +
+         footer(metrics) + "</main></body>\n</html>\n";
+}
+
+}  // namespace kiln

@@ -1,0 +1,130 @@
+#include "report/page_tables.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "report/labels.h"
+
+namespace kiln {
+
+namespace {
+
+struct StageColour {
+  const char* stage;
+  const char* colour;
+};
+constexpr std::array stage_colours = {StageColour{"simplify", "#7a5c3e"}, StageColour{"atlas", "#5f6b3a"},
+                                      StageColour{"normals", "#3f6b6b"}, StageColour{"bake", "#8c4a2f"},
+                                      StageColour{"report", "#5a5568"}};
+
+std::string last_part(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+
+std::string row(const std::string& label, const std::string& value) {
+  return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", escaped(label), value);
+}
+
+/// The rows of one object; an inner object's as "outer: inner", where they are not zero.
+std::string metric_rows(const Json& metrics) {
+  std::string html;
+  for (const auto& [key, value] : metrics.items()) {
+    if (key == "stage" || key == "version" || key == "settings" || key == "inputs" || key == "seconds" ||
+        key == "verification" || value.is_array())
+      continue;
+    if (!value.is_object()) {
+      html += row(metric_label(key), metric_value(key, value));
+      continue;
+    }
+    for (const auto& [inner_key, inner] : value.items())
+      if (!inner.is_number() || inner.get<double>() != 0)
+        html += row(metric_label(key) + ": " + metric_label(inner_key), metric_value(inner_key, inner));
+  }
+  return html;
+}
+
+std::string settings_rows(const Json& settings) {
+  std::string html;
+  for (const auto& [key, value] : settings.items())
+    html += row(key, value.is_string()    ? escaped(value.get<std::string>())
+                     : value.is_boolean() ? (value.get<bool>() ? "yes" : "no")
+                                          : escaped(value.dump()));
+  return html;
+}
+
+/// How much of the budget is used up: 1 is all of it.
+double budget_use(const BudgetVerdict& verdict) {
+  const double use =
+      verdict.budget.is_highest ? verdict.value / verdict.budget.limit : verdict.budget.limit / verdict.value;
+  return std::isfinite(use) && use >= 0 ? use : verdict.met ? 0 : 1;
+}
+
+}  // namespace
+
+std::string budgets_section(const Report& report) {
+  std::string html = "<section><h2>Budgets</h2>\n";
+  if (report.budgets.empty())
+    return html +
+           "<p class=note>None are set for this asset. pipeline.yaml takes them as <code>budgets: {STAGE.METRIC: {max: "
+           "…}}</code>.</p></section>\n";
+  html +=
+      "<table><thead><tr><th>Metric<th><th class=number>Value<th "
+      "class=number>Limit<th>Used<th>Verdict</thead><tbody>\n";
+  for (const BudgetVerdict& verdict : report.budgets) {
+    const std::string key = last_part(verdict.budget.metric);
+    const char* tone = verdict.met ? "good" : "bad";
+    html += fmt::format(
+        "<tr><td><code>{}</code><td class=note>{}<td class=number>{}<td class=number>{} {}<td><div class='meter {}'><i "
+        "style='width:{:.0f}%'></i></div>"
+        "<td class='verdict {}'>{}\n",
+        escaped(verdict.budget.metric), escaped(metric_label(key)), metric_value(key, verdict.value),
+        verdict.budget.is_highest ? "≤" : "≥", metric_value(key, verdict.budget.limit), tone,
+        100 * std::min(1.0, budget_use(verdict)), tone, verdict.met ? "met" : "missed");
+  }
+  return html + "</tbody></table></section>\n";
+}
+
+std::string verification_section(const AssetFolder& asset) {
+  const Json verification = asset.record("bake").value("verification", Json());
+  std::string html = "<section><h2>Verification of the bake</h2>\n";
+  if (!verification.is_object())
+    return html +
+           "<p class=note>The bake was not verified. <code>verify-directions</code> of kiln-bake has it compare itself "
+           "with the other "
+           "backend and with that many rays.</p></section>\n";
+  html +=
+      "<p class=note>The transfer vectors of covered texels against the other backend, and against a reference by rays "
+      "over many more "
+      "directions; as relative L² of the vectors, and as the error to expect of a picture under lighting as it is "
+      "found in "
+      "photographed environments.</p>\n<table><tbody>\n";
+  for (const auto& [key, value] : verification.items())
+    html += fmt::format("<tr><td>{}<td class=number>{}\n", escaped(metric_label(key)), metric_value(key, value));
+  return html + "</tbody></table></section>\n";
+}
+
+std::string stages_section(const Json& metrics) {
+  std::string bar, cards;
+  double total = 0;
+  for (const StageColour& stage : stage_colours) total += metrics.at(stage.stage).at("seconds").get<double>();
+  for (const auto& [stage, colour] : stage_colours) {
+    const Json& result = metrics.at(stage);
+    const double seconds = result.at("seconds").get<double>();
+    const std::string time = metric_value("seconds", result.at("seconds"));
+    // A sliver has no room for its name; the card has it.
+    const std::string label = seconds > 0.08 * total ? stage + (" " + time) : std::string();
+    bar += fmt::format("<span style='flex:{:.4f} 0 0;background:{}' title='{} {}'>{}</span>", std::max(seconds, 1e-4),
+                       colour, stage, time, label);
+    cards += fmt::format(
+        "<div class=card><h3><i style='background:{}'></i>{}<span>{}</span></h3>\n<dl "
+        "class=rows>\n{}</dl>\n<details><summary>Settings</summary><dl "
+        "class=rows>\n{}</dl></details></div>\n",
+        colour, stage, time, metric_rows(result), settings_rows(result.value("settings", Json::object())));
+  }
+  return "<section><h2>Stages</h2>\n<p class=note>Each stage's own work, without reading and writing files, and what "
+         "it measured on what it "
+         "wrote.</p>\n<div class=times>" +
+         bar + "</div>\n<div class=cards>\n" + cards + "</div></section>\n";
+}
+
+}  // namespace kiln

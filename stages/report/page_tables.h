@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "report/records.h"
+#include "report/report.h"
+
+namespace kiln {
+
+/// The sections of the page that hold words and numbers; see page_html. HTML.
+std::string budgets_section(const Report& report);
+std::string verification_section(const AssetFolder& asset);
+std::string stages_section(const Json& metrics);
+
+}  // namespace kiln

@@ -1,0 +1,77 @@
+#include "report/records.h"
+
+#include <stdexcept>
+
+#include "base/errors.h"
+#include "base/outputs.h"
+
+namespace kiln {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+Json load_json(const fs::path& file, const std::string& stage) {
+  if (!fs::exists(file))
+    throw BadInput(file.string(), "does not exist", "the record of kiln-" + stage, "run kiln-" + stage + " first");
+  Json json = Json::parse(read_text(file), nullptr, false);
+  if (!json.is_object())
+    throw BadInput(file.string(), "is no JSON object", "what kiln-" + stage + " writes",
+                   "run kiln-" + stage + " again");
+  return json;
+}
+
+}  // namespace
+
+const Json& AssetFolder::record(const std::string& stage) const {
+  for (const StageRecord& record : records)
+    if (record.stage == stage) return record.json;
+  throw std::logic_error("no record of stage " + stage);
+}
+
+AssetFolder load_asset_folder(const fs::path& folder) {
+  if (!fs::is_directory(folder))
+    throw BadInput(folder.string(), "is not a folder", "the folder of a baked asset", "run kiln build");
+  AssetFolder asset;
+  asset.folder = folder;
+  // "out/bunny/" has an empty last part.
+  const fs::path whole = fs::weakly_canonical(folder);
+  asset.name = (whole.filename().empty() ? whole.parent_path() : whole).filename().string();
+  for (const auto& [stage, file] : {std::pair("simplify", "simplify.json"), std::pair("atlas", "atlas.json"),
+                                    std::pair("normals", "normals/normals.json"), std::pair("bake", "prt/bake.json")}) {
+    Json json = load_json(folder / file, stage);
+    if (json.value("stage", Json()) != stage || !json.value("seconds", Json()).is_number())
+      throw BadInput((folder / file).string(), "has no stage and seconds", std::string("the record of kiln-") + stage,
+                     std::string("run kiln-") + stage + " again");
+    asset.records.push_back({stage, folder / file, std::move(json)});
+  }
+
+  const fs::path ranges_file = asset.prt() / "ranges.json";
+  const Json ranges = load_json(ranges_file, "bake");
+  try {
+    asset.bands = ranges.at("bands").get<int>();
+    asset.channels = ranges.at("channels").get<int>();
+    asset.bits = ranges.at("bits").get<int>();
+    for (const Json& plane : ranges.at("planes"))
+      asset.planes.push_back({asset.prt() / plane.at("file").get<std::string>(), plane.at("channel").get<int>(),
+                              plane.at("coefficient").get<int>(), plane.at("min").get<double>(),
+                              plane.at("max").get<double>()});
+  } catch (const Json::exception& error) {
+    throw BadInput(ranges_file.string(), error.what(), "the ranges of kiln-bake", "run kiln-bake again");
+  }
+  if ((asset.bits != 8 && asset.bits != 16) || asset.planes.empty())
+    throw BadInput(ranges_file.string(), "no planes of 8 or 16 bits", "the ranges of kiln-bake", "run kiln-bake again");
+  return asset;
+}
+
+fs::path recorded_high_mesh(const AssetFolder& asset) {
+  const Json inputs = asset.record("simplify").value("inputs", Json::object());
+  const fs::path high = inputs.empty() ? fs::path() : fs::path(inputs.begin().key());
+  if (high.empty() || !fs::is_regular_file(high))
+    throw BadInput((asset.folder / "simplify.json").string(),
+                   "names the high mesh '" + high.string() + "', which does not exist", "a mesh to compare with",
+                   "give it by --high");
+  return high;
+}
+
+}  // namespace kiln

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "base/options.h"
+
+namespace kiln {
+
+/// What one stage left behind of itself.
+struct StageRecord {
+  std::string stage;
+  std::filesystem::path file;
+  Json json;
+};
+
+/// One stored plane of coefficients, as ranges.json has it.
+struct CoefficientPlane {
+  std::filesystem::path file;
+  int channel = 0;
+  int coefficient = 0;
+  double lowest = 0;
+  double highest = 0;
+};
+
+/// The folder of an asset that has passed all stages up to the bake.
+struct AssetFolder {
+  std::filesystem::path folder;
+  std::string name;                  ///< of the asset: the folder's
+  std::vector<StageRecord> records;  ///< simplify, atlas, normals, bake
+  int bands = 0;
+  int channels = 0;
+  int bits = 0;
+  std::vector<CoefficientPlane> planes;
+
+  std::filesystem::path prt() const { return folder / "prt"; }
+  const Json& record(const std::string& stage) const;
+};
+
+/// Reads the stages' records and ranges.json. Throws BadInput where one is missing or is not what its stage writes.
+AssetFolder load_asset_folder(const std::filesystem::path& folder);
+
+/// The high mesh that the simplification started from, as its record names it. Throws BadInput where that is no longer
+/// there.
+std::filesystem::path recorded_high_mesh(const AssetFolder& asset);
+
+}  // namespace kiln

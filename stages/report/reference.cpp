@@ -1,0 +1,90 @@
+#include "report/reference.h"
+
+#include <algorithm>
+#include <limits>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "raycast/ray_scene.h"
+#include "raycast/ray_transfer.h"
+
+namespace kiln {
+
+namespace {
+
+constexpr std::size_t batch_receivers = 16384;  // bounds the memory that transfer vectors of many bands take
+constexpr float ray_offset_relative = 1e-4f;    // of the box' diagonal, as kiln-bake has it
+
+/// The surface points that the samples of a picture see, in the order of the samples' rows.
+struct VisiblePoints {
+  std::vector<Eigen::Vector3f> positions;
+  std::vector<Eigen::Vector3f> normals;
+  std::vector<std::size_t> pixels;  // whose samples they are, j * width + i
+};
+
+VisiblePoints visible_points(const RayScene& scene, const TriangleMesh& mesh, const ReferenceView& view) {
+  const int columns = view.width * view.supersample, rows = view.height * view.supersample;
+  std::vector<SurfacePoint> hits(static_cast<std::size_t>(columns) * rows);
+  tbb::parallel_for(tbb::blocked_range<int>(0, rows), [&](const tbb::blocked_range<int>& range) {
+    for (int row = range.begin(); row != range.end(); ++row)
+      for (int column = 0; column < columns; ++column)
+        hits[static_cast<std::size_t>(row) * columns + column] =
+            scene.first_hit(view.camera.position, view.camera.pixel_direction(column, row, columns, rows), 0,
+                            std::numeric_limits<float>::infinity());
+  });
+  VisiblePoints points;
+  for (std::size_t k = 0; k < hits.size(); ++k) {
+    const SurfacePoint& hit = hits[k];
+    if (!hit.found()) continue;
+    const Triangle& corners = mesh.triangles[hit.triangle];
+    const auto blend = [&](const std::vector<Eigen::Vector3f>& values) {
+      return Eigen::Vector3f((1 - hit.u - hit.v) * values[corners[0]] + hit.u * values[corners[1]] +
+                             hit.v * values[corners[2]]);
+    };
+    points.positions.push_back(blend(mesh.positions));
+    points.normals.push_back(blend(mesh.normals).normalized());
+    const std::size_t row = k / columns / view.supersample, column = k % columns / view.supersample;
+    points.pixels.push_back(row * view.width + column);
+  }
+  return points;
+}
+
+}  // namespace
+
+std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
+                                             std::span<const LightCoefficients> lights,
+                                             std::span<const Eigen::Vector3f> directions,
+                                             const ProgressFunction& progress) {
+  const RayScene scene(mesh);
+  const VisiblePoints points = visible_points(scene, mesh, view);
+  const float ray_offset = ray_offset_relative * bounding_box(mesh).diagonal();
+  const float share = 1.f / static_cast<float>(view.supersample * view.supersample);  // of a pixel that one sample has
+  std::vector<Image<float>> pictures(lights.size(), Image<float>(view.width, view.height, 4));
+  if (lights.empty()) return pictures;
+
+  const std::size_t count = points.positions.size();
+  for (std::size_t begin = 0; begin < count; begin += batch_receivers) {
+    const std::size_t size = std::min(batch_receivers, count - begin);
+    const Receivers receivers{std::span(points.positions).subspan(begin, size),
+                              std::span(points.normals).subspan(begin, size)};
+    const TransferVectors transfer = transfer_by_rays(scene, receivers, directions, lights.front().bands, ray_offset);
+    for (std::size_t light = 0; light < lights.size(); ++light) {
+      for (std::size_t r = 0; r < size; ++r) {
+        const std::size_t pixel = points.pixels[begin + r];
+        const std::span<float> values =
+            pictures[light].pixel(static_cast<int>(pixel % view.width), static_cast<int>(pixel / view.width));
+        for (int c = 0; c < 3; ++c) {
+          double radiance = 0;
+          for (int i = 0; i < transfer.coefficients; ++i)
+            radiance += lights[light].channels[c][i] * transfer.plane(i)[r];
+          values[c] += share * view.albedo * static_cast<float>(radiance);
+        }
+        values[3] += share;
+      }
+    }
+    progress(static_cast<double>(begin + size) / static_cast<double>(count));
+  }
+  return pictures;
+}
+
+}  // namespace kiln

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "base/progress.h"
+#include "image/image.h"
+#include "mesh/camera.h"
+#include "mesh/triangle_mesh.h"
+#include "sh/lights.h"
+
+namespace kiln {
+
+/// The picture that an asset is compared with.
+struct ReferenceView {
+  Camera camera;
+  int width = 0;
+  int height = 0;
+  int supersample = 2;  ///< samples per pixel along each axis
+  float albedo = 0.8f;
+};
+
+/// Pictures of a mesh under each of `lights` (three channels each, all of the same bands): the first hit of each
+/// sample's ray, shaded by the transfer integral over `directions` (rays against the mesh itself, its normals
+/// interpolated) and projected on the lights' bands. No atlas, no texture, no rasteriser: what the baked asset
+/// approximates. RGBA in linear radiance, alpha is coverage and the colours are multiplied by it.
+std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
+                                             std::span<const LightCoefficients> lights,
+                                             std::span<const Eigen::Vector3f> directions,
+                                             const ProgressFunction& progress = no_progress);
+
+}  // namespace kiln

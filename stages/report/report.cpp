@@ -1,0 +1,67 @@
+#include "report/report.h"
+
+#include <algorithm>
+
+#include "base/command_line.h"
+
+namespace kiln {
+
+std::size_t Report::missed_budgets() const {
+  return static_cast<std::size_t>(
+      std::count_if(budgets.begin(), budgets.end(), [](const BudgetVerdict& verdict) { return !verdict.met; }));
+}
+
+Json Report::to_json() const {
+  Json lights = Json::array();
+  double relative_l2 = 0, root_mean_square = 0;
+  for (const LightComparison& light : comparison.lights) {
+    lights.push_back({{"light", light.light},
+                      {"relative_l2", light.difference.relative_l2},
+                      {"root_mean_square", light.difference.root_mean_square},
+                      {"largest", light.difference.largest}});
+    relative_l2 = std::max(relative_l2, light.difference.relative_l2);
+    root_mean_square = std::max(root_mean_square, light.difference.root_mean_square);
+  }
+  Json verdicts = Json::array();
+  for (const BudgetVerdict& verdict : budgets) verdicts.push_back(kiln::to_json(verdict));
+  return {{"relative_l2", relative_l2},
+          {"root_mean_square", root_mean_square},
+          {"silhouette_difference", comparison.silhouette_difference},
+          {"compared_pixels", comparison.compared_pixels},
+          {"renderer", comparison.renderer},
+          {"software_renderer", comparison.software_renderer},
+          {"render_seconds", comparison.render_seconds},
+          {"reference_seconds", comparison.reference_seconds},
+          {"lights", lights},
+          {"budgets", verdicts},
+          {"budgets_missed", missed_budgets()}};
+}
+
+Json all_metrics(const AssetFolder& asset, const Json& report_result) {
+  Json metrics = {{"asset", asset.name}, {"version", KILN_VERSION}};
+  for (const StageRecord& record : asset.records) metrics[record.stage] = record.json;
+  metrics["report"] = report_result;
+  return metrics;
+}
+
+Report make_report(const AssetFolder& asset, const std::filesystem::path& high_file,
+                   const std::vector<std::string>& budgets, const ReportSettings& settings, const ComparisonRun& run) {
+  const Stopwatch watch;
+  // A mistyped metric should not cost the time of the comparison.
+  std::vector<Budget> limits;
+  const Json metrics_before = all_metrics(asset, Json::object());
+  for (const std::string& text : budgets) {
+    limits.push_back(parse_budget(text));
+    if (!limits.back().metric.starts_with("report.")) judge_budget(limits.back(), metrics_before);
+  }
+  Report report;
+  report.comparison = compare_with_reference(asset, high_file, settings, run);
+  report.seconds = watch.seconds();
+  Json own = report.to_json();
+  own["seconds"] = report.seconds;
+  const Json metrics = all_metrics(asset, own);
+  for (const Budget& limit : limits) report.budgets.push_back(judge_budget(limit, metrics));
+  return report;
+}
+
+}  // namespace kiln

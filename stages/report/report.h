@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "report/budget.h"
+#include "report/comparison.h"
+#include "report/records.h"
+#include "report/report_settings.h"
+
+namespace kiln {
+
+/// What the report has to say beyond what the stages said of themselves.
+struct Report {
+  Comparison comparison;
+  std::vector<BudgetVerdict> budgets;
+  double seconds = 0;
+
+  std::size_t missed_budgets() const;
+  Json to_json() const;  ///< the report stage's own metrics
+};
+
+/// Compares the asset with the high mesh and judges the budgets ("simplify.hausdorff<=0.012"). Throws WrongUsage for a
+/// budget of a metric that does not exist, before the work where it can be known; else as compare_with_reference.
+Report make_report(const AssetFolder& asset, const std::filesystem::path& high_file,
+                   const std::vector<std::string>& budgets, const ReportSettings& settings, const ComparisonRun& run);
+
+/// metrics.json: every stage's result under its name, and `report_result` as the report's.
+Json all_metrics(const AssetFolder& asset, const Json& report_result);
+
+}  // namespace kiln

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/options.h"
+
+namespace kiln {
+
+/// How the report pictures an asset and what it compares it with.
+struct ReportSettings {
+  std::string lights = "45,30; -60,20; ambient:1";  ///< as kiln-render takes them, separated by semicolons
+  double camera_azimuth_degrees = 20;               ///< where the camera stands: 0 is +Z, 90 is +X
+  double camera_elevation_degrees = 12;
+  int picture_size = 512;  ///< pixels a side
+  int directions = 1024;   ///< of the reference's transfer integral
+  double albedo = 0.8;
+  std::string gl_device = "auto";  ///< that kiln-render draws on
+};
+
+OptionSet report_options(ReportSettings& settings);
+
+/// The lights one by one, blanks trimmed.
+std::vector<std::string> list_of_lights(const ReportSettings& settings);
+
+}  // namespace kiln

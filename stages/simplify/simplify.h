@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+
+#include "base/options.h"
+#include "base/progress.h"
+#include "mesh/mesh_distance.h"
+#include "mesh/triangle_mesh.h"
+#include "simplify/manifold_repair.h"
+#include "simplify/simplify_settings.h"
+
+namespace kiln {
+
+struct SimplifyResult {
+  TriangleMesh mesh;              ///< as written and read again, with normals
+  MeshDistance distance;          ///< of the input to `mesh`
+  double hausdorff_distance = 0;  ///< distance.hausdorff in object units
+  int input_triangles = 0;
+  bool manifold = false;         ///< an oriented manifold, possibly with border
+  bool closed = false;           ///< and without border
+  int degenerate_triangles = 0;  ///< count_degenerate
+  int flipped_triangles = 0;     ///< count_flipped, of the input
+  ManifoldRepairs repairs;       ///< what the input needed first
+  double seconds = 0;            ///< without `written`
+  double collapse_seconds = 0;   ///< of it, the edge collapse alone
+
+  Json to_json() const;
+};
+
+/// Triangles without area.
+int count_degenerate(const TriangleMesh& mesh);
+
+/// Triangles of `mesh` that face against the part of `high` that is nearest to their middle.
+int count_flipped(const TriangleMesh& mesh, const TriangleMesh& high);
+
+/// What a mesh is once it was written to a file and read again. Called for every candidate; the last call is for the
+/// result.
+using WrittenForm = std::function<TriangleMesh(const TriangleMesh&)>;
+
+/// Keeps the mesh as it is, but for vertex normals.
+TriangleMesh with_normals(const TriangleMesh& mesh);
+
+/// A mesh of at most settings.faces triangles, or with the fewest that keep its Hausdorff distance from `high` within
+/// settings.max_error, by edge collapse. Meshes that allow no further collapse keep more triangles; one that has
+/// no more to begin with is returned as it is. A manifold stays one, of the same topology; what is none is split into
+/// one. Throws WrongUsage for a max_error that no file of 16 bits can keep.
+SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settings,
+                        const WrittenForm& written = with_normals, const ProgressFunction& progress = no_progress);
+
+}  // namespace kiln

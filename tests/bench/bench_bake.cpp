@@ -1,0 +1,62 @@
+// The two bake backends on the Stanford bunny, in one run so that their ratio can be stated: receivers are the scan's
+// own points. `items_per_second` is texel-directions per second.
+
+#include <benchmark/benchmark.h>
+
+#include "bake/bake.h"
+#include "bake/egl_engine.h"
+#include "bake/embree_engine.h"
+#include "mesh/mesh_file.h"
+#include "sh/directions.h"
+
+namespace kiln {
+namespace {
+
+constexpr char bunny_file[] = "/usr/share/glmark2/models/bunny.obj";
+
+struct Scene {
+  TriangleMesh bunny = load_mesh(bunny_file);
+  Occluders occluders = join_occluders({bunny});
+  std::vector<Eigen::Vector3f> directions = sample_directions(Sampling::fibonacci, 256, 1);
+
+  TransferRequest request() const {
+    TransferRequest request;
+    request.receivers = {bunny.positions, bunny.normals};
+    request.occluder_positions = occluders.mesh.positions;
+    request.occluder_triangles = occluders.mesh.triangles;
+    request.occluder_hull = occluders.hull;
+    request.occluders_closed = occluders.closed;
+    request.directions = directions;
+    request.bands = 5;
+    return request;
+  }
+};
+
+void run(benchmark::State& state, TransferEngine& engine) {
+  static const Scene scene;
+  const TransferRequest request = scene.request();
+  for (auto _ : state) benchmark::DoNotOptimize(engine.compute(request, no_progress));
+  state.SetItemsProcessed(
+      static_cast<std::int64_t>(state.iterations() * request.receivers.size() * request.directions.size()));
+  state.SetLabel(engine.renderer());
+}
+
+void bake_embree(benchmark::State& state) {
+  EmbreeEngine engine(1e-4);
+  run(state, engine);
+}
+
+void bake_egl(benchmark::State& state) {
+  ShadowMapSettings shadows;
+  shadows.size_texels = static_cast<int>(state.range(0));
+  EglEngine engine("auto", 0, shadows);
+  run(state, engine);
+}
+
+BENCHMARK(bake_embree)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(bake_egl)->Arg(512)->Arg(1024)->Arg(2048)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+}  // namespace
+}  // namespace kiln
+
+BENCHMARK_MAIN();

@@ -1,0 +1,144 @@
+// The driver's own logic: the pipeline file, the stages' commands, the Makefile's quoting. What make makes of it is in
+// tests/cli.
+#include <algorithm>
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "base/errors.h"
+#include "kiln/build.h"
+#include "kiln/pipeline.h"
+
+namespace kiln {
+namespace {
+
+namespace fs = std::filesystem;
+
+Pipeline pipeline_of(const std::string& text) {
+  const fs::path file = fs::path(testing::TempDir()) / "pipeline.yaml";
+  std::ofstream(file) << text;
+  return load_pipeline(file);
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    pipeline_of(text);
+  } catch (const BadInput& error) {
+    return error.what();
+  }
+  return "";
+}
+
+const StageRun& run_of(const std::vector<MakeRule>& rules, const std::string& asset, const std::string& stage) {
+  const auto found = std::find_if(rules.begin(), rules.end(),
+                                  [&](const MakeRule& rule) { return rule.asset == asset && rule.run.name == stage; });
+  if (found == rules.end()) throw std::runtime_error("no such rule");
+  return found->run;
+}
+
+std::string value_after(const std::vector<std::string>& command, const std::string& option) {
+  const auto found = std::find(command.begin(), command.end(), option);
+  return found == command.end() || found + 1 == command.end() ? "" : *(found + 1);
+}
+
+constexpr const char* two_assets = R"(
+output: made
+defaults:
+  simplify: {faces: 500}
+  bake: {bands: 3}
+  report: {lights: ['45,30', 'ambient:1']}
+budgets:
+  simplify.hausdorff: {max: 0.01}
+  atlas.utilisation: {min: 0.6}
+assets:
+  first: {mesh: a.obj}
+  second:
+    mesh: {archive: b.tar.gz, member: data/b.off}
+    default: false
+    simplify: {max-error: 0.02}
+    bake: {bands: 4}
+    budgets:
+      simplify.hausdorff: {max: 0.5}
+)";
+
+TEST(Pipeline, AssetsReplaceDefaults) {
+  const Pipeline pipeline = pipeline_of(two_assets);
+  ASSERT_EQ(pipeline.assets.size(), 2u);
+  EXPECT_FALSE(pipeline.assets[0].on_request);
+  EXPECT_TRUE(pipeline.assets[1].on_request);
+  const std::vector<MakeRule> rules = make_rules(pipeline);
+  EXPECT_EQ(value_after(run_of(rules, "first", "simplify").command, "--faces"), "500");
+  // --faces and --max-error exclude each other: the asset's own drives out the default.
+  EXPECT_EQ(value_after(run_of(rules, "second", "simplify").command, "--max-error"), "0.02");
+  EXPECT_EQ(value_after(run_of(rules, "second", "simplify").command, "--faces"), "");
+  EXPECT_EQ(value_after(run_of(rules, "second", "bake").command, "--bands"), "4");
+  EXPECT_EQ(value_after(run_of(rules, "first", "report").command, "--lights"), "45,30; ambient:1");
+  EXPECT_EQ(pipeline.assets[0].budgets,
+            (std::vector<std::string>{"atlas.utilisation>=0.6", "simplify.hausdorff<=0.01"}));
+  EXPECT_EQ(pipeline.assets[1].budgets,
+            (std::vector<std::string>{"atlas.utilisation>=0.6", "simplify.hausdorff<=0.5"}));
+}
+
+TEST(Pipeline, ArchivesAreExtractedFirst) {
+  const std::vector<MakeRule> rules = make_rules(pipeline_of(two_assets));
+  const StageRun& extract = run_of(rules, "second", "extract");
+  EXPECT_EQ(extract.inputs, std::vector<fs::path>{"b.tar.gz"});
+  EXPECT_EQ(extract.outputs, std::vector<fs::path>{"made/second/high/b.off"});
+  const std::vector<fs::path>& inputs = run_of(rules, "second", "simplify").inputs;
+  EXPECT_NE(std::find(inputs.begin(), inputs.end(), extract.outputs[0]), inputs.end());
+}
+
+TEST(Pipeline, EveryInputIsMadeBeforeOrGiven) {
+  const std::vector<MakeRule> rules = make_rules(pipeline_of(two_assets));
+  std::vector<fs::path> there = {"a.obj", "b.tar.gz"};
+  for (const MakeRule& rule : rules) {
+    for (const fs::path& input : rule.run.inputs)
+      EXPECT_NE(std::find(there.begin(), there.end(), input), there.end())
+          << rule.asset << " " << rule.run.name << " " << input;
+    there.insert(there.end(), rule.run.outputs.begin(), rule.run.outputs.end());
+  }
+}
+
+TEST(Pipeline, BakeMakesOnePlanePerCoefficient) {
+  const std::vector<fs::path> outputs = run_of(make_rules(pipeline_of(two_assets)), "second", "bake").outputs;
+  EXPECT_NE(std::find(outputs.begin(), outputs.end(), "made/second/prt/coeff_0_15.png"), outputs.end());
+  EXPECT_EQ(std::find(outputs.begin(), outputs.end(), "made/second/prt/coeff_0_16.png"), outputs.end());
+}
+
+TEST(Pipeline, RefusalsNameTheLine) {
+  EXPECT_NE(refusal("assets:\n  a:\n    mesh: x.obj\n    bake: {directions: -3}\n")
+                .find("pipeline.yaml:4: '-3' for directions of bake"),
+            std::string::npos);
+  EXPECT_NE(refusal("assets:\n  a:\n    mesh: x.obj\n    cook: {}\n").find("pipeline.yaml:4: unknown key 'cook'"),
+            std::string::npos);
+  EXPECT_NE(refusal("defaults:\n  bake:\n    backend: cuda\nassets: {a: {mesh: x}}\n").find("egl or embree"),
+            std::string::npos);
+  EXPECT_NE(refusal("assets:\n  a: {mesh: 'x:y.obj'}\n").find("':' in the path"), std::string::npos);
+  EXPECT_EQ(refusal("assets:\n  a: {mesh: x.obj}\n"), "");
+}
+
+TEST(Pipeline, SelectsByNameOrDefault) {
+  const Pipeline pipeline = pipeline_of(two_assets);
+  EXPECT_EQ(select_assets(pipeline, {}).size(), 1u);
+  EXPECT_EQ(select_assets(pipeline, {"second", "second"}).size(), 1u);
+  EXPECT_THROW(select_assets(pipeline, {"third"}), WrongUsage);
+}
+
+TEST(Makefile, QuotesForShellAndMake) {
+  EXPECT_EQ(shell_quoted("a-b_1.obj"), "a-b_1.obj");
+  EXPECT_EQ(shell_quoted("a b$c"), "'a b$c'");
+  EXPECT_EQ(shell_quoted("it's"), "'it'\\''s'");
+  EXPECT_EQ(shell_quoted(""), "''");
+  EXPECT_EQ(make_quoted("a b#c$d"), "a\\ b\\#c$$d");
+}
+
+TEST(Build, GravestStatus) {
+  EXPECT_EQ(gravest_status({}), 0);
+  EXPECT_EQ(gravest_status({0, 4, 0}), 4);
+  EXPECT_EQ(gravest_status({4, 3, 2}), 3);
+  EXPECT_EQ(gravest_status({3, 5}), 5);
+  EXPECT_EQ(gravest_status({5, 1, 3}), 1);
+  EXPECT_EQ(gravest_status({139, 5}), 1);
+}
+
+}  // namespace
+}  // namespace kiln

@@ -1,0 +1,346 @@
+#include <Eigen/Geometry>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <gtest/gtest.h>
+#include <random>
+#include <string>
+#include <tbb/global_control.h>
+
+#include "base/errors.h"
+#include "base/outputs.h"
+#include "detail/detail_maps.h"
+#include "image/image_file.h"
+#include "normals/asset_hints.h"
+#include "normals/normals.h"
+#include "shapes.h"
+
+namespace kiln {
+namespace {
+
+constexpr double degree = 3.14159265358979323846 / 180;
+
+Eigen::Vector3f vector_at(const Image<float>& image, int i, int j) {
+  return Eigen::Map<const Eigen::Vector3f>(image.pixel(i, j).data());
+}
+
+Eigen::Vector3f decoded_at(const Image<std::uint16_t>& image, int i, int j) {
+  return Eigen::Vector3f(image.at(i, j, 0), image.at(i, j, 1), image.at(i, j, 2)) * (2 / 65535.0f) -
+         Eigen::Vector3f::Ones();
+}
+
+void for_each_covered(const NormalsResult& result, const std::function<void(int, int)>& body) {
+  int count = 0;
+  for (int j = 0; j < result.coverage.height(); ++j)
+    for (int i = 0; i < result.coverage.width(); ++i) {
+      const int value = result.coverage.at(i, j);
+      ASSERT_TRUE(value == 0 || value == 255);
+      if (value == 0) continue;
+      ++count;
+      body(i, j);
+    }
+  EXPECT_EQ(count, result.covered_texels);
+  EXPECT_GT(count, 0);
+}
+
+TriangleMesh joined(TriangleMesh a, const TriangleMesh& b) {
+  const auto first = static_cast<std::uint32_t>(a.positions.size());
+  a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
+  a.normals.insert(a.normals.end(), b.normals.begin(), b.normals.end());
+  for (const Triangle& t : b.triangles) a.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  a.uvs.clear();
+  return a;
+}
+
+TriangleMesh turned_over(TriangleMesh mesh) {
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  for (Eigen::Vector3f& n : mesh.normals) n = -n;
+  return mesh;
+}
+
+TEST(Normals, SphereOverACoarseSphere) {
+  // Triangles of an icosphere of 6 levels have edges of up to 0.0205 and lie below the sphere by at most the depth of a
+  // cap of that circumradius: 0.0205^2 / 3 / 2 = 7e-5. Interpolated normals turn from the radius by less than that.
+  const TriangleMesh high = shapes::icosphere(6), low = shapes::cube_sphere(4);
+  const NormalsResult result = make_normals(high, low, {.size = 192});
+  const UvRaster raster = rasterise_uvs(low, 192, 192);
+  for_each_covered(result, [&](int i, int j) {
+    const Eigen::Vector3f position = vector_at(result.position, i, j);
+    EXPECT_NEAR(position.norm(), 1, 7.1e-5);
+    EXPECT_LT((decoded_at(result.normal, i, j) - position.normalized()).norm(), 2e-4f);
+    // The low mesh's normals are radii at its vertices and nearly so between; its points are at most 1 - cos(0.28) =
+    // 0.04 below.
+    EXPECT_LT((position.normalized() - interpolate(low, low.positions, raster.at(i, j)).normalized()).norm(), 0.01f);
+  });
+  EXPECT_EQ(result.found_by_nearest_point, 0);
+  EXPECT_GT(result.found_by_ray_outwards, 0.95);  // a sphere's chords lie inside it, but for their ends
+  EXPECT_NEAR(result.found_by_ray_outwards + result.found_by_ray_inwards, 1, 1e-12);
+  EXPECT_EQ(result.disagreeing, 0);
+  EXPECT_EQ(result.cage_source, "measured");
+  // A 16-bit step is 3e-5 wide; half of one in each of three axes, 0.0015 degrees.
+  EXPECT_LT(result.quantisation_degrees_largest, 0.0016);
+}
+
+TEST(Normals, TheWayIsTheSideOnWhichTheHighMeshLies) {
+  const TriangleMesh low = shapes::cube_sphere(16);
+  for (const float radius : {0.95f, 1.05f}) {
+    const TriangleMesh high = shapes::icosphere(5, radius);
+    const NormalsResult result = make_normals(high, low, {.size = 96, .cage = 0.1});
+    EXPECT_EQ(radius > 1 ? result.found_by_ray_outwards : result.found_by_ray_inwards, 1);
+    EXPECT_EQ(result.cage_source, "option");
+    const double diagonal = bounding_box(high).diagonal();
+    EXPECT_NEAR(result.cage_distance, 0.1 * diagonal, 1e-6);
+    // 5 % of the radius, less the chord's depth of up to 0.0024 (radius 1, 16 cells over 90 degrees).
+    EXPECT_NEAR(result.mean_distance * diagonal, 0.05, 0.0025);
+    EXPECT_GE(result.largest_distance, result.mean_distance);
+    EXPECT_LT(result.normal_deviation_degrees_mean, 0.1);
+  }
+}
+
+TEST(Normals, NearestPointWhereTheCageIsTooSmall) {
+  const TriangleMesh high = shapes::plane(8, 1, 0.05f), low = shapes::plane(1, 1);
+  const NormalsResult near = make_normals(high, low, {.size = 32, .cage = 0.01});
+  EXPECT_EQ(near.found_by_nearest_point, 1);
+  const NormalsResult far = make_normals(high, low, {.size = 32, .cage = 0.1});
+  EXPECT_EQ(far.found_by_ray_outwards, 1);
+  for (const NormalsResult* result : {&near, &far})
+    for_each_covered(*result, [&](int i, int j) {
+      // The margin of 0.1 and the side of 1 give x and z of a texel; float32 rounding.
+      const float x = (((static_cast<float>(i) + 0.5f) / 32 - 0.1f) / 0.8f - 0.5f);
+      const float z = (0.5f - ((static_cast<float>(j) + 0.5f) / 32 - 0.1f) / 0.8f);
+      // uvs are rounded to 1/256 texel or finer by the rasteriser: 1/256/32/0.8.
+      EXPECT_LT((vector_at(result->position, i, j) - Eigen::Vector3f(x, 0.05f, z)).norm(), 2e-4f);
+      EXPECT_LT((decoded_at(result->normal, i, j) - Eigen::Vector3f::UnitY()).norm(), 3e-5f);
+    });
+  EXPECT_NEAR(near.mean_distance * bounding_box(high).diagonal(), 0.05, 1e-6);
+}
+
+TEST(Normals, TheOtherSideOfAThinSheetIsNotTaken) {
+  // A sheet from y = -0.01 (facing down) to 0.01 (facing up), and the low mesh's upper side nearer to the sheet's lower
+  // one.
+  const TriangleMesh high = joined(shapes::plane(8, 1, 0.01f), turned_over(shapes::plane(8, 1, -0.01f)));
+  for (const float height : {-0.005f, -0.015f, 0.02f}) {
+    for (const double cage : {0.05, 0.01}) {
+      const NormalsResult result = make_normals(high, shapes::plane(2, 0.9f, height), {.size = 32, .cage = cage});
+      for_each_covered(result, [&](int i, int j) {
+        EXPECT_NEAR(vector_at(result.position, i, j).y(), 0.01f, 1e-6);
+        EXPECT_GT(decoded_at(result.normal, i, j).y(), 0.99f);
+      });
+    }
+  }
+}
+
+TEST(Normals, RaysPastARimDoNotTakeWhatLiesFarBehind) {
+  // The low mesh reaches 0.02 beyond the rim of a small square; inwards from there rays only meet a ground far below.
+  const TriangleMesh high = joined(shapes::plane(4, 0.2f, 0), shapes::plane(4, 2, -0.3f));
+  const NormalsResult result = make_normals(high, shapes::plane(2, 0.24f, 0.01f), {.size = 64, .cage = 0.5});
+  for_each_covered(result, [&](int i, int j) { EXPECT_NEAR(vector_at(result.position, i, j).y(), 0, 1e-6); });
+  // The rim's strip: 1 - (0.2 / 0.24)^2 = 0.306 of the area, to a texel's width (1/51 of a side) around.
+  EXPECT_NEAR(result.found_by_nearest_point, 0.306, 0.05);
+  EXPECT_EQ(result.disagreeing, 0);
+}
+
+TEST(Normals, ObliqueHitsGiveWayToStraightOnes) {
+  // Above the low plane at 0.02 lies a surface tilted by 65 degrees, below it at 0.03 one that is parallel.
+  TriangleMesh steep = shapes::plane(2, 1);
+  const Eigen::AngleAxisf tilt(static_cast<float>(65 * degree), Eigen::Vector3f::UnitX());
+  for (Eigen::Vector3f& p : steep.positions) p = tilt * p;
+  for (Eigen::Vector3f& n : steep.normals) n = tilt * n;
+  const TriangleMesh high = joined(steep, shapes::plane(2, 1, -0.03f));
+  TriangleMesh low = shapes::plane(1, 0.001f);
+  for (Eigen::Vector3f& p : low.positions) p.z() -= 0.02f / std::tan(static_cast<float>(65 * degree));
+  const NormalsResult result = make_normals(high, low, {.size = 16, .cage = 0.1});
+  for_each_covered(result, [&](int i, int j) { EXPECT_GT(decoded_at(result.normal, i, j).y(), 0.9f); });
+}
+
+TEST(Normals, CageComesFromTheHintOrFromMeasuring) {
+  const TriangleMesh high = shapes::plane(8, 1, 0.05f), low = shapes::plane(1, 1);
+  const NormalsResult hinted = make_normals(high, low, {.size = 16}, {.hausdorff_distance = 0.06});
+  EXPECT_EQ(hinted.cage_source, "simplify.json");
+  EXPECT_DOUBLE_EQ(hinted.cage_distance, 0.12);
+  const NormalsResult measured = make_normals(high, low, {.size = 16});
+  EXPECT_EQ(measured.cage_source, "measured");
+  EXPECT_NEAR(measured.cage_distance, 0.1, 1e-6);
+  EXPECT_EQ(measured.found_by_ray_outwards, 1);
+  // A mesh that is its own simplification: a cage that is small, but one.
+  const NormalsResult same = make_normals(low, low, {.size = 16});
+  EXPECT_GT(same.cage_distance, 0);
+  EXPECT_EQ(same.found_by_nearest_point, 0);
+  EXPECT_EQ(make_normals(high, low, {}, {.size = 48}).coverage.width(), 48);
+  EXPECT_EQ(make_normals(high, low, {.size = 24}, {.size = 48}).coverage.width(), 24);
+}
+
+TEST(Normals, BilinearLookupsInsideChartsSeeOnlyTheSphere) {
+  const int size = 96;
+  const TriangleMesh high = shapes::icosphere(6), low = shapes::cube_sphere(6);
+  for (const NormalSpace space : {NormalSpace::object, NormalSpace::tangent}) {
+    const NormalsResult result = make_normals(high, low, {.space = space, .size = size});
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> uniform;
+    for (int k = 0; k < 20'000; ++k) {
+      // A point of the low mesh, corners and edges of charts included.
+      const Triangle& t = low.triangles[random() % low.triangles.size()];
+      float u = uniform(random), v = uniform(random);
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      if (k % 3 == 0) v = 0;
+      const Eigen::Vector2f uv = (1 - u - v) * low.uvs[t[0]] + u * low.uvs[t[1]] + v * low.uvs[t[2]];
+      const Eigen::Vector3f wanted =
+          ((1 - u - v) * low.positions[t[0]] + u * low.positions[t[1]] + v * low.positions[t[2]]).normalized();
+      const Eigen::Vector2f texel = uv * static_cast<float>(size) - Eigen::Vector2f::Constant(0.5f);
+      const int i = static_cast<int>(std::floor(texel.x())), j = static_cast<int>(std::floor(texel.y()));
+      const float s = texel.x() - static_cast<float>(i), r = texel.y() - static_cast<float>(j);
+      const auto lookup = [&](const auto& at) -> Eigen::Vector3f {
+        return (1 - r) * ((1 - s) * at(i, j) + s * at(i + 1, j)) + r * ((1 - s) * at(i, j + 1) + s * at(i + 1, j + 1));
+      };
+      // A chart is 28 texels wide and 90 degrees: a texel is 0.056 to 0.075 of the radius. A ring texel holds the mean
+      // of texels up to one and a half away.
+      const Eigen::Vector3f position = lookup([&](int x, int y) { return vector_at(result.position, x, y); });
+      EXPECT_LT((position - wanted).norm(), 0.12f);
+      const Eigen::Vector3f normal = lookup([&](int x, int y) { return decoded_at(result.normal, x, y); });
+      if (space == NormalSpace::object) {
+        EXPECT_LT((normal - wanted).norm(), 0.12f);
+      } else {
+        EXPECT_GT(normal.z(), 0.98f);  // low and high normal are the radius, up to the low mesh's interpolation
+      }
+    }
+  }
+}
+
+class DetailMapsFolder : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(::testing::TempDir()) /
+              (std::string("kiln_detail_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  /// As main does it.
+  void save(const NormalsResult& result) const {
+    OutputSet outputs(folder_);
+    write_png(outputs.add("normal.png"), result.normal);
+    write_exr(outputs.add("position.exr"), result.position);
+    write_png(outputs.add("coverage.png"), result.coverage);
+    outputs.add_text("normals.json", Json{{"settings", {{"space", result.to_json()["space"]}}}}.dump());
+    outputs.commit();
+  }
+
+  void expect_refusal(const TriangleMesh& atlas, const std::string& words) const {
+    try {
+      load_detail_maps(folder_, atlas);
+      ADD_FAILURE() << "accepted, where a message with '" << words << "' was expected";
+    } catch (const BadInput& error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  }
+
+  std::filesystem::path folder_;
+};
+
+/// A sphere with dents, whose normals differ from the low sphere's by up to 40 degrees.
+TriangleMesh dented_sphere() {
+  TriangleMesh mesh = shapes::icosphere(6);
+  for (Eigen::Vector3f& p : mesh.positions)
+    p *= 1 + 0.03f * std::sin(20 * p.x()) * std::sin(17 * p.y()) * std::cos(15 * p.z());
+  compute_vertex_normals(mesh);
+  return mesh;
+}
+
+TEST_F(DetailMapsFolder, BothSpacesHoldTheSameNormals) {
+  const TriangleMesh high = dented_sphere(), low = shapes::cube_sphere(6);
+  const NormalsResult object = make_normals(high, low, {.size = 128});
+  save(object);
+  const DetailMaps from_object = load_detail_maps(folder_, low);
+  const NormalsResult tangent = make_normals(high, low, {.space = NormalSpace::tangent, .size = 128});
+  save(tangent);
+  const DetailMaps from_tangent = load_detail_maps(folder_, low);
+
+  ASSERT_EQ(from_object.width, 128);
+  ASSERT_EQ(from_object.height, 128);
+  EXPECT_EQ(from_object.position.values(), object.position.values());
+  EXPECT_EQ(from_object.covered, from_tangent.covered);
+  EXPECT_GT(object.normal_deviation_degrees_largest, 20) << "the test needs normals that deviate";
+  EXPECT_NEAR(object.normal_deviation_degrees_mean, tangent.normal_deviation_degrees_mean, 0.001);
+  for_each_covered(object, [&](int i, int j) {
+    EXPECT_EQ(from_object.covered[static_cast<std::size_t>(j) * 128 + i], 1);
+    const Eigen::Vector3f a = vector_at(from_object.normal_object, i, j),
+                          b = vector_at(from_tangent.normal_object, i, j);
+    EXPECT_NEAR(a.norm(), 1, 1e-6);
+    // Half a 16-bit step, 1.5e-5, per axis and map; the frames, not being orthonormal, stretch it a little.
+    EXPECT_LT((a - b).norm(), 8e-5f);
+  });
+  // Tangent-space maps look up everywhere: blue, whatever side of the sphere.
+  for_each_covered(tangent, [&](int i, int j) { EXPECT_GT(decoded_at(tangent.normal, i, j).z(), 0.5f); });
+  // Outside the charts normals are unit vectors too.
+  for (int j = 0; j < 128; ++j)
+    for (int i = 0; i < 128; ++i) {
+      EXPECT_NEAR(vector_at(from_object.normal_object, i, j).norm(), 1, 1e-5);
+      EXPECT_NEAR(vector_at(from_tangent.normal_object, i, j).norm(), 1, 1e-5);
+    }
+}
+
+TEST_F(DetailMapsFolder, WhatDoesNotBelongTogetherIsRefused) {
+  const TriangleMesh low = shapes::cube_sphere(4), high = shapes::icosphere(4);
+  const NormalsResult result = make_normals(high, low, {.size = 64});
+  save(result);
+  EXPECT_EQ(load_detail_maps(folder_, low).width, 64);
+  expect_refusal(shapes::plane(4), "not the atlas mesh's");
+
+  write_png(folder_ / "normal.png", Image<std::uint16_t>(64, 32, 3));
+  expect_refusal(low, "64 x 32");
+  write_png(folder_ / "normal.png", Image<std::uint8_t>(64, 64, 3));
+  expect_refusal(low, "8 bits");
+  std::filesystem::remove(folder_ / "normal.png");
+  expect_refusal(low, "normal.png");
+  save(result);
+  write_exr(folder_ / "position.exr", Image<float>(64, 64, 4));
+  expect_refusal(low, "4 channels");
+  write_exr(folder_ / "position.exr", Image<float>(64, 64, 3, std::nanf("")));
+  expect_refusal(low, "finite");
+  save(result);
+  for (const char* text : {"", "{", "[1]", "{}", R"({"settings": 3})", R"({"settings": {"space": "world"}})"}) {
+    std::ofstream(folder_ / "normals.json") << text;
+    expect_refusal(low, "normals.json");
+  }
+  std::filesystem::remove_all(folder_);
+  expect_refusal(low, "no such folder");
+}
+
+TEST_F(DetailMapsFolder, HintsOfEarlierStages) {
+  EXPECT_EQ(read_asset_hints(folder_).size, 0);
+  EXPECT_EQ(read_asset_hints(folder_).hausdorff_distance, 0);
+  std::ofstream(folder_ / "atlas.json") << R"({"stage": "atlas", "settings": {"size": 256}})";
+  std::ofstream(folder_ / "simplify.json") << R"({"hausdorff": 0.01, "hausdorff_distance": 2.5})";
+  EXPECT_EQ(read_asset_hints(folder_).size, 256);
+  EXPECT_EQ(read_asset_hints(folder_).hausdorff_distance, 2.5);
+  std::ofstream(folder_ / "simplify.json") << "{ \"hausdorff";
+  EXPECT_THROW(read_asset_hints(folder_), BadInput);
+}
+
+TEST(Normals, OneThreadAndManyGiveTheSameBytes) {
+  const TriangleMesh high = dented_sphere(), low = shapes::cube_sphere(6);
+  const auto run = [&](int threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    return make_normals(high, low, {.space = NormalSpace::tangent, .size = 128});
+  };
+  const NormalsResult one = run(1), many = run(4);
+  EXPECT_EQ(one.normal.values(), many.normal.values());
+  EXPECT_EQ(one.position.values(), many.position.values());
+  EXPECT_EQ(one.coverage.values(), many.coverage.values());
+  EXPECT_EQ(one.to_json(), many.to_json());
+}
+
+TEST(Normals, WhatCannotBeDoneIsSaid) {
+  const TriangleMesh high = shapes::icosphere(2);
+  TriangleMesh low = shapes::cube_sphere(1);
+  // A chart from 0.45 to 0.55 lies between the centres of two texels, 0.25 and 0.75.
+  EXPECT_THROW(make_normals(high, shapes::plane(1, 1, 0, 0.45f), {.size = 2}), WrongUsage);
+  EXPECT_THROW(make_normals({}, low, {}), std::invalid_argument);
+  low.normals.clear();
+  EXPECT_THROW(make_normals(high, low, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace kiln

@@ -1,0 +1,598 @@
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <gtest/gtest.h>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <string>
+#include <unistd.h>
+#include <vector>
+
+#include "base/errors.h"
+#include "base/outputs.h"
+#include "gpu/egl_context.h"
+#include "image/gutter.h"
+#include "image/image_file.h"
+#include "mesh/camera.h"
+#include "mesh/draco_file.h"
+#include "mesh/uv_raster.h"
+#include "relight/environment.h"
+#include "relight/picture.h"
+#include "relight/prt_asset.h"
+#include "relight/prt_renderer.h"
+#include "relight/relight.h"
+#include "relight/render_settings.h"
+#include "sh/basis.h"
+#include "sh/directions.h"
+#include "sh/light_spec.h"
+#include "shapes.h"
+
+namespace kiln {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// A folder that goes with the test.
+class Scratch {
+ public:
+  Scratch() {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / ("kiln-" + std::string(test->name()) + "-" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  ~Scratch() { fs::remove_all(folder_); }
+  const fs::path& folder() const { return folder_; }
+
+ private:
+  fs::path folder_;
+};
+
+/// A coefficient stack to be written; planes as in ranges.json, values in the planes' own units.
+struct Stack {
+  int width = 0, height = 0, bands = 1, channels = 1, bits = 8;
+  std::vector<Image<float>> planes;
+};
+
+template <class Texel>
+void write_plane(const fs::path& file, const Image<float>& plane, double lowest, double highest) {
+  const double white = std::numeric_limits<Texel>::max();
+  Image<Texel> stored(plane.width(), plane.height(), 1);
+  for (std::size_t k = 0; k < plane.values().size(); ++k)
+    stored.values()[k] =
+        highest > lowest ? static_cast<Texel>(std::lround((plane.values()[k] - lowest) / (highest - lowest) * white))
+                         : Texel{0};
+  write_png(file, stored);
+}
+
+/// Writes what kiln-bake would, by the contract.
+void write_asset(const fs::path& folder, const TriangleMesh& mesh, const Stack& stack) {
+  json planes = json::array();
+  for (std::size_t k = 0; k < stack.planes.size(); ++k) {
+    const int channel = static_cast<int>(k) / (stack.bands * stack.bands);
+    const int coefficient = static_cast<int>(k) % (stack.bands * stack.bands);
+    const std::string name =
+        "coeff_" + std::to_string(channel) + (coefficient < 10 ? "_0" : "_") + std::to_string(coefficient) + ".png";
+    const auto [low, high] = std::minmax_element(stack.planes[k].values().begin(), stack.planes[k].values().end());
+    if (stack.bits == 8)
+      write_plane<std::uint8_t>(folder / name, stack.planes[k], *low, *high);
+    else
+      write_plane<std::uint16_t>(folder / name, stack.planes[k], *low, *high);
+    planes.push_back(
+        {{"file", name}, {"channel", channel}, {"coefficient", coefficient}, {"min", *low}, {"max", *high}});
+  }
+  const json ranges = {{"format", "kiln-prt"},   {"version", 1},
+                       {"bands", stack.bands},   {"channels", stack.channels},
+                       {"bits", stack.bits},     {"width", stack.width},
+                       {"height", stack.height}, {"basis", "real-sh-orthonormal"},
+                       {"mesh", "atlas.drc"},    {"normals", "normal.png"},
+                       {"planes", planes}};
+  std::ofstream(folder / "ranges.json") << ranges.dump();
+  save_draco(folder / "atlas.drc", mesh);
+}
+
+/// Unoccluded transfer over the atlas of a convex mesh, the same in all channels; `tints` scales the channels.
+Stack unoccluded_stack(const TriangleMesh& mesh, int width, int height, int bands, int bits,
+                       std::vector<float> tints = {1}) {
+  Stack stack{width, height, bands, static_cast<int>(tints.size()), bits, {}};
+  const ShBasis basis(bands);
+  const UvRaster raster = rasterise_uvs(mesh, width, height);
+  std::vector<std::uint8_t> covered;
+  for (const TexelSource& source : raster.texels) covered.push_back(source.covered());
+  stack.planes.assign(static_cast<std::size_t>(basis.size()), Image<float>(width, height, 1));
+  for (std::size_t k = 0; k < raster.texels.size(); ++k) {
+    if (covered[k] == 0) continue;
+    const std::vector<float> transfer =
+        unoccluded_transfer(basis, interpolate(mesh, mesh.normals, raster.texels[k]).normalized());
+    for (int i = 0; i < basis.size(); ++i) stack.planes[i].values()[k] = transfer[i];
+  }
+  for (Image<float>& plane : stack.planes) fill_gutters(plane, covered);
+  const std::vector<Image<float>> one = stack.planes;
+  stack.planes.clear();
+  for (const float tint : tints)
+    for (Image<float> plane : one) {
+      for (float& value : plane.values()) value *= tint;
+      stack.planes.push_back(std::move(plane));
+    }
+  return stack;
+}
+
+/// Noise in every plane, of a range of its own; one plane is constant (min = max).
+Stack noise_stack(int width, int height, int bands, int channels, int bits) {
+  Stack stack{width, height, bands, channels, bits, {}};
+  std::mt19937 random(7);
+  for (int k = 0; k < channels * bands * bands; ++k) {
+    std::uniform_real_distribution<float> value(-0.1f * static_cast<float>(k % 3),
+                                                0.05f + 0.02f * static_cast<float>(k % 5));
+    Image<float>& plane = stack.planes.emplace_back(width, height, 1, 0.125f);
+    if (k == 2) continue;
+    for (float& texel : plane.values()) texel = value(random);
+  }
+  return stack;
+}
+
+std::unique_ptr<EglContext> software_context() { return std::make_unique<EglContext>("software"); }
+
+PrtView small_view(const TriangleMesh& mesh, double azimuth, double elevation, int supersample = 1) {
+  RenderSettings settings;
+  settings.width = 160;
+  settings.height = 120;
+  settings.supersample = supersample;
+  settings.camera = std::to_string(azimuth) + "," + std::to_string(elevation);
+  return view_of(settings, bounding_box(mesh));
+}
+
+// ---- lights ----
+
+TEST(LightSpec, ReadsEveryForm) {
+  const LightSpec plain = parse_light_spec("-60,20");
+  EXPECT_EQ(plain.kind, LightSpec::Kind::directional);
+  EXPECT_EQ(plain.azimuth_degrees, -60);
+  EXPECT_EQ(plain.elevation_degrees, 20);
+  EXPECT_EQ(plain.colour, (std::array<float, 3>{1, 1, 1}));
+  const LightSpec coloured = parse_light_spec("directional:12.5,-3e1,1,0.9,0.25");
+  EXPECT_EQ(coloured.azimuth_degrees, 12.5);
+  EXPECT_EQ(coloured.elevation_degrees, -30);
+  EXPECT_EQ(coloured.colour, (std::array<float, 3>{1, 0.9f, 0.25f}));
+  EXPECT_EQ(parse_light_spec("ambient:2").colour, (std::array<float, 3>{2, 2, 2}));
+  EXPECT_EQ(parse_light_spec("ambient:1,2,3").kind, LightSpec::Kind::ambient);
+  for (const char* text : {"45,30", "directional:-0.1,7,0.1,0.2,0.3", "ambient:0.7"})
+    EXPECT_EQ(to_text(parse_light_spec(to_text(parse_light_spec(text)))), to_text(parse_light_spec(text)));
+}
+
+TEST(LightSpec, RefusesWhatIsNoLight) {
+  for (const char* text : {"",         "45",         "45,30,1",     "45,30,1,1",    "45,30,1,1,1,1", "45;30",  "45,91",
+                           "400,0",    "nan,0",      "inf,3",       "45,30,-1,0,0", "45,30 ",        "45,,30", "45,30,",
+                           "ambient:", "ambient:-1", "ambient:1,2", "ambient:x",    "sun:1,2",       "1e999,0"})
+    EXPECT_THROW(parse_light_spec(text), WrongUsage) << text;
+}
+
+TEST(LightSpec, SumsAndWindowsLights) {
+  const std::vector<LightSpec> specs = {parse_light_spec("0,90,2,0,0"), parse_light_spec("ambient:0,3,0")};
+  const LightCoefficients plain = light_coefficients(specs, 3, LightWindow::none);
+  const LightCoefficients hann = light_coefficients(specs, 3, LightWindow::hann);
+  // Red: pi * 2 * Y_1^-1(+Y); green: 3 * sqrt(4 pi) in band 0 alone, which no window changes.
+  EXPECT_NEAR(plain.channels[0][1], 2 * M_PI * 0.488603, 1e-5);
+  EXPECT_NEAR(hann.channels[0][1], 2 * M_PI * 0.488603 * 0.75, 1e-5);  // (1 + cos(pi / 3)) / 2
+  EXPECT_NEAR(plain.channels[1][0], 3 * std::sqrt(4 * M_PI), 1e-5);
+  EXPECT_EQ(hann.channels[1][0], plain.channels[1][0]);
+  EXPECT_EQ(plain.channels[2], std::vector<float>(9, 0.f));
+}
+
+TEST(Environment, OfOneRadianceIsAmbientLight) {
+  const Scratch scratch;
+  const fs::path file = scratch.folder() / "grey.exr";
+  write_exr(file, Image<float>(64, 32, 3, 0.75f));
+  const LightCoefficients light = load_environment(file, 5, 33);
+  const LightCoefficients expected = constant_light(5, std::array<float, 3>{0.75f, 0.75f, 0.75f});
+  // Each row's pixels are weighted by their exact solid angle, but higher bands are sampled at 64 x 32 pixels.
+  for (int c = 0; c < 3; ++c)
+    for (int i = 0; i < 25; ++i) EXPECT_NEAR(light.channels[c][i], expected.channels[c][i], i == 0 ? 1e-5 : 3e-3) << i;
+}
+
+TEST(Environment, TurnsByAzimuth) {
+  const Scratch scratch;
+  // A spot at +X (azimuth 90): u = 1/2, v = 1/2. Turned by 60 degrees it is at azimuth 150. Large enough to be reduced.
+  Image<float> picture(2048, 1024, 3, 0.f);
+  for (int j = 508; j < 516; ++j)
+    for (int i = 1020; i < 1028; ++i) picture.at(i, j, 1) = 1000;
+  const fs::path file = scratch.folder() / "spot.exr";
+  write_exr(file, picture);
+  const float solid_angle = 8.f * 8.f * static_cast<float>(2 * M_PI / 2048 * M_PI / 1024);
+  for (const double rotation : {0.0, 60.0, -200.0}) {
+    const LightCoefficients light = load_environment(file, 4, rotation);
+    std::vector<double> basis(16);
+    ShBasis(4).evaluate<double>(direction_from_angles(90 + rotation, 0).cast<double>(), basis);
+    for (int i = 0; i < 16; ++i) {
+      // The spot is 1.4 degrees wide, and 3 bands turn at most 3 times as fast as the light.
+      EXPECT_NEAR(light.channels[1][i], 1000 * solid_angle * basis[i], 0.01) << rotation << " " << i;
+      EXPECT_EQ(light.channels[0][i], 0);
+    }
+  }
+}
+
+TEST(Environment, RefusesWhatIsNoRadiance) {
+  const Scratch scratch;
+  const fs::path file = scratch.folder() / "bad.exr";
+  Image<float> picture(8, 4, 3, 1.f);
+  picture.at(3, 2, 1) = std::numeric_limits<float>::quiet_NaN();
+  write_exr(file, picture);
+  EXPECT_THROW(load_environment(file, 3, 0), BadInput);
+  EXPECT_THROW(load_environment(scratch.folder() / "none.hdr", 3, 0), BadInput);
+}
+
+// ---- assets ----
+
+TEST(PrtAsset, GivesWhatWasWritten) {
+  const Scratch scratch;
+  const TriangleMesh mesh = shapes::plane(2);
+  for (const int bits : {8, 16}) {
+    write_asset(scratch.folder(), mesh, noise_stack(16, 8, 2, 3, bits));
+    const PrtAsset asset = load_prt_asset(scratch.folder());
+    EXPECT_EQ(asset.bands, 2);
+    EXPECT_EQ(asset.channels, 3);
+    EXPECT_EQ(asset.bits, bits);
+    EXPECT_EQ(asset.width, 16);
+    EXPECT_EQ(asset.height, 8);
+    ASSERT_EQ(asset.planes.size(), 12u);
+    EXPECT_EQ(asset.planes[7].channel, 1);
+    EXPECT_EQ(asset.planes[7].coefficient, 3);
+    EXPECT_EQ(asset.planes[2].lowest, asset.planes[2].highest);
+    EXPECT_EQ(asset.mesh.triangles.size(), 8u);
+    EXPECT_EQ(asset.pictures.index(), bits == 8 ? 0u : 1u);
+  }
+}
+
+TEST(PrtAsset, RefusesMalformedFolders) {
+  using Change = std::function<void(json&, const fs::path&)>;
+  const auto set = [](const char* pointer, json value) -> Change {
+    return [=](json& ranges, const fs::path&) { ranges[json::json_pointer(pointer)] = value; };
+  };
+  const auto drop = [](const char* key) -> Change { return [=](json& ranges, const fs::path&) { ranges.erase(key); }; };
+  const auto text = [](const char* name, const char* content) -> Change {
+    return [=](json&, const fs::path& folder) { std::ofstream(folder / name, std::ios::trunc) << content; };
+  };
+  struct Case {
+    const char* name;
+    Change change;
+    const char* words;  // of the message
+  };
+  const std::vector<Case> cases = {
+      {"no format", drop("format"), "has no format"},
+      {"no version", drop("version"), "has no version"},
+      {"no bands", drop("bands"), "has no bands"},
+      {"no channels", drop("channels"), "has no channels"},
+      {"no bits", drop("bits"), "has no bits"},
+      {"no width", drop("width"), "has no width"},
+      {"no height", drop("height"), "has no height"},
+      {"no basis", drop("basis"), "has no basis"},
+      {"no mesh", drop("mesh"), "has no mesh"},
+      {"no planes", drop("planes"), "has no planes"},
+      {"other format", set("/format", "png-stack"), "kiln-prt"},
+      {"other basis", set("/basis", "complex"), "real-sh-orthonormal"},
+      {"newer version", set("/version", 2), "version is 2"},
+      {"bands as text", set("/bands", "2"), "bands is \"2\""},
+      {"bands as real", set("/bands", 2.5), "bands is 2.5"},
+      {"no bands at all", set("/bands", 0), "1 to 24"},
+      {"too many bands", set("/bands", 99), "1 to 24"},
+      {"huge bands", set("/bands", 18446744073709551615u), "1 to 24"},
+      {"other bands", set("/bands", 3), "a list of 9 planes"},
+      {"other channels", set("/channels", 2), "a list of 8 planes"},
+      {"12 bits", set("/bits", 12), "8 or 16"},
+      {"other bits", set("/bits", 16), "16 bits"},
+      {"other width", set("/width", 32), "32 x 8"},
+      {"other height", set("/height", 16), "16 x 16"},
+      {"negative width", set("/width", -16), "width is -16"},
+      {"planes no list", set("/planes", 4), "planes"},
+      {"plane no object", set("/planes/1", 4), "planes[1] is 4"},
+      {"plane twice", set("/planes/1/coefficient", 0), "coefficient 1 of channel 0"},
+      {"plane of another channel", set("/planes/1/channel", 1), "planes[1].channel"},
+      {"negative coefficient", set("/planes/3/coefficient", -1), "planes[3].coefficient"},
+      {"no min", [](json& ranges, const fs::path&) { ranges["planes"][2].erase("min"); }, "planes[2].min"},
+      {"min above max", set("/planes/1/min", 7), "min <= max"},
+      {"max null", set("/planes/1/max", nullptr), "finite"},
+      {"max beyond float", set("/planes/1/max", 1e200), "finite"},
+      {"mesh absolute", set("/mesh", "/etc/passwd"), "inside the folder"},
+      {"mesh outside", set("/mesh", "sub/../../atlas.drc"), "inside the folder"},
+      {"mesh with zero", set("/mesh", std::string("atlas.drc\0x", 11)), "inside the folder"},
+      {"mesh empty", set("/mesh", ""), "inside the folder"},
+      {"mesh missing", set("/mesh", "other.drc"), "other.drc"},
+      {"normals outside", set("/normals", "../normal.png"), "inside the folder"},
+      {"file outside", set("/planes/0/file", "../coeff_0_00.png"), "inside the folder"},
+      {"file a number", set("/planes/0/file", 4), "planes[0].file"},
+      {"file missing", set("/planes/3/file", "coeff_0_99.png"), "coeff_0_99.png"},
+      {"mesh no Draco", text("atlas.drc", "solid"), "atlas.drc"},
+      {"mesh empty file", text("atlas.drc", ""), "atlas.drc"},
+      {"PNG empty", text("coeff_0_02.png", ""), "coeff_0_02.png"},
+      {"PNG no PNG", text("coeff_0_02.png", "GIF89a"), "coeff_0_02.png"},
+      {"PNG truncated",
+       [](json&, const fs::path& folder) {
+         fs::resize_file(folder / "coeff_0_02.png", fs::file_size(folder / "coeff_0_02.png") / 2);
+       },
+       "coeff_0_02.png"},
+      {"PNG in colour",
+       [](json&, const fs::path& folder) { write_png(folder / "coeff_0_02.png", Image<std::uint8_t>(16, 8, 3)); },
+       "3 channels"},
+      {"mesh without uvs",
+       [](json&, const fs::path& folder) { save_draco(folder / "atlas.drc", shapes::icosphere(0)); },
+       "texture coordinates"},
+      {"mesh without size",
+       [](json&, const fs::path& folder) {
+         TriangleMesh mesh = shapes::plane(1);
+         for (Eigen::Vector3f& position : mesh.positions) position.setZero();
+         save_draco(folder / "atlas.drc", mesh);
+       },
+       "atlas.drc"},
+  };
+  const Scratch scratch;
+  const fs::path folder = scratch.folder() / "prt";
+  for (const Case& test : cases) {
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    write_asset(folder, shapes::plane(2), noise_stack(16, 8, 2, 1, 8));
+    ASSERT_NO_THROW(load_prt_asset(folder));
+    json ranges = json::parse(read_text(folder / "ranges.json"));
+    test.change(ranges, folder);
+    std::ofstream(folder / "ranges.json") << ranges.dump();
+    try {
+      load_prt_asset(folder);
+      ADD_FAILURE() << test.name << ": not refused";
+    } catch (const BadInput& error) {
+      EXPECT_NE(std::string(error.what()).find(test.words), std::string::npos) << test.name << ": " << error.what();
+    }
+  }
+  for (const char* content : {"", "[1, 2", "[]", "null", "{\"bands\": 1e999}"}) {
+    std::ofstream(folder / "ranges.json") << content;
+    EXPECT_THROW(load_prt_asset(folder), BadInput) << content;
+  }
+  fs::remove(folder / "ranges.json");
+  EXPECT_THROW(load_prt_asset(folder), BadInput);
+  EXPECT_THROW(load_prt_asset(folder / "atlas.drc"), BadInput);
+}
+
+// ---- relighting ----
+
+TEST(Relight, FurnaceGivesTheAlbedo) {
+  const Scratch scratch;
+  const TriangleMesh mesh = shapes::cube_sphere(8);
+  const auto context = software_context();
+  const std::array<float, 3> albedo = {0.8f, 0.5f, 0.1f};
+  for (const int bits : {8, 16}) {
+    write_asset(scratch.folder(), mesh, unoccluded_stack(mesh, 96, 64, 5, bits));
+    const PrtAsset asset = load_prt_asset(scratch.folder());
+    PrtView view = small_view(mesh, 20, 12, 2);
+    view.albedo = albedo;
+    const Image<float> picture = PrtRenderer(asset).render(constant_light(5, std::array<float, 3>{1, 1, 1}), view);
+    // t_0 is the same everywhere: min = max, so that nothing is lost to quantisation. What remains is float32.
+    double covered = 0;
+    for (int j = 0; j < picture.height(); ++j)
+      for (int i = 0; i < picture.width(); ++i)
+        for (int c = 0; c < 3; ++c) {
+          ASSERT_NEAR(picture.at(i, j, c), albedo[c] * picture.at(i, j, 3), 1e-6) << i << ", " << j;
+          covered += picture.at(i, j, 3) / 3;
+        }
+    // The camera's margin: a sphere of 1/1.06 * 1/sqrt(3) (the box around a sphere has a larger one) of the height,
+    // seen at close range; about a fifth of the picture.
+    EXPECT_NEAR(covered / (160 * 120), 0.18, 0.05);
+  }
+}
+
+TEST(Relight, DirectionalLightIsTheTruncatedCosine) {
+  const Scratch scratch;
+  const TriangleMesh mesh = shapes::cube_sphere(48);
+  const auto context = software_context();
+  write_asset(scratch.folder(), mesh, unoccluded_stack(mesh, 384, 256, 5, 16));
+  const PrtAsset asset = load_prt_asset(scratch.folder());
+  const PrtView view = small_view(mesh, -35, 25);
+  const Eigen::Vector3f towards = direction_from_angles(-70, 40);
+  const Image<float> picture = PrtRenderer(asset).render(
+      light_coefficients(std::vector<LightSpec>{parse_light_spec("-70,40")}, 5, LightWindow::none), view);
+  int compared = 0;
+  for (int j = 0; j < view.height; ++j)
+    for (int i = 0; i < view.width; ++i) {
+      const Eigen::Vector3f ray = view.camera.pixel_direction(i, j, view.width, view.height),
+                            from = view.camera.position;
+      const float half_b = from.dot(ray), determinant = half_b * half_b - from.squaredNorm() + 1;
+      if (determinant < 0.05f) {
+        // Outside, or at the silhouette, where facets and normals part.
+        if (determinant < -0.01f) {
+          ASSERT_EQ(picture.at(i, j, 3), 0) << i << ", " << j;
+        }
+        continue;
+      }
+      const Eigen::Vector3f normal = from - (half_b + std::sqrt(determinant)) * ray;
+      // Ramamoorthi and Hanrahan 2001: sum of A_l (2l+1)/(4 pi) P_l with A = pi, 2 pi/3, pi/4, 0, -pi/24.
+      const double x = normal.dot(towards);
+      const double legendre2 = (3 * x * x - 1) / 2, legendre4 = (35 * x * x * x * x - 30 * x * x + 3) / 8;
+      const double expected = 0.8 * (0.25 + 0.5 * x + 5.0 / 16 * legendre2 - 3.0 / 32 * legendre4);
+      ASSERT_EQ(picture.at(i, j, 3), 1);
+      // A facet spans 0.04 radians, so that its middle lies 2e-4 too deep, which at a slant of 1:4 shifts the point by
+      // 1e-3; the slope of the cosine is about 1. At the charts' borders (the cube's edges) half of a lookup is gutter,
+      // which repeats a texel of 0.016 radians. A flipped axis would be off by up to 0.8.
+      Eigen::Vector3f sides = normal.cwiseAbs();
+      std::sort(sides.begin(), sides.end());
+      const bool at_border = sides[1] > 0.96f * sides[2];
+      ASSERT_NEAR(picture.at(i, j, 0), expected, at_border ? 8e-3 : 1.5e-3) << i << ", " << j;
+      ++compared;
+    }
+  EXPECT_GT(compared, 2000);
+}
+
+TEST(Relight, GpuAndCpuAgree) {
+  const Scratch scratch;
+  const TriangleMesh mesh = shapes::plane(1);
+  const auto context = software_context();
+  const std::array<float, 3> albedo = {1, 0.6f, 0.3f};
+  const std::vector<LightSpec> lights = {parse_light_spec("30,50,1,0.5,0.2"), parse_light_spec("-120,10,0,0.5,1"),
+                                         parse_light_spec("ambient:0.3")};
+  for (const int bits : {8, 16})
+    for (const int channels : {1, 3}) {
+      write_asset(scratch.folder(), mesh, noise_stack(24, 20, 4, channels, bits));
+      const PrtAsset asset = load_prt_asset(scratch.folder());
+      PrtView view = small_view(asset.mesh, 10, 60);
+      view.albedo = albedo;
+      const LightCoefficients light = light_coefficients(lights, 4, LightWindow::hann);
+      const Image<float> gpu = PrtRenderer(asset).render(light, view);
+      const Image<float> cpu = relight_texels(asset, light, albedo);
+      double largest = 0, brightest = 0;
+      for (int j = 0; j < view.height; ++j)
+        for (int i = 0; i < view.width; ++i) {
+          const Eigen::Vector3f ray = view.camera.pixel_direction(i, j, view.width, view.height);
+          const Eigen::Vector3f point = view.camera.position - view.camera.position.y() / ray.y() * ray;
+          if (std::max(std::abs(point.x()), std::abs(point.z())) > 0.495f) continue;
+          const float x = (0.1f + 0.8f * (point.x() + 0.5f)) * 24 - 0.5f,
+                      y = (0.1f + 0.8f * (0.5f - point.z())) * 20 - 0.5f;
+          const int column = static_cast<int>(x), row = static_cast<int>(y);
+          const float s = x - static_cast<float>(column), t = y - static_cast<float>(row);
+          for (int c = 0; c < 3; ++c) {
+            const float expected = (1 - t) * ((1 - s) * cpu.at(column, row, c) + s * cpu.at(column + 1, row, c)) +
+                                   t * ((1 - s) * cpu.at(column, row + 1, c) + s * cpu.at(column + 1, row + 1, c));
+            largest = std::max<double>(largest, std::abs(expected - gpu.at(i, j, c)));
+            brightest = std::max<double>(brightest, std::abs(expected));
+          }
+        }
+      std::printf("bits %d, channels %d: largest difference %.5f of %.3f\n", bits, channels, largest, brightest);
+      // A software renderer filters 8-bit textures in 8 bits, half a step off in each of 16 planes; 16-bit ones in
+      // float.
+      EXPECT_LT(largest, (bits == 8 ? 0.01 : 1e-4) * brightest) << bits << " bits, " << channels << " channels";
+    }
+}
+
+TEST(Relight, ChannelsAreColours) {
+  const Scratch scratch;
+  const TriangleMesh mesh = shapes::plane(1);
+  const LightCoefficients white = constant_light(2, std::array<float, 3>{1, 1, 1});
+  write_asset(scratch.folder(), mesh, unoccluded_stack(mesh, 16, 16, 2, 8, {1, 0.5f, 0.25f}));
+  const Image<float> colours = relight_texels(load_prt_asset(scratch.folder()), white, {1, 1, 1});
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(colours.at(8, 8, c), std::pow(0.5, c), 1e-6);
+  write_asset(scratch.folder(), mesh, unoccluded_stack(mesh, 16, 16, 2, 8, {1, 1, 1, 1}));
+  EXPECT_THROW(relight_texels(load_prt_asset(scratch.folder()), white, {1, 1, 1}), BadInput);
+}
+
+TEST(Relight, TilesMakeOnePicture) {
+  const Scratch scratch;
+  const TriangleMesh mesh = shapes::cube_sphere(8);
+  const auto context = software_context();
+  write_asset(scratch.folder(), mesh, unoccluded_stack(mesh, 48, 32, 3, 16));
+  const PrtAsset asset = load_prt_asset(scratch.folder());
+  const PrtRenderer renderer(asset);
+  const LightCoefficients light =
+      light_coefficients(std::vector<LightSpec>{parse_light_spec("70,10")}, 3, LightWindow::hann);
+  // The same samples in tiles of 2,045 and of 2,048 a side.
+  PrtView view = small_view(mesh, 20, 12, 5);
+  view.width = 600;
+  view.height = 450;
+  const Image<float> filtered = renderer.render(light, view);
+  view.width = 3000;
+  view.height = 2250;
+  view.supersample = 1;
+  const Image<float> samples = renderer.render(light, view);
+  int different = 0;
+  double covered = 0;
+  for (int j = 0; j < filtered.height(); ++j)
+    for (int i = 0; i < filtered.width(); ++i) {
+      double radiance = 0, coverage = 0;
+      for (int k = 0; k < 25; ++k) {
+        radiance += samples.at(5 * i + k % 5, 5 * j + k / 5, 0) / 25;
+        coverage += samples.at(5 * i + k % 5, 5 * j + k / 5, 3) / 25;
+      }
+      covered += coverage;
+      different += std::abs(filtered.at(i, j, 3) - coverage) > 1e-5 || std::abs(filtered.at(i, j, 0) - radiance) > 1e-3;
+    }
+  EXPECT_GT(covered, 30000);
+  // Rounding moves vertices by up to 1/256 sample, and so a sample at an edge now and then to the other side of it.
+  EXPECT_LT(different, 100);
+}
+
+TEST(Relight, ManyPlanesGoThrough) {
+  // 24 bands of three channels: 1,728 layers, of the 2,048 that every GL 4.5 device has.
+  const Scratch scratch;
+  const TriangleMesh mesh = shapes::plane(1);
+  const auto context = software_context();
+  write_asset(scratch.folder(), mesh, noise_stack(4, 4, 24, 3, 8));
+  const PrtAsset asset = load_prt_asset(scratch.folder());
+  LightCoefficients light = constant_light(24, std::array<float, 3>{0, 0, 0});
+  light.channels[2][575] = 1;  // the last plane of all
+  PrtView view = small_view(asset.mesh, 0, 60);
+  view.albedo = {1, 1, 1};
+  const Image<float> gpu = PrtRenderer(asset).render(light, view);
+  const Image<float> cpu = relight_texels(asset, light, {1, 1, 1});
+  const auto [low, high] = std::minmax_element(cpu.values().begin(), cpu.values().end());
+  EXPECT_GT(*high, 0.01f);
+  const std::span<const float> middle = gpu.pixel(80, 60);
+  EXPECT_EQ(middle[0], 0);
+  EXPECT_NE(middle[2], 0);
+  EXPECT_GE(middle[2], *low);
+  EXPECT_LE(middle[2], *high);
+}
+
+// ---- pictures ----
+
+TEST(Picture, CurvesExposureAndBackground) {
+  Image<float> radiance(2, 1, 4, 0.f);
+  const std::array<float, 4> half_covered = {0.25f, 0.1f, -0.1f, 0.5f};  // radiance 0.5, 0.2, -0.2 times coverage
+  std::copy(half_covered.begin(), half_covered.end(), radiance.pixel(1, 0).begin());
+  PictureSettings settings;
+  const Image<std::uint8_t> transparent = picture_from_radiance(radiance, settings);
+  // sRGB of linear 0.5 is 0.7354, of 0.2 is 0.4845 (IEC 61966-2-1).
+  EXPECT_EQ(std::vector<int>(transparent.pixel(1, 0).begin(), transparent.pixel(1, 0).end()),
+            (std::vector<int>{188, 124, 0, 128}));
+  EXPECT_EQ(transparent.at(0, 0, 3), 0);
+  settings.tone = ToneCurve::linear;
+  settings.exposure_stops = 1;
+  EXPECT_EQ(picture_from_radiance(radiance, settings).at(1, 0, 1), 102);  // 2 * 0.2 * 255
+  settings.background = {{0.2f, 0.4f, 1}};
+  const Image<std::uint8_t> opaque = picture_from_radiance(radiance, settings);
+  EXPECT_EQ(opaque.channels(), 3);
+  EXPECT_EQ(opaque.at(0, 0, 1), 102);
+  EXPECT_EQ(opaque.at(1, 0, 0), 153);  // (2 * 0.25 + 0.5 * 0.2) * 255
+  EXPECT_EQ(opaque.at(1, 0, 2), 128);  // ringing below 0 takes nothing from the background
+}
+
+TEST(Picture, ExrKeepsTheRadiance) {
+  const Scratch scratch;
+  Image<float> radiance(3, 2, 4, 0.f);
+  for (std::size_t k = 0; k < radiance.values().size(); ++k) radiance.values()[k] = 0.3f * static_cast<float>(k) - 1;
+  PictureSettings settings;
+  settings.exposure_stops = 3;
+  write_picture(scratch.folder() / "radiance.exr", radiance, settings);
+  EXPECT_EQ(read_float_image(scratch.folder() / "radiance.exr").values(), radiance.values());
+  EXPECT_THROW(require_picture_name("picture.jpg"), WrongUsage);
+}
+
+TEST(RenderSettings, DefaultsAreTheCameras) {
+  const TriangleMesh mesh = shapes::cube_sphere(2);
+  const RenderSettings settings;
+  const PrtView view = view_of(settings, bounding_box(mesh));
+  const Camera expected = make_camera(bounding_box(mesh), CameraSettings{}, view.width, view.height);
+  EXPECT_EQ(view.camera.position, expected.position);
+  EXPECT_EQ(view.camera.half_height, expected.half_height);
+}
+
+TEST(RenderSettings, RefusesWhatIsNoView) {
+  const BoundingBox box = bounding_box(shapes::plane(1));
+  for (const char* camera : {"", "20", "20,91", "20,12,3", "a,b"}) {
+    RenderSettings settings;
+    settings.camera = camera;
+    EXPECT_THROW(view_of(settings, box), WrongUsage) << camera;
+  }
+  RenderSettings settings;
+  settings.albedo = "1.5";
+  EXPECT_THROW(view_of(settings, box), WrongUsage);
+  settings.background = "0.1,0.2";
+  EXPECT_THROW(picture_of(settings), WrongUsage);
+  LightSettings lights;
+  EXPECT_EQ(light_specs(lights).size(), 1u);
+  lights.ambient = "1";
+  EXPECT_EQ(light_specs(lights).size(), 1u);
+  lights.ambient = "much";
+  EXPECT_THROW(light_specs(lights), WrongUsage);
+}
+
+}  // namespace
+}  // namespace kiln

@@ -1,0 +1,176 @@
+// What the report computes by itself: budgets, pictures, the reference picture, and the text around them.
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+
+#include "base/errors.h"
+#include "image/image_file.h"
+#include "report/budget.h"
+#include "report/labels.h"
+#include "report/pictures.h"
+#include "report/process.h"
+#include "report/reference.h"
+#include "report/report_settings.h"
+#include "sh/directions.h"
+
+namespace kiln {
+namespace {
+
+TEST(Budget, ReadsBothRelations) {
+  const Budget highest = parse_budget("simplify.hausdorff<=0.012");
+  EXPECT_EQ(highest.metric, "simplify.hausdorff");
+  EXPECT_TRUE(highest.is_highest);
+  EXPECT_EQ(highest.limit, 0.012);
+  EXPECT_FALSE(parse_budget("atlas.utilisation>=-1e-3").is_highest);
+}
+
+TEST(Budget, RefusesWhatIsNone) {
+  for (const char* text : {"", "simplify.rms", "simplify.rms<0.1", "<=1", "simplify.rms<=", "simplify.rms<=x",
+                           "simplify.rms<=1 ", "simplify.rms<=inf"})
+    EXPECT_THROW(parse_budget(text), WrongUsage) << text;
+}
+
+TEST(Budget, JudgesIncludingTheLimitItself) {
+  const Json metrics = {
+      {"atlas", {{"charts", 7}, {"whole", true}, {"broken", nullptr}, {"inner", {{"x", 0.5}}}, {"name", "n"}}}};
+  EXPECT_TRUE(judge_budget(parse_budget("atlas.charts<=7"), metrics).met);
+  EXPECT_TRUE(judge_budget(parse_budget("atlas.charts>=7"), metrics).met);
+  EXPECT_FALSE(judge_budget(parse_budget("atlas.charts<=6.9"), metrics).met);
+  EXPECT_TRUE(judge_budget(parse_budget("atlas.whole>=1"), metrics).met);
+  EXPECT_TRUE(judge_budget(parse_budget("atlas.inner.x<=0.5"), metrics).met);
+  // JSON writes NaN and infinity as null; neither may pass for a good value.
+  EXPECT_FALSE(judge_budget(parse_budget("atlas.broken<=1"), metrics).met);
+  EXPECT_FALSE(judge_budget(parse_budget("atlas.broken>=-1"), metrics).met);
+  for (const char* text : {"atlas.chart<=1", "bake.x<=1", "atlas<=1", "atlas.name<=1", "atlas.charts.x<=1"})
+    EXPECT_THROW(judge_budget(parse_budget(text), metrics), WrongUsage) << text;
+}
+
+TEST(Base64, VectorsOfRfc4648) {
+  const std::pair<const char*, const char*> vectors[] = {{"", ""},
+                                                         {"f", "Zg=="},
+                                                         {"fo", "Zm8="},
+                                                         {"foo", "Zm9v"},
+                                                         {"foob", "Zm9vYg=="},
+                                                         {"fooba", "Zm9vYmE="},
+                                                         {"foobar", "Zm9vYmFy"}};
+  for (const auto& [bytes, text] : vectors) EXPECT_EQ(base64(bytes), text);
+  EXPECT_EQ(base64("\xff\xfe\xfd"), "//79");  // bytes above 127 are not negative
+}
+
+TEST(Pictures, DifferenceIsRedWhereTheAssetIsBrighter) {
+  Image<float> a(4, 1, 4, 0.f), b(4, 1, 4, 0.f);
+  for (int i = 0; i < 3; ++i) a.at(i, 0, 3) = b.at(i, 0, 3) = 1;
+  for (int c = 0; c < 3; ++c) a.at(0, 0, c) = b.at(1, 0, c) = 0.125f;
+  b.at(2, 0, 3) = 0.5f;
+  const Image<std::uint8_t> shown = shown_difference(a, b, 8);
+  EXPECT_GT(shown.at(0, 0, 0), shown.at(0, 0, 2) + 100);
+  EXPECT_GT(shown.at(1, 0, 2), shown.at(1, 0, 0) + 100);
+  EXPECT_EQ(shown.at(2, 0, 0), shown.at(2, 0, 2));  // not compared: grey
+  EXPECT_EQ(shown.at(3, 0, 3), 0);                  // nothing there
+}
+
+TEST(Pictures, RadianceIsDividedByCoverageAndEncoded) {
+  Image<float> radiance(1, 1, 4);
+  for (int c = 0; c < 3; ++c) radiance.at(0, 0, c) = 0.5f * 0.2140411f;  // of which sRGB makes 0.5
+  radiance.at(0, 0, 3) = 0.5f;
+  const Image<std::uint8_t> shown = shown_radiance(radiance);
+  EXPECT_NEAR(shown.at(0, 0, 1), 127.5, 0.6);
+  EXPECT_NEAR(shown.at(0, 0, 3), 127.5, 0.6);
+}
+
+TEST(Pictures, ThumbnailKeepsTheMean) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "thumbnail.png";
+  Image<std::uint16_t> ramp(50, 30, 1);
+  for (int j = 0; j < 30; ++j)
+    for (int i = 0; i < 50; ++i) ramp.at(i, j) = static_cast<std::uint16_t>(1000 * i + 100 * j);
+  write_png(file, ramp);
+  const Image<std::uint8_t> small = thumbnail(file, 16, 20);
+  ASSERT_EQ(small.width(), 20);
+  ASSERT_EQ(small.height(), 12);
+  double sum = 0;
+  for (const std::uint8_t value : small.values()) sum += value;
+  // The mean of 1000 i + 100 j, as a byte; each of the pixels is rounded by half a step at most.
+  EXPECT_NEAR(sum / small.values().size(), (24500 + 1450) / 65535.0 * 255, 0.1);
+  EXPECT_EQ(thumbnail(file, 16, 200).width(), 50);  // never enlarged
+}
+
+/// A unit sphere, its normals exact: rings of `rings` by 2 * `rings`.
+TriangleMesh sphere(int rings) {
+  TriangleMesh mesh;
+  const int columns = 2 * rings;
+  for (int j = 0; j <= rings; ++j)
+    for (int i = 0; i < columns; ++i) {
+      const double polar = std::numbers::pi * j / rings, azimuth = 2 * std::numbers::pi * i / columns;
+      mesh.positions.emplace_back(std::sin(polar) * std::cos(azimuth), std::cos(polar),
+                                  -std::sin(polar) * std::sin(azimuth));
+    }
+  for (int j = 0; j < rings; ++j)
+    for (int i = 0; i < columns; ++i) {
+      const auto at = [&](int row, int column) { return static_cast<std::uint32_t>(row * columns + column % columns); };
+      if (j > 0) mesh.triangles.push_back({at(j, i), at(j + 1, i), at(j, i + 1)});
+      if (j + 1 < rings) mesh.triangles.push_back({at(j, i + 1), at(j + 1, i), at(j + 1, i + 1)});
+    }
+  mesh.normals = mesh.positions;
+  return mesh;
+}
+
+TEST(Reference, SphereInAFurnaceHasItsAlbedo) {
+  const TriangleMesh mesh = sphere(64);
+  ReferenceView view;
+  view.width = view.height = 24;
+  view.camera = make_camera(bounding_box(mesh), {}, view.width, view.height);
+  view.albedo = 0.6f;
+  const float ones[] = {1, 1, 1};
+  const LightCoefficients lights[] = {constant_light(3, ones)};
+  const auto directions = sample_directions(Sampling::fibonacci, 2048, 1);
+  const std::vector<Image<float>> pictures = reference_pictures(mesh, view, lights, directions);
+  int whole = 0;
+  for (int j = 0; j < view.height; ++j)
+    for (int i = 0; i < view.width; ++i) {
+      if (pictures[0].at(i, j, 3) < 0.9999f) continue;
+      ++whole;
+      // Exact but for the quadrature (2,048 directions: far below 1 %) and for facets that lie inside the sphere.
+      EXPECT_NEAR(pictures[0].at(i, j, 1), 0.6, 0.01);
+    }
+  EXPECT_GT(whole, 100);
+  EXPECT_EQ(pictures[0].at(0, 0, 3), 0);
+}
+
+TEST(Labels, Numbers) {
+  EXPECT_EQ(rounded(0, 3), "0");
+  EXPECT_EQ(rounded(-0.31249, 3), "−0.312");
+  EXPECT_EQ(rounded(12.345, 3), "12.3");
+  EXPECT_EQ(rounded(69666, 3), "69\u202f666");
+  EXPECT_EQ(metric_value("hausdorff", 0.0064), "0.640&#8239;%");
+  EXPECT_EQ(metric_value("manifold", true), "yes");
+  EXPECT_EQ(metric_value("anything", nullptr), "not finite");
+  EXPECT_EQ(escaped("<a href=\"x\">&"), "&lt;a href=&quot;x&quot;&gt;&amp;");
+  EXPECT_EQ(light_label("-60,20"), "Directional, azimuth −60°, elevation 20°");
+}
+
+TEST(ReportSettings, LightsAreCutAtSemicolons) {
+  ReportSettings settings;
+  settings.lights = " 45,30 ;; ambient:1;";
+  EXPECT_EQ(list_of_lights(settings), (std::vector<std::string>{"45,30", "ambient:1"}));
+  settings.lights = "";
+  EXPECT_TRUE(list_of_lights(settings).empty());
+}
+
+TEST(Process, GivesLinesStatusAndSignal) {
+  std::vector<std::string> output, errors;
+  ProcessSettings settings;
+  settings.environment = {{"KILN_TEST", "a b"}};
+  settings.folder = "/";
+  settings.on_output_line = [&](const std::string& line) { output.push_back(line); };
+  settings.on_error_line = [&](const std::string& line) { errors.push_back(line); };
+  const ProcessEnd end =
+      run_process({"sh", "-c", "pwd; echo \"$KILN_TEST\"; printf half; echo wrong >&2; exit 5"}, settings);
+  EXPECT_EQ(end.exit_status, 5);
+  EXPECT_EQ(output, (std::vector<std::string>{"/", "a b", "half"}));
+  EXPECT_EQ(errors, std::vector<std::string>{"wrong"});
+  EXPECT_EQ(run_process({"sh", "-c", "kill -9 $$"}).signal, 9);
+  EXPECT_THROW(run_process({"/no/such/program"}), MachineLacks);
+}
+
+}  // namespace
+}  // namespace kiln

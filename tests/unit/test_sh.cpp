@@ -1,0 +1,233 @@
+#include <Eigen/Geometry>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+
+#include "sh/basis.h"
+#include "sh/directions.h"
+#include "sh/lights.h"
+#include "sh/transfer.h"
+
+namespace kiln {
+namespace {
+
+/// Nodes and weights of Gauss-Legendre quadrature on [-1, 1], by Newton's iteration on the Legendre polynomial.
+void gauss_legendre(int count, std::vector<double>& nodes, std::vector<double>& weights) {
+  for (int i = 0; i < count; ++i) {
+    double x = std::cos(std::numbers::pi * (i + 0.75) / (count + 0.5)), derivative = 1;
+    for (int step = 0; step < 100; ++step) {
+      double before = 1, p = x;
+      for (int l = 2; l <= count; ++l) {
+        const double next = ((2 * l - 1) * x * p - (l - 1) * before) / l;
+        before = p;
+        p = next;
+      }
+      derivative = count * (x * p - before) / (x * x - 1);
+      const double change = p / derivative;
+      x -= change;
+      if (std::abs(change) < 1e-15) break;
+    }
+    nodes.push_back(x);
+    weights.push_back(2 / ((1 - x * x) * derivative * derivative));
+  }
+}
+
+/// The Gram matrix of all basis functions by a product quadrature that is exact for their products: 4 pi worth of
+/// polynomials of degree 2 (bands - 1).
+template <class Real>
+Eigen::MatrixXd gram_matrix(int bands) {
+  const ShBasis basis(bands);
+  std::vector<double> nodes, weights;
+  gauss_legendre(bands + 1, nodes, weights);
+  const int azimuths = 2 * bands + 1;
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(basis.size(), basis.size());
+  std::vector<Real> values(basis.size());
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    for (int a = 0; a < azimuths; ++a) {
+      const double phi = 2 * std::numbers::pi * a / azimuths, radius = std::sqrt(1 - nodes[k] * nodes[k]);
+      const Eigen::Vector3d direction(radius * std::cos(phi), radius * std::sin(phi), nodes[k]);
+      basis.evaluate<Real>(direction.cast<Real>(), values);
+      const Eigen::VectorXd row =
+          Eigen::Map<Eigen::Matrix<Real, Eigen::Dynamic, 1>>(values.data(), basis.size()).template cast<double>();
+      gram.selfadjointView<Eigen::Lower>().rankUpdate(row, weights[k] * 2 * std::numbers::pi / azimuths);
+    }
+  gram.triangularView<Eigen::Upper>() = gram.transpose();
+  return gram;
+}
+
+TEST(ShBasis, HasTheSignsAndOrderOfTheContract) {
+  const ShBasis basis(2);
+  std::vector<float> values(4);
+  basis.evaluate<float>(Eigen::Vector3f::UnitY(), values);
+  EXPECT_NEAR(values[0], 0.282095, 1e-6);
+  EXPECT_NEAR(values[1], 0.488603, 1e-6);  // Y_1^-1 = +0.488603 y
+  basis.evaluate<float>(Eigen::Vector3f::UnitZ(), values);
+  EXPECT_NEAR(values[2], 0.488603, 1e-6);
+  basis.evaluate<float>(Eigen::Vector3f::UnitX(), values);
+  EXPECT_NEAR(values[3], 0.488603, 1e-6);
+}
+
+TEST(ShBasis, IsOrthonormalAt24Bands) {
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(24 * 24, 24 * 24);
+  // The contract asks for 1e-5; what remains in float32 is its rounding, in float64 next to nothing.
+  EXPECT_LT((gram_matrix<float>(24) - identity).cwiseAbs().maxCoeff(), 1e-5);
+  EXPECT_LT((gram_matrix<double>(24) - identity).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(ShBasis, HoldsInFloatUpTo64) {
+  // Unsoeld's theorem: the squares of a band's functions add up to (2l+1) / 4 pi at any point, the poles included.
+  const ShBasis basis(65);
+  std::vector<float> values(basis.size());
+  for (const Eigen::Vector3f& direction :
+       {Eigen::Vector3f(0, 0, 1), Eigen::Vector3f(0, 0, -1), Eigen::Vector3f(1e-4f, 0, 1).normalized(),
+        Eigen::Vector3f(1, 0, 0), Eigen::Vector3f(0.6f, -0.64f, 0.48f),
+        Eigen::Vector3f(0.1f, 0.2f, 0.97f).normalized()}) {
+    basis.evaluate<float>(direction, values);
+    for (int l = 0; l <= 64; ++l) {
+      double sum = 0;
+      for (int m = -l; m <= l; ++m) sum += std::pow(values[coefficient_index(l, m)], 2);
+      // Rounding grows along the recurrence: 64 steps of float32 stay well under 1e-4.
+      EXPECT_NEAR(sum * 4 * std::numbers::pi / (2 * l + 1), 1, 1e-4) << "band " << l << " at " << direction.transpose();
+    }
+  }
+}
+
+TEST(ShBasis, ClampedCosineMatchesQuadrature) {
+  // A_l = 2 pi times the integral of P_l(z) z over z in [0, 1]; Gauss-Legendre of 40 nodes is exact for these
+  // polynomials.
+  std::vector<double> nodes, weights;
+  gauss_legendre(40, nodes, weights);
+  const std::vector<double> factors = clamped_cosine_bands(24);
+  for (int l = 0; l < 24; ++l) {
+    double integral = 0;
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      const double z = 0.5 * (nodes[k] + 1);
+      integral += 2 * std::numbers::pi * 0.5 * weights[k] * z * std::legendre(static_cast<unsigned>(l), z);
+    }
+    EXPECT_NEAR(factors[l], integral, 1e-12) << "band " << l;
+  }
+}
+
+TEST(Directions, AreUnitVectorsThatBalance) {
+  for (const Sampling sampling : {Sampling::fibonacci, Sampling::stratified})
+    for (const int count : {1, 2, 7, 1000, 1024}) {
+      const std::vector<Eigen::Vector3f> directions = sample_directions(sampling, count, 5);
+      ASSERT_EQ(directions.size(), static_cast<std::size_t>(count));
+      Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+      for (const Eigen::Vector3f& direction : directions) {
+        EXPECT_NEAR(direction.norm(), 1, 1e-6);
+        sum += direction.cast<double>();
+      }
+      // Random points would leave about sqrt(count); well-spread ones leave far less.
+      EXPECT_LT(sum.norm(), count >= 1000 ? 0.25 * std::sqrt(count) : count + 1e-6);
+    }
+}
+
+TEST(Directions, FollowTheSeed) {
+  const auto first = sample_directions(Sampling::fibonacci, 16, 1),
+             again = sample_directions(Sampling::fibonacci, 16, 1);
+  const auto other = sample_directions(Sampling::fibonacci, 16, 2);
+  EXPECT_EQ(first[3], again[3]);
+  EXPECT_NE(first[3], other[3]);
+}
+
+/// Relative error of the projection of a spherical cap's visibility times clamped cosine onto 5 bands, over many caps
+/// and normals.
+double cap_error(Sampling sampling, int count) {
+  constexpr int bands = 5, cases = 60;
+  const ShBasis basis(bands);
+  const auto axes = sample_directions(Sampling::fibonacci, cases, 77),
+             normals = sample_directions(Sampling::fibonacci, cases, 78);
+  const auto project = [&](const std::vector<Eigen::Vector3f>& directions) {
+    TransferVectors transfer(cases, basis.size());
+    std::vector<float> values(basis.size());
+    for (const Eigen::Vector3f& direction : directions) {
+      basis.evaluate<float>(direction, values);
+      for (int k = 0; k < cases; ++k) {
+        // A cap of 20 to 60 degrees blocks the light.
+        const bool blocked = direction.dot(axes[k]) > std::cos((20 + 40.0 * k / cases) * std::numbers::pi / 180);
+        const float weight = blocked ? 0
+                                     : std::max(0.f, direction.dot(normals[(7 * k) % cases])) * 4 /
+                                           static_cast<float>(directions.size());
+        for (int i = 0; i < basis.size(); ++i) transfer.plane(i)[k] += weight * values[i];
+      }
+    }
+    return transfer;
+  };
+  static const TransferVectors truth = project(sample_directions(Sampling::fibonacci, 400'000, 3));
+  double sum = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed)
+    sum += std::pow(relative_l2(project(sample_directions(sampling, count, seed)), truth), 2);
+  return std::sqrt(sum / 8);
+}
+
+TEST(Directions, FibonacciIsTwiceAsAccurateAsStratified) {
+  const double fibonacci = cap_error(Sampling::fibonacci, 1024), stratified = cap_error(Sampling::stratified, 1024);
+  RecordProperty("fibonacci", std::to_string(fibonacci));
+  RecordProperty("stratified", std::to_string(stratified));
+  EXPECT_LT(2 * fibonacci, stratified) << "fibonacci " << fibonacci << ", stratified " << stratified;
+}
+
+TEST(Lights, WhiteFacingSurfaceHasRadianceOne) {
+  // At its peak the clamped cosine, cut off after 20 bands, is the sum of A_l (2l+1) / 4 pi: by the addition theorem,
+  // and close to 1.
+  double peak = 0;
+  for (int l = 0; l < 20; ++l) peak += clamped_cosine_bands(20)[l] * (2 * l + 1) / (4 * std::numbers::pi);
+  EXPECT_NEAR(peak, 1, 5e-3);
+  const ShBasis basis(20);
+  const Eigen::Vector3f direction = direction_from_angles(45, 30);
+  const std::vector<float> transfer = unoccluded_transfer(basis, direction);
+  const float white[] = {1, 0.5f};
+  const LightCoefficients light = directional_light(20, direction, white);
+  double radiance = 0, half = 0;
+  for (int i = 0; i < basis.size(); ++i) {
+    radiance += light.channels[0][i] * transfer[i];
+    half += light.channels[1][i] * transfer[i];
+  }
+  EXPECT_NEAR(radiance, peak, 1e-5);
+  EXPECT_NEAR(half, 0.5 * radiance, 1e-5);
+}
+
+TEST(Lights, LatitudeLongitudeOfOneIsTheConstantLight) {
+  const std::vector<float> pixels(64 * 32, 1.f);
+  const float one[] = {1};
+  const LightCoefficients projected = latitude_longitude_light(5, 64, 32, 1, pixels), constant = constant_light(5, one);
+  // The solid angles are exact, so band 0 is; what is left elsewhere is the midpoint rule in elevation over 32 rows.
+  EXPECT_NEAR(projected.channels[0][0], constant.channels[0][0], 1e-5);
+  for (int i = 1; i < 25; ++i) EXPECT_NEAR(projected.channels[0][i], 0, 6e-3);
+}
+
+TEST(Lights, LatitudeLongitudePixelPointsWhereThreeJsHasIt) {
+  std::vector<float> pixels(64 * 32, 0.f);
+  pixels[20 * 64 + 48] = 1;  // u = 48.5 / 64, v = 20.5 / 32
+  const LightCoefficients light = latitude_longitude_light(2, 64, 32, 1, pixels);
+  const Eigen::Vector3d seen =
+      Eigen::Vector3d(light.channels[0][3], light.channels[0][1], light.channels[0][2]).normalized();
+  const double azimuth = 2 * std::numbers::pi * (48.5 / 64 - 0.5), elevation = std::numbers::pi * (20.5 / 32 - 0.5);
+  const Eigen::Vector3d expected(std::cos(elevation) * std::cos(azimuth), std::sin(elevation),
+                                 std::cos(elevation) * std::sin(azimuth));
+  EXPECT_LT((seen - expected).norm(), 1e-5);
+}
+
+TEST(Lights, HannWindowLeavesTheMeanAndTamesTheRest) {
+  const float one[] = {1};
+  LightCoefficients light = directional_light(4, Eigen::Vector3f(0, 0, 1), one);
+  const LightCoefficients before = light;
+  apply_hann_window(light);
+  EXPECT_EQ(light.channels[0][0], before.channels[0][0]);
+  EXPECT_NEAR(light.channels[0][coefficient_index(2, 0)], 0.5 * before.channels[0][coefficient_index(2, 0)], 1e-6);
+}
+
+TEST(Transfer, ErrorsAreWhatTheirDefinitionsSay) {
+  TransferVectors reference(2, 4), other(2, 4);
+  reference.values = {3, 0, 0, 0, 0, 0, 0, 4};
+  other = reference;
+  other.values[1] += 0.5f;  // coefficient 0, band 0
+  EXPECT_NEAR(relative_l2(other, reference), 0.1, 1e-12);
+  // S is 1 in band 0 and 1/4 in band 1: t'St = 9 + 16/4 = 13.
+  EXPECT_NEAR(expected_relighting_error(other, reference), std::sqrt(0.25 / 13), 1e-7);
+  EXPECT_EQ(relative_l2(reference, reference), 0);
+}
+
+}  // namespace
+}  // namespace kiln

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "kiln/stages.h"
+
+namespace kiln {
+
+/// One asset of pipeline.yaml. Paths are as written there: absolute, or relative to its folder.
+struct Asset {
+  std::string name;
+  int line = 0;                   ///< of pipeline.yaml, from 1
+  std::filesystem::path mesh;     ///< a mesh file; empty: `member` of `archive`
+  std::filesystem::path archive;  ///< a tar file, compressed or not
+  std::string member;
+  bool on_request = false;  ///< built only when named
+  std::map<Stage, StageSettings> settings;
+  std::vector<std::string> budgets;  ///< "simplify.hausdorff<=0.012"
+};
+
+struct Pipeline {
+  std::filesystem::path file;
+  std::filesystem::path folder;  ///< of `file`: where commands run
+  std::filesystem::path output;  ///< relative to `folder`, or absolute
+  std::vector<Asset> assets;
+};
+
+/// Reads and checks a pipeline file. Throws BadInput that names the line for whatever is not understood: an unknown
+/// key, a key given twice, a value out of range, an asset without a mesh.
+Pipeline load_pipeline(const std::filesystem::path& file);
+
+/// The assets of these names, or, where there are none, those that are not built on request. Throws WrongUsage for a
+/// name that is not in the pipeline.
+std::vector<const Asset*> select_assets(const Pipeline& pipeline, const std::vector<std::string>& names);
+
+}  // namespace kiln

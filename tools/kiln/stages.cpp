@@ -1,0 +1,152 @@
+#include "kiln/stages.h"
+
+#include <fmt/format.h>
+
+#include "atlas/atlas_settings.h"
+#include "bake/bake_settings.h"
+#include "normals/normals_settings.h"
+#include "report/report_settings.h"
+#include "simplify/simplify_settings.h"
+
+namespace kiln {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+struct SeedSetting {
+  int seed = 1;
+};
+
+template <class Settings>
+struct Storage {
+  Settings settings;
+  SeedSetting seed;
+};
+
+template <class Settings>
+OptionSet bind(std::shared_ptr<void>& storage, OptionSet (*options_of)(Settings&)) {
+  auto bound = std::make_shared<Storage<Settings>>();
+  OptionSet options = options_of(bound->settings);
+  options.integer("seed", bound->seed.seed, 0, 2147483647, "Seed of everything random");
+  storage = std::move(bound);
+  return options;
+}
+
+OptionSet bind(Stage stage, std::shared_ptr<void>& storage) {
+  switch (stage) {
+    case Stage::simplify:
+      return bind(storage, simplify_options);
+    case Stage::atlas:
+      return bind(storage, atlas_options);
+    case Stage::normals:
+      return bind(storage, normals_options);
+    case Stage::bake:
+      return bind(storage, bake_options);
+    case Stage::report:
+      return bind(storage, report_options);
+  }
+  return {};
+}
+
+const StageSettings& settings_of(const AssetPlan& plan, Stage stage) {
+  static const StageSettings none;
+  const auto found = plan.settings.find(stage);
+  return found == plan.settings.end() ? none : found->second;
+}
+
+/// The value that the stage will run with.
+Json effective(const AssetPlan& plan, Stage stage, const std::string& setting) {
+  const StageOptions options(stage);
+  const Option& option = *options.find(setting);
+  const StageSettings& given = settings_of(plan, stage);
+  if (const auto found = given.find(setting); found != given.end()) option.set(found->second);
+  return option.get();
+}
+
+/// Appends `--name value` for what is given, in the order that --help has.
+void append_settings(std::vector<std::string>& command, const AssetPlan& plan, Stage stage) {
+  const StageOptions options(stage);
+  const StageSettings& given = settings_of(plan, stage);
+  for (const Option& option : options.all()) {
+    const auto found = given.find(option.name);
+    if (found == given.end() || (option.is_switch && found->second == "false")) continue;
+    command.push_back("--" + option.name);
+    if (!option.is_switch) command.push_back(found->second);
+  }
+}
+
+}  // namespace
+
+std::string stage_name(Stage stage) {
+  switch (stage) {
+    case Stage::simplify:
+      return "simplify";
+    case Stage::atlas:
+      return "atlas";
+    case Stage::normals:
+      return "normals";
+    case Stage::bake:
+      return "bake";
+    case Stage::report:
+      return "report";
+  }
+  return "";
+}
+
+StageOptions::StageOptions(Stage stage) : options_(bind(stage, storage_)) {}
+
+std::string rival_of(Stage stage, const std::string& setting) {
+  if (stage == Stage::simplify && setting == "faces") return "max-error";
+  if (stage == Stage::simplify && setting == "max-error") return "faces";
+  return "";
+}
+
+std::vector<StageRun> stage_runs(const AssetPlan& plan) {
+  const fs::path& folder = plan.folder;
+  const fs::path normals = folder / "normals", prt = folder / "prt";
+  const fs::path low = folder / "low.drc", atlas = folder / "atlas.drc", report = folder / "report.html";
+  const fs::path simplify_record = folder / "simplify.json", atlas_record = folder / "atlas.json";
+  const fs::path normals_record = normals / "normals.json", bake_record = prt / "bake.json";
+  const std::string mesh = plan.mesh.string(), normals_folder = normals.string() + "/", prt_folder = prt.string() + "/";
+
+  // A stage's outputs are renamed together, its record last. The record stands first here, and whoever reads an output
+  // depends on it too.
+  StageRun simplify{"simplify", {"kiln-simplify", mesh, "-o", low.string()}, {}, {plan.mesh}, {simplify_record, low}};
+  append_settings(simplify.command, plan, Stage::simplify);
+
+  StageRun cut{"atlas",
+               {"kiln-atlas", low.string(), "-o", atlas.string()},
+               {},
+               {simplify_record, low},
+               {atlas_record, atlas, folder / "atlas.png"}};
+  append_settings(cut.command, plan, Stage::atlas);
+
+  StageRun match{"normals",
+                 {"kiln-normals", mesh, atlas.string(), "-o", normals_folder},
+                 {},
+                 {plan.mesh, simplify_record, atlas_record, atlas},
+                 {normals_record, normals / "normal.png", normals / "position.exr", normals / "coverage.png"}};
+  append_settings(match.command, plan, Stage::normals);
+
+  StageRun bake{"bake",
+                {"kiln-bake", atlas.string(), "--detail", normals_folder, "--occluder", mesh, "-o", prt_folder},
+                {},
+                {plan.mesh, atlas_record, atlas, normals_record},
+                {bake_record}};
+  append_settings(bake.command, plan, Stage::bake);
+  const int bands = effective(plan, Stage::bake, "bands").get<int>();
+  for (int i = 0; i < bands * bands; ++i) bake.outputs.push_back(prt / fmt::format("coeff_0_{:02}.png", i));
+  for (const char* name : {"atlas.drc", "normal.png", "ranges.json"}) bake.outputs.push_back(prt / name);
+
+  StageRun tell{"report",
+                {"kiln-report", folder.string(), "-o", report.string(), "--high", mesh},
+                {"kiln-render"},
+                {plan.mesh, simplify_record, atlas_record, normals_record, bake_record},
+                {folder / "report.json", report, folder / "metrics.json"}};
+  append_settings(tell.command, plan, Stage::report);
+  for (const std::string& budget : plan.budgets) tell.command.insert(tell.command.end(), {"--budget", budget});
+  return {simplify, cut, match, bake, tell};
+}
+
+}  // namespace kiln

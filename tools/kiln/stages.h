@@ -1,0 +1,60 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/options.h"
+
+namespace kiln {
+
+/// The stages that every asset passes, in this order.
+enum class Stage { simplify, atlas, normals, bake, report };
+
+inline constexpr Stage all_stages[] = {Stage::simplify, Stage::atlas, Stage::normals, Stage::bake, Stage::report};
+
+/// As pipeline.yaml and the executables call it.
+std::string stage_name(Stage stage);
+
+/// What pipeline.yaml says of one stage: the text of each setting by its name, the defaults left out.
+using StageSettings = std::map<std::string, std::string>;
+
+/// The settings of a stage as its executable knows them, with their defaults, and --seed.
+class StageOptions {
+ public:
+  explicit StageOptions(Stage stage);
+
+  const std::vector<Option>& all() const { return options_.options(); }
+  const Option* find(const std::string& name) const { return options_.find(name); }
+
+ private:
+  std::shared_ptr<void> storage_;  // what options_ is bound to
+  OptionSet options_;
+};
+
+/// Settings of which a stage takes one: with both given, the more specific place wins. Empty where there is no rival.
+std::string rival_of(Stage stage, const std::string& setting);
+
+/// One stage of one asset as make runs it. Paths are as the command has them.
+struct StageRun {
+  std::string name;                  ///< of the stage
+  std::vector<std::string> command;  ///< program (a bare name, found beside kiln) and arguments
+  std::vector<std::string> helpers;  ///< further programs it runs
+  std::vector<std::filesystem::path> inputs;
+  std::vector<std::filesystem::path> outputs;  ///< the record, <stage>.json, first
+};
+
+/// What one asset is made of and how.
+struct AssetPlan {
+  std::filesystem::path mesh;    ///< the high mesh
+  std::filesystem::path folder;  ///< the asset's, in the output folder
+  std::map<Stage, StageSettings> settings;
+  std::vector<std::string> budgets;  ///< as kiln-report takes them: "simplify.hausdorff<=0.012"
+};
+
+/// The runs of all stages, in order.
+std::vector<StageRun> stage_runs(const AssetPlan& plan);
+
+}  // namespace kiln

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace kiln {
+
+/// What the driver tells the steps that make runs for it, through the environment.
+namespace step_environment {
+inline constexpr const char* events = "KILN_EVENTS";      ///< file that every step appends a StepEvent to
+inline constexpr const char* messages = "KILN_MESSAGES";  ///< file descriptor for messages; make's own go elsewhere
+inline constexpr const char* alone = "KILN_ALONE";  ///< set: no other step runs beside, so a progress bar may be drawn
+}  // namespace step_environment
+
+/// One run of a stage, as the driver is told.
+struct StepEvent {
+  std::string asset;
+  std::string stage;
+  int status = 0;  ///< exit status, 1 where a signal ended it
+};
+
+/// The events in the order in which the steps ended.
+std::vector<StepEvent> read_events(const std::filesystem::path& file);
+
+/// Runs one stage of one asset for make: says how long it took, or that it failed. Returns what make is to see: the
+/// exit status, but 0 for a missed budget, which leaves whole outputs and is the driver's to judge.
+int run_step(const std::string& asset, const std::string& stage, std::vector<std::string> command, int threads);
+
+/// Writes `member` of a tar file to `mesh`. Throws BadInput where there is none.
+void extract_member(const std::filesystem::path& archive, const std::string& member, const std::filesystem::path& mesh);
+
+}  // namespace kiln
