@@ -1,11 +1,12 @@
-// Exit radiance from a stack of transfer coefficients under a light. With t_i = min_i + s_i (max_i - min_i), s_i the stored
-// value of plane i (0 to 1) and L_i the light's coefficient,
+// Exit radiance from a stack of transfer coefficients under a light. With t_i = min_i + s_i (max_i - min_i), s_i the
+// stored value of plane i (0 to 1) and L_i the light's coefficient,
 //
 //   albedo sum_i L_i t_i  =  albedo sum_i L_i min_i  +  sum_i (albedo L_i (max_i - min_i)) s_i,
 //
-// the first sum being prt_constant and the brackets prt_scales[i], which plane_weights (stages/relight/relight.h) computes
-// once per light. A plane of a colour's own transfer has zeros for the other colours; a plane of one transfer for all
-// colours, or of a spectral basis function, has three numbers. So any number of bands and channels goes through here.
+// the first sum being prt_constant and the brackets prt_scales[i], which plane_weights (stages/relight/relight.h)
+// computes once per light. A plane of a colour's own transfer has zeros for the other colours; a plane of one transfer
+// for all colours, or of a spectral basis function, has three numbers. So any number of bands and channels goes through
+// here.
 layout(binding = 0) uniform sampler2DArray prt_planes;
 
 layout(std430, binding = 0) readonly buffer PrtWeights {

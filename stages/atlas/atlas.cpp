@@ -17,7 +17,11 @@ namespace {
 constexpr int most_bits = 24;  // a float has no more
 
 ChartSettings chart_settings(const AtlasSettings& settings) {
-  return {settings.max_stretch, settings.max_stretch_linf, settings.crease};
+  ChartSettings charts;
+  charts.largest_l2 = settings.max_stretch;
+  charts.largest_linf = settings.max_stretch_linf;
+  charts.crease_degrees = settings.crease;
+  return charts;
 }
 
 PackSettings pack_settings(const AtlasSettings& settings) {

@@ -1,5 +1,6 @@
 #include "atlas/grow.h"
 
+#include <cmath>
 #include <numbers>
 #include <queue>
 
@@ -76,6 +77,8 @@ class Grower {
     if (together > settings_.largest_spread * area) return;
     const double perimeter = a.perimeter + b.perimeter - 2 * run.length;
     const double roundness = perimeter * perimeter / (4 * std::numbers::pi * area);
+    if (roundness > 4 && 0.5 * perimeter > std::sqrt(disks_.surface().area))
+      return;  // a ribbon too long to be packed well
     const double added = together - bending(a.area, a.area_normal) - bending(b.area, b.area_normal);
     // Between flat disks roundness alone decides, small ones first.
     const double cost = (std::max(added, 0.0) + 1e-3 * area) * roundness;

@@ -1,8 +1,10 @@
 #include "atlas/merge.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
@@ -131,23 +133,53 @@ Chart glued_chart(const Disks& disks, const Disks::Run& run, const Chart& here, 
   return compact(std::move(both), classes);
 }
 
-/// Area of the convex hull (Andrew's monotone chain).
-double hull_area(std::vector<Eigen::Vector2d> points) {
-  std::sort(points.begin(), points.end(), [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-  });
+double chart_area(const Surface& surface, const Chart& chart) {
   double area = 0;
-  for (int side = 0; side < 2; ++side) {
-    std::vector<Eigen::Vector2d> chain;
-    for (const Eigen::Vector2d& p : points) {
-      while (chain.size() >= 2 && cross(chain[chain.size() - 2], chain.back(), p) <= 0) chain.pop_back();
-      chain.push_back(p);
-    }
-    for (std::size_t i = 1; i < chain.size(); ++i)
-      area += 0.5 * (chain[i - 1].x() * chain[i].y() - chain[i - 1].y() * chain[i].x());
-    std::reverse(points.begin(), points.end());
-  }
+  for (const std::uint32_t face : chart.faces) area += surface.rest[face].area;
   return area;
+}
+
+/// How far a chart reaches.
+struct Extents {
+  double largest = 0;         ///< in any direction
+  double rectangle_area = 0;  ///< of the smallest rectangle around it
+  double rectangle_side = 0;  ///< the longer one
+};
+
+/// From 32 directions in a half-circle; between two of them an extent changes by less than 1 %.
+Extents measure_extents(const Chart& chart) {
+  constexpr int directions = 32;
+  std::array<double, directions> along;
+  for (int i = 0; i < directions; ++i) {
+    const double angle = i * std::numbers::pi / directions;
+    const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Eigen::Vector2d& uv : chart.uvs) {
+      low = std::min(low, direction.dot(uv));
+      high = std::max(high, direction.dot(uv));
+    }
+    along[i] = high - low;
+  }
+  Extents extents;
+  extents.rectangle_area = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < directions; ++i) {
+    const double across = along[(i + directions / 2) % directions];
+    extents.largest = std::max(extents.largest, along[i]);
+    if (along[i] * across >= extents.rectangle_area) continue;
+    extents.rectangle_area = along[i] * across;
+    extents.rectangle_side = std::max(along[i], across);
+  }
+  return extents;
+}
+
+/// Whether a merged chart packs well enough: small, compact, or about a rectangle that is not too long.
+bool packs_well(const Surface& surface, const Chart& chart, double largest_extent) {
+  const Extents extents = measure_extents(chart);
+  const double area = chart_area(surface, chart), side = std::sqrt(surface.area);
+  const bool small = extents.largest <= largest_extent * side;
+  const bool compact_shape = extents.largest < 1.5 * std::sqrt(area);  // a square's diagonal is 1.41
+  const bool rectangle = area > 0.85 * extents.rectangle_area && extents.rectangle_side < 1.1 * side;
+  return small || compact_shape || rectangle;
 }
 
 std::optional<Chart> flattened(const Surface& surface, Chart chart, const ChartSettings& settings) {
@@ -160,19 +192,7 @@ std::optional<Chart> flattened(const Surface& surface, Chart chart, const ChartS
   }
   const Stretch stretch = measure_stretch(surface, chart);
   if (!(stretch.l2 <= settings.largest_l2 && stretch.linf <= settings.largest_linf)) return {};
-  static const double hf = getenv("HF") ? atof(getenv("HF")) : 0, hs = getenv("HS") ? atof(getenv("HS")) : 0.05;
-  double ca = 0;
-  for (auto f : chart.faces) ca += surface.rest[f].area;
-  if (ca > hs * surface.area && ca / hull_area(chart.uvs) < hf) return {};
-  static const double ex = getenv("EX") ? atof(getenv("EX")) : 100;
-  double far = 0;
-  for (int k = 0; k < 16; ++k) {
-    Eigen::Vector2d d(std::cos(k * std::numbers::pi / 16), std::sin(k * std::numbers::pi / 16));
-    double l = 1e300, h = -1e300;
-    for (auto& p : chart.uvs) l = std::min(l, d.dot(p)), h = std::max(h, d.dot(p));
-    far = std::max(far, h - l);
-  }
-  if (far > ex * std::sqrt(surface.area)) return {};
+  if (!packs_well(surface, chart, settings.largest_extent)) return {};
   return chart;
 }
 

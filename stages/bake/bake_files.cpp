@@ -4,6 +4,7 @@
 
 #include "bake/coefficient_planes.h"
 #include "base/errors.h"
+#include "detail/asset_hints.h"
 #include "detail/detail_maps.h"
 #include "mesh/draco_file.h"
 #include "mesh/mesh_file.h"
@@ -18,13 +19,8 @@ constexpr int default_size_texels = 512;
 
 /// The size that kiln-atlas packed for, from the record beside the atlas.
 int packed_size(const fs::path& atlas) {
-  const fs::path record = folder_of(atlas) / "atlas.json";
-  if (!fs::exists(record)) return default_size_texels;
-  const Json json = Json::parse(read_text(record), nullptr, false);
-  if (!json.is_object() || !json.contains("size") || !json["size"].is_number_integer() || json["size"] < 1 ||
-      json["size"] > 16384)
-    throw BadInput(record.string(), "has no size", "the record of kiln-atlas", "run kiln-atlas again or give --size");
-  return json["size"];
+  const AssetHints hints = read_asset_hints(folder_of(atlas));
+  return hints.size > 0 ? hints.size : default_size_texels;
 }
 
 }  // namespace

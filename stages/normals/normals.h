@@ -6,10 +6,10 @@
 
 #include "base/options.h"
 #include "base/progress.h"
+#include "detail/asset_hints.h"
 #include "detail/detail_maps.h"
 #include "image/image.h"
 #include "mesh/triangle_mesh.h"
-#include "normals/asset_hints.h"
 #include "normals/normals_settings.h"
 
 namespace kiln {

@@ -5,12 +5,11 @@
 
 #include "base/errors.h"
 #include "image/image_file.h"
+#include "image/srgb.h"
 
 namespace kiln {
 
 namespace {
-
-std::uint8_t to_byte(float value) { return static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.f, 1.f))); }
 
 /// Puts a colour behind radiance that is multiplied by coverage.
 Image<float> composite(const Image<float>& radiance, const std::array<float, 3>& background) {
@@ -26,11 +25,6 @@ Image<float> composite(const Image<float>& radiance, const std::array<float, 3>&
 
 }  // namespace
 
-float srgb_from_linear(float linear) {
-  const float x = std::clamp(linear, 0.f, 1.f);
-  return x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
-}
-
 Image<std::uint8_t> picture_from_radiance(const Image<float>& radiance, const PictureSettings& settings) {
   Image<std::uint8_t> picture(radiance.width(), radiance.height(), settings.background ? 3 : 4);
   const auto exposure = static_cast<float>(std::exp2(settings.exposure_stops));
@@ -43,9 +37,9 @@ Image<std::uint8_t> picture_from_radiance(const Image<float>& radiance, const Pi
           value = std::max(value, 0.f) + (1 - coverage) * (*settings.background)[c];
         else if (coverage > 0)
           value /= coverage;
-        picture.at(i, j, c) = to_byte(settings.tone == ToneCurve::srgb ? srgb_from_linear(value) : value);
+        picture.at(i, j, c) = byte_from_unit(settings.tone == ToneCurve::srgb ? srgb_from_linear(value) : value);
       }
-      if (!settings.background) picture.at(i, j, 3) = to_byte(coverage);
+      if (!settings.background) picture.at(i, j, 3) = byte_from_unit(coverage);
     }
   return picture;
 }

@@ -21,9 +21,6 @@ struct PictureSettings {
   std::optional<std::array<float, 3>> background;  ///< linear; none: transparent
 };
 
-/// The sRGB value, 0 to 1, of a linear one, which is clamped to that.
-float srgb_from_linear(float linear);
-
 /// 8-bit RGBA (alpha is coverage, not premultiplied), or RGB where there is a background, of radiance times coverage,
 /// and coverage.
 Image<std::uint8_t> picture_from_radiance(const Image<float>& radiance, const PictureSettings& settings);

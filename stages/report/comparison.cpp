@@ -4,10 +4,10 @@
 
 #include "base/command_line.h"
 #include "base/errors.h"
+#include "base/process.h"
 #include "image/image_file.h"
 #include "mesh/draco_file.h"
 #include "mesh/mesh_file.h"
-#include "report/process.h"
 #include "report/reference.h"
 #include "sh/directions.h"
 #include "sh/light_spec.h"

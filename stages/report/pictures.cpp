@@ -7,6 +7,7 @@
 
 #include "base/outputs.h"
 #include "image/image_file.h"
+#include "image/srgb.h"
 
 namespace kiln {
 
@@ -23,16 +24,6 @@ constexpr std::uint8_t uncompared_grey = 128;
 
 // Coverage is a sum of sample shares, each rounded.
 bool is_whole(float coverage) { return coverage > 0.9999f; }
-
-/// IEC 61966-2-1.
-float srgb_from_linear(float value) {
-  value = std::clamp(value, 0.f, 1.f);
-  return value <= 0.0031308f ? 12.92f * value : 1.055f * std::pow(value, 1 / 2.4f) - 0.055f;
-}
-
-std::uint8_t byte_from_unit(float value) {
-  return static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.f, 1.f)));
-}
 
 /// How much of each old pixel the new ones along one axis cover.
 struct AxisWeight {

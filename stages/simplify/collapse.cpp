@@ -54,7 +54,9 @@ struct Limits {
   double border;       ///< farthest that a vertex of the input's border may be from it, in the same edges
   double facing;       ///< smallest cosine between a triangle's normal and that of the input where it is nearest
 };
-constexpr Limits passes[] = {{0.15, 0.05, 0.05, 0.1}, {0.3, 0.02, 0.1, 0.1}, {0.6, 0, 0.2, 0}, {1e30, 0, 1e30, -1}};
+constexpr double unlimited = 1e30;
+constexpr Limits passes[] = {{0.15, 0.05, 0.05, 0.1}, {0.15, 0.05, 0.15, 0.1},      {0.3, 0.02, 0.3, 0.1},
+                             {0.6, 0, 0.6, 0},        {unlimited, 0, unlimited, 0}, {unlimited, 0, unlimited, -1}};
 
 /// A collapse may turn a triangle by 78 degrees at most: far from folding it over, and what it takes to cut a corner.
 constexpr double smallest_turn_cosine = 0.2;

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "base/outputs.h"
-#include "report/process.h"
+#include "base/process.h"
 
 namespace fs = std::filesystem;
 

@@ -165,4 +165,48 @@ inline TriangleMesh wavy_sheet(int cells, int waves = 3, float amplitude = 0.05f
   return mesh;
 }
 
+/// A patch of a cylinder of radius 1 about the y axis, `height` high, that goes `angle` radians around, facing outwards.
+/// No normals, no uvs.
+inline TriangleMesh cylinder_patch(int cells, float height, float angle) {
+  TriangleMesh mesh = plane(cells);
+  mesh.normals.clear();
+  mesh.uvs.clear();
+  for (Eigen::Vector3f& p : mesh.positions) {
+    const float around = angle * p.x(), up = -height * p.z();
+    p = {std::sin(around), up, std::cos(around)};
+  }
+  return mesh;
+}
+
+/// A torus about the y axis, `cells` x `cells` x 2 triangles: genus 1, closed. No normals, no uvs.
+inline TriangleMesh torus(int cells, float radius = 1, float tube_radius = 0.4f) {
+  TriangleMesh mesh;
+  const float step = 2 * 3.14159265f / static_cast<float>(cells);
+  for (int j = 0; j < cells; ++j)
+    for (int i = 0; i < cells; ++i) {
+      const float around = step * static_cast<float>(i), about = step * static_cast<float>(j);
+      const float distance = radius + tube_radius * std::cos(about);
+      mesh.positions.emplace_back(distance * std::sin(around), tube_radius * std::sin(about),
+                                  distance * std::cos(around));
+    }
+  const auto vertex = [&](int i, int j) { return static_cast<std::uint32_t>(j % cells * cells + i % cells); };
+  for (int j = 0; j < cells; ++j)
+    for (int i = 0; i < cells; ++i) {
+      mesh.triangles.push_back({vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1)});
+      mesh.triangles.push_back({vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1)});
+    }
+  return mesh;
+}
+
+/// Both meshes' positions and triangles, the second one moved; other attributes are dropped.
+inline TriangleMesh joined(const TriangleMesh& first, const TriangleMesh& second, const Eigen::Vector3f& move) {
+  TriangleMesh mesh;
+  mesh.positions = first.positions;
+  mesh.triangles = first.triangles;
+  const auto offset = static_cast<std::uint32_t>(first.positions.size());
+  for (const Eigen::Vector3f& p : second.positions) mesh.positions.push_back(p + move);
+  for (const Triangle& t : second.triangles) mesh.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  return mesh;
+}
+
 }  // namespace kiln::shapes

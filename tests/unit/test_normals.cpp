@@ -10,9 +10,9 @@
 
 #include "base/errors.h"
 #include "base/outputs.h"
+#include "detail/asset_hints.h"
 #include "detail/detail_maps.h"
 #include "image/image_file.h"
-#include "normals/asset_hints.h"
 #include "normals/normals.h"
 #include "shapes.h"
 

@@ -4,11 +4,11 @@
 #include <numbers>
 
 #include "base/errors.h"
+#include "base/process.h"
 #include "image/image_file.h"
 #include "report/budget.h"
 #include "report/labels.h"
 #include "report/pictures.h"
-#include "report/process.h"
 #include "report/reference.h"
 #include "report/report_settings.h"
 #include "sh/directions.h"

@@ -14,9 +14,9 @@
 
 #include "base/errors.h"
 #include "base/outputs.h"
+#include "base/process.h"
 #include "base/progress.h"
 #include "kiln/step.h"
-#include "report/process.h"
 
 namespace kiln {
 
@@ -132,19 +132,26 @@ std::vector<std::string> names_of(const std::vector<const Asset*>& assets) {
 int say_what_would_run(const Pipeline& pipeline, const std::vector<const Asset*>& assets, std::vector<MakeRule> rules) {
   const fs::path programs = program_folder();
   const TemporaryFolder temporary;
-  // make itself decides, on stamps as they would be: those that would change are new files elsewhere. But of a group of
-  // targets it takes none for remade where it runs nothing, so each rule here has its record alone, and counts as
-  // changed where another output is missing.
-  const auto exists = [&](const fs::path& file) { return fs::exists(pipeline.folder / file); };
-  std::set<fs::path> records;
-  for (const MakeRule& rule : rules) records.insert(rule.run.outputs.front());
+  // Where it runs nothing, make takes an output that is older than its record, as all are, for new. So the rules here
+  // depend on the records alone, but for an output that somebody changed by hand.
+  std::map<fs::path, fs::path> record_of;
+  for (const MakeRule& rule : rules)
+    for (const fs::path& output : rule.run.outputs)
+      if (output != rule.run.outputs.front()) record_of[output] = rule.run.outputs.front();
+  const auto time_of = [&](const fs::path& file) {
+    std::error_code missing;  // and then the earliest time there is
+    return fs::last_write_time(pipeline.folder / file, missing);
+  };
+  const auto as_its_stage_left_it = [&](const fs::path& file) {
+    const auto found = record_of.find(file);
+    return found != record_of.end() && time_of(file) <= time_of(found->second);
+  };
   int count = 0;
+  // make itself decides, on stamps as they would be: those that would change are new files elsewhere.
   for (MakeRule& rule : rules) {
-    const bool is_whole = std::all_of(rule.run.outputs.begin(), rule.run.outputs.end(), exists);
+    std::erase_if(rule.run.inputs, as_its_stage_left_it);
     const std::string text = stamp_text(rule.run, programs);
-    rule.run.outputs.resize(1);
-    std::erase_if(rule.run.inputs, [&](const fs::path& file) { return !records.contains(file) && !exists(file); });
-    if (is_whole && holds(pipeline.folder / rule.stamp, text)) continue;
+    if (holds(pipeline.folder / rule.stamp, text)) continue;
     rule.stamp = temporary.path() / fmt::format("{}.command", ++count);
     write_if_changed(rule.stamp, text);
   }

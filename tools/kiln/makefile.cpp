@@ -25,6 +25,16 @@ std::string joined(const std::vector<fs::path>& paths) {
   return text;
 }
 
+/// What expands to a phony prerequisite where one of the files is missing.
+std::string forced_where_missing(const std::vector<fs::path>& files) {
+  std::string text = "$(shell for file in";
+  for (const fs::path& file : files) {
+    text += ' ';
+    for (const char c : recipe_word(file.string())) text += c == '#' ? "\\#" : std::string(1, c);
+  }
+  return text + "; do [ -e \"$$file\" ] || echo missing; done)";
+}
+
 std::string recipe(const MakeRule& rule) {
   std::string text =
       fmt::format("\t@$(STEP) {} {} -- $(PROGRAMS)/{}", rule.asset, rule.run.name, recipe_word(rule.run.command[0]));
@@ -71,7 +81,7 @@ std::string makefile_text(const std::vector<MakeRule>& rules, const fs::path& pr
   std::vector<std::string> assets;
   for (const MakeRule& rule : rules)
     if (assets.empty() || assets.back() != rule.asset) assets.push_back(rule.asset);
-  text += "\n.PHONY: all";
+  text += "\n.PHONY: all missing";
   for (const std::string& asset : assets) text += " " + asset;
   text += "\nall:";
   for (const std::string& asset : assets) text += " " + asset;
@@ -79,20 +89,24 @@ std::string makefile_text(const std::vector<MakeRule>& rules, const fs::path& pr
 
   // No .DELETE_ON_ERROR: a stage renames its outputs when all of them are whole, so a failed run leaves the earlier
   // ones, which are older than what made it run and so are made again.
+  //
+  // The record, renamed last, stands for all outputs of a stage. Not a group of targets ("&:"): make would find the
+  // record up to date, then remake it for another missing output, and yet not remake what depends on it.
   for (const std::string& asset : assets) {
-    std::string all_made;
+    std::string records;
     std::string body;
     for (const MakeRule& rule : rules) {
       if (rule.asset != asset) continue;
-      const std::string made = fmt::format("{}.{}", asset, rule.run.name);
-      all_made += fmt::format(" $({})", made);
+      const fs::path& record = rule.run.outputs.front();
+      const std::vector<fs::path> others(rule.run.outputs.begin() + 1, rule.run.outputs.end());
       std::vector<fs::path> needed = rule.run.inputs;
       needed.push_back(rule.stamp);
-      // A group of one is a plain rule.
-      body += fmt::format("\n{} := {}\n$({}) {} {}\n{}", made, joined(rule.run.outputs), made,
-                          rule.run.outputs.size() > 1 ? "&:" : ":", joined(needed), recipe(rule));
+      records += " " + make_quoted(record);
+      body += fmt::format("\n{}: {}{}\n{}", make_quoted(record), joined(needed),
+                          others.empty() ? "" : " \\\n    " + forced_where_missing(others), recipe(rule));
+      if (!others.empty()) body += fmt::format("{}: {} ;\n", joined(others), make_quoted(record));
     }
-    text += fmt::format("\n# {}\n{}\n{}:{}\n", asset, body, asset, all_made);
+    text += fmt::format("\n# {}\n{}:{}\n{}", asset, asset, records, body);
   }
   return text;
 }

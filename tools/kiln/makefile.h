@@ -15,9 +15,10 @@ struct MakeRule {
   std::filesystem::path stamp;
 };
 
-/// The Makefile that runs `rules`: one rule per stage of an asset, its outputs grouped, each depending on the files it
-/// reads and on its stamp; `make ASSET` makes all of one asset. It is run from the folder that relative paths start
-/// from. `THREADS` (of each stage, 0 for all cores), `STEP` (what runs a stage) and `PROGRAMS` can be set from outside.
+/// The Makefile that runs `rules`: one rule per stage of an asset, that makes the stage's record (and with it all its
+/// outputs) where the files it reads or its stamp are newer or an output is missing; `make ASSET` makes all of one
+/// asset. It is run from the folder that relative paths start from. `THREADS` (of each stage, 0 for all cores), `STEP`
+/// (what runs a stage) and `PROGRAMS` can be set from outside.
 std::string makefile_text(const std::vector<MakeRule>& rules, const std::filesystem::path& programs);
 
 /// A word as a POSIX shell reads it back.

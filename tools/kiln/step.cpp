@@ -10,7 +10,7 @@
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "base/outputs.h"
-#include "report/process.h"
+#include "base/process.h"
 
 namespace kiln {
 

@@ -1,14 +1,13 @@
 #include "base/command_line.h"
 
-#include <fmt/format.h>
-#include <sys/resource.h>
-#include <tbb/global_control.h>
-
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <fmt/format.h>
 #include <memory>
 #include <new>
+#include <sys/resource.h>
+#include <tbb/global_control.h>
 #include <thread>
 
 #include "base/errors.h"
@@ -21,8 +20,7 @@ namespace {
 
 void require_exists(const fs::path& path) {
   std::error_code error;
-  if (!fs::exists(path, error))
-    throw BadInput(path.string(), "does not exist", "an input file", "check the path");
+  if (!fs::exists(path, error)) throw BadInput(path.string(), "does not exist", "an input file", "check the path");
 }
 
 int fail(const std::string& program, ExitCode code, const std::string& message) {
@@ -38,9 +36,12 @@ CommandLine::CommandLine(std::string program, const std::string& purpose)
   app_.get_formatter()->column_width(38);
   app_.add_flag("--json", json_, "Print the result as one JSON object on stdout")->group("Common");
   app_.add_flag("--quiet", quiet_, "Print errors only")->group("Common");
-  app_.add_option("--threads", threads_, "Threads, 0 for all cores (default 0; 0 to 1024)")->check(CLI::Range(0, 1024))->group("Common");
+  app_.add_option("--threads", threads_, "Threads, 0 for all cores (default 0; 0 to 1024)")
+      ->check(CLI::Range(0, 1024))
+      ->group("Common");
   app_.add_option("--seed", seed_, "Seed of everything random (default 1; 0 to 2147483647)")
-      ->check(CLI::Range(0, 2147483647))->group("Common");
+      ->check(CLI::Range(0, 2147483647))
+      ->group("Common");
 }
 
 void CommandLine::input(const std::string& name, fs::path& path, const std::string& help) {
@@ -68,17 +69,22 @@ void CommandLine::options(const std::string& heading, const OptionSet& options) 
   for (const Option& option : option_sets_.back().options()) {
     const Json value = option.get();
     if (option.is_switch) {
-      app_.add_flag_callback("--" + option.name, [set = option.set] { set("true"); }, option.help)->group(heading);
+      app_.add_flag_callback(
+              "--" + option.name, [set = option.set] { set("true"); }, option.help)
+          ->group(heading);
       continue;
     }
     const std::string shown = value.is_string() ? value.get<std::string>() : value.dump();
-    app_.add_option_function<std::string>("--" + option.name, [set = option.set](const std::string& text) {
-          try {
-            set(text);
-          } catch (const WrongUsage& error) {
-            throw CLI::ValidationError(std::string("--") + error.what());
-          }
-        }, fmt::format("{} (default {}; {})", option.help, shown.empty() ? "none" : shown, option.value_range))
+    app_.add_option_function<std::string>(
+            "--" + option.name,
+            [set = option.set](const std::string& text) {
+              try {
+                set(text);
+              } catch (const WrongUsage& error) {
+                throw CLI::ValidationError(std::string("--") + error.what());
+              }
+            },
+            fmt::format("{} (default {}; {})", option.help, shown.empty() ? "none" : shown, option.value_range))
         ->type_name("")
         ->group(heading);
   }
@@ -118,7 +124,7 @@ Json CommandLine::result(double seconds, const Json& metrics) const {
   for (const fs::path* path : inputs_) add(*path);
   for (const auto* list : input_lists_)
     for (const fs::path& path : *list) add(path);
-  Json result = {{"stage", stage_},     {"version", KILN_VERSION}, {"settings", settings},
+  Json result = {{"stage", stage_},  {"version", KILN_VERSION}, {"settings", settings},
                  {"inputs", inputs}, {"seconds", seconds},      {"peak_memory_bytes", peak_memory_bytes()}};
   result.update(metrics);
   return result;

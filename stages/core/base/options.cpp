@@ -1,9 +1,8 @@
 #include "base/options.h"
 
-#include <fmt/format.h>
-
 #include <charconv>
 #include <cmath>
+#include <fmt/format.h>
 #include <optional>
 
 #include "base/errors.h"

@@ -1,13 +1,12 @@
 #include "base/outputs.h"
 
-#include <unistd.h>
-#include <xxhash.h>
-
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <system_error>
+#include <unistd.h>
+#include <xxhash.h>
 
 #include "base/errors.h"
 
@@ -26,7 +25,8 @@ BadInput cannot_write(const fs::path& path, const std::string& reason) {
 
 OutputSet::OutputSet(fs::path folder) : folder_(std::move(folder)) {
   std::error_code error;
-  for (fs::path part = fs::absolute(folder_).lexically_normal(); !part.empty() && !fs::exists(part, error); part = part.parent_path())
+  for (fs::path part = fs::absolute(folder_).lexically_normal(); !part.empty() && !fs::exists(part, error);
+       part = part.parent_path())
     made_folders_.push_back(part);
   if (!fs::is_directory(folder_, error)) fs::create_directories(folder_, error);
   if (error) throw cannot_write(folder_, error.message());

@@ -6,7 +6,7 @@
 
 namespace kiln {
 
-/// A pinhole camera that looks at the centre of a box.
+/// A pinhole camera outside a box that looks at its centre, as near as the whole box allows.
 struct CameraSettings {
   double azimuth_degrees = 20;        ///< where the camera stands: 0 is +Z, 90 is +X
   double elevation_degrees = 12;      ///< above the horizon

@@ -3,7 +3,6 @@
 #include <draco/compression/decode.h>
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
-
 #include <fstream>
 
 #include "base/errors.h"
@@ -48,7 +47,8 @@ void save_draco(const std::filesystem::path& file, const TriangleMesh& mesh, con
     encoded.SetFace(draco::FaceIndex(i), face);
   }
   const int positions = add_attribute(encoded, draco::GeometryAttribute::POSITION, mesh.positions);
-  const int normals = mesh.normals.empty() ? -1 : add_attribute(encoded, draco::GeometryAttribute::NORMAL, mesh.normals);
+  const int normals =
+      mesh.normals.empty() ? -1 : add_attribute(encoded, draco::GeometryAttribute::NORMAL, mesh.normals);
   const int uvs = mesh.uvs.empty() ? -1 : add_attribute(encoded, draco::GeometryAttribute::TEX_COORD, mesh.uvs);
 
   draco::ExpertEncoder encoder(encoded);
@@ -63,7 +63,8 @@ void save_draco(const std::filesystem::path& file, const TriangleMesh& mesh, con
   std::ofstream stream(file, std::ios::binary);
   stream.write(buffer.data(), static_cast<std::streamsize>(buffer.size()));
   stream.close();
-  if (!stream) throw BadInput(file.string(), "cannot be written", "space on the disk", "free some or choose another output");
+  if (!stream)
+    throw BadInput(file.string(), "cannot be written", "space on the disk", "free some or choose another output");
 }
 
 TriangleMesh load_draco(const std::filesystem::path& file) {
@@ -75,7 +76,8 @@ TriangleMesh load_draco(const std::filesystem::path& file) {
   draco::Decoder decoder;
   auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
   if (!decoded.ok())
-    throw BadInput(name, "is no whole Draco mesh (" + decoded.status().error_msg_string() + ")", "a Draco mesh", "run the stage that writes it again");
+    throw BadInput(name, "is no whole Draco mesh (" + decoded.status().error_msg_string() + ")", "a Draco mesh",
+                   "run the stage that writes it again");
   const draco::Mesh& source = *decoded.value();
   TriangleMesh mesh;
   mesh.positions = read_attribute<Eigen::Vector3f>(source, draco::GeometryAttribute::POSITION);
@@ -83,13 +85,16 @@ TriangleMesh load_draco(const std::filesystem::path& file) {
   mesh.uvs = read_attribute<Eigen::Vector2f>(source, draco::GeometryAttribute::TEX_COORD);
   mesh.triangles.resize(source.num_faces());
   for (std::uint32_t i = 0; i < source.num_faces(); ++i)
-    for (int corner = 0; corner < 3; ++corner) mesh.triangles[i][corner] = source.face(draco::FaceIndex(i))[corner].value();
+    for (int corner = 0; corner < 3; ++corner)
+      mesh.triangles[i][corner] = source.face(draco::FaceIndex(i))[corner].value();
   if (mesh.triangles.empty() || mesh.positions.empty())
     throw BadInput(name, "has no faces", "a Draco mesh of triangles", "run the stage that writes it again");
   for (const Eigen::Vector3f& position : mesh.positions)
     if (!position.allFinite())
-      throw BadInput(name, "has a coordinate that is not a finite number", "finite coordinates", "run the stage that writes it again");
-  for (Eigen::Vector3f& normal : mesh.normals) normal = normal.squaredNorm() > 0 ? Eigen::Vector3f(normal.normalized()) : Eigen::Vector3f::UnitY();
+      throw BadInput(name, "has a coordinate that is not a finite number", "finite coordinates",
+                     "run the stage that writes it again");
+  for (Eigen::Vector3f& normal : mesh.normals)
+    normal = normal.squaredNorm() > 0 ? Eigen::Vector3f(normal.normalized()) : Eigen::Vector3f::UnitY();
   return mesh;
 }
 
@@ -97,10 +102,12 @@ TriangleMesh load_atlas(const std::filesystem::path& file) {
   TriangleMesh mesh = load_draco(file);
   if (mesh.normals.empty()) compute_vertex_normals(mesh);
   if (mesh.uvs.empty())
-    throw BadInput(file.string(), "has no texture coordinates", "the output of kiln-atlas", "run kiln-atlas on it first");
+    throw BadInput(file.string(), "has no texture coordinates", "the output of kiln-atlas",
+                   "run kiln-atlas on it first");
   for (const Eigen::Vector2f& uv : mesh.uvs)
     if (!(uv.minCoeff() >= 0 && uv.maxCoeff() <= 1))
-      throw BadInput(file.string(), "has texture coordinates outside the unit square", "the output of kiln-atlas", "run kiln-atlas on it first");
+      throw BadInput(file.string(), "has texture coordinates outside the unit square", "the output of kiln-atlas",
+                     "run kiln-atlas on it first");
   return mesh;
 }
 

@@ -1,11 +1,10 @@
 #include "mesh/mesh_distance.h"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <tbb/parallel_for.h>
 #include <vector>
 
 #include "mesh/nearest_surface.h"

@@ -3,7 +3,6 @@
 #include <CGAL/IO/polygon_soup_io.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Simple_cartesian.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -43,7 +42,8 @@ Soup read_soup(const std::filesystem::path& file, const std::string& extension) 
   } catch (const std::exception& error) {
     throw BadInput(name, std::string("cannot be understood (") + error.what() + ")", expected_mesh, remedy_export);
   }
-  if (!whole) throw BadInput(name, "is truncated or damaged", "a whole " + extension.substr(1) + " file", remedy_export);
+  if (!whole)
+    throw BadInput(name, "is truncated or damaged", "a whole " + extension.substr(1) + " file", remedy_export);
   return soup;
 }
 
@@ -62,12 +62,15 @@ void check_soup(const std::string& name, const Soup& soup) {
       throw BadInput(name, where() + " has fewer than three corners", "a whole file", remedy_export);
     for (std::size_t vertex : soup.polygons[i])
       if (vertex >= soup.points.size())
-        throw BadInput(name, where() + " refers to vertex " + std::to_string(vertex + 1) + " of " + std::to_string(soup.points.size()),
-                       "a whole file", remedy_export);
+        throw BadInput(
+            name,
+            where() + " refers to vertex " + std::to_string(vertex + 1) + " of " + std::to_string(soup.points.size()),
+            "a whole file", remedy_export);
   }
 }
 
-/// Ears cut in order of their quality would be nicer; scans hold quads at most, and those are cut along the shorter diagonal.
+/// Ears cut in order of their quality would be nicer; scans hold quads at most, and those are cut along the shorter
+/// diagonal.
 void triangulate(const Soup& soup, std::vector<Triangle>& triangles, LoadRepairs& repairs) {
   const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
     triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(c)});
@@ -76,7 +79,9 @@ void triangulate(const Soup& soup, std::vector<Triangle>& triangles, LoadRepairs
     if (polygon.size() > 3) ++repairs.triangulated_polygons;
     std::size_t first = 0;
     if (polygon.size() == 4) {
-      const auto squared = [&](int i, int j) { return CGAL::squared_distance(soup.points[polygon[i]], soup.points[polygon[j]]); };
+      const auto squared = [&](int i, int j) {
+        return CGAL::squared_distance(soup.points[polygon[i]], soup.points[polygon[j]]);
+      };
       first = squared(0, 2) <= squared(1, 3) ? 0 : 1;
     }
     const auto corner = [&](std::size_t i) { return polygon[(first + i) % polygon.size()]; };
@@ -96,7 +101,8 @@ bool has_area(const TriangleMesh& mesh, const Triangle& triangle) {
 TriangleMesh load_mesh(const std::filesystem::path& file, LoadRepairs* repairs_out) {
   const std::string name = file.string();
   std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   if (extension == ".drc") {
     TriangleMesh mesh = load_draco(file);
     compute_vertex_normals(mesh);
@@ -104,7 +110,8 @@ TriangleMesh load_mesh(const std::filesystem::path& file, LoadRepairs* repairs_o
   }
   static const std::set<std::string> known = {".obj", ".off", ".stl", ".ply"};
   if (!known.contains(extension))
-    throw BadInput(name, "has the unknown extension '" + extension + "'", "obj, ply, stl, off or drc", "convert the mesh");
+    throw BadInput(name, "has the unknown extension '" + extension + "'", "obj, ply, stl, off or drc",
+                   "convert the mesh");
   if (read_text(file).empty()) throw BadInput(name, "is empty", expected_mesh, remedy_export);
 
   const Soup soup = read_soup(file, extension);
@@ -124,10 +131,13 @@ TriangleMesh load_mesh(const std::filesystem::path& file, LoadRepairs* repairs_o
       if (new_index[vertex] == unseen) {
         const Point& p = soup.points[vertex];
         // Adding zero turns -0 into +0, which would be another key.
-        const std::array<float, 3> place = {static_cast<float>(p.x()) + 0.f, static_cast<float>(p.y()) + 0.f, static_cast<float>(p.z()) + 0.f};
+        const std::array<float, 3> place = {static_cast<float>(p.x()) + 0.f, static_cast<float>(p.y()) + 0.f,
+                                            static_cast<float>(p.z()) + 0.f};
         const auto [found, inserted] = at_place.try_emplace(place, static_cast<std::uint32_t>(mesh.positions.size()));
-        if (inserted) mesh.positions.emplace_back(place[0], place[1], place[2]);
-        else ++repairs.merged_vertices;
+        if (inserted)
+          mesh.positions.emplace_back(place[0], place[1], place[2]);
+        else
+          ++repairs.merged_vertices;
         new_index[vertex] = found->second;
       }
       vertex = new_index[vertex];
@@ -139,8 +149,10 @@ TriangleMesh load_mesh(const std::filesystem::path& file, LoadRepairs* repairs_o
     Triangle sorted = triangle;
     std::sort(sorted.begin(), sorted.end());
     const bool repeats = sorted[0] == sorted[1] || sorted[1] == sorted[2];
-    if (repeats || !has_area(mesh, triangle) || !seen.insert(sorted).second) ++repairs.dropped_triangles;
-    else mesh.triangles.push_back(triangle);
+    if (repeats || !has_area(mesh, triangle) || !seen.insert(sorted).second)
+      ++repairs.dropped_triangles;
+    else
+      mesh.triangles.push_back(triangle);
   }
   if (mesh.triangles.empty()) throw BadInput(name, "has no triangle with an area", expected_mesh, remedy_export);
   compute_vertex_normals(mesh);

@@ -1,4 +1,4 @@
-#include "normals/asset_hints.h"
+#include "detail/asset_hints.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-#include "report/process.h"
+#include "base/process.h"
 
 #include <array>
 #include <cerrno>

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstdint>
+
+namespace kiln {
+
+/// The sRGB value (IEC 61966-2-1), 0 to 1, of a linear one, which is clamped to that.
+float srgb_from_linear(float linear);
+
+/// round(255 * value), of a value clamped to 0 .. 1.
+std::uint8_t byte_from_unit(float value);
+
+}  // namespace kiln
