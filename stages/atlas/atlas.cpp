@@ -29,6 +29,7 @@ PackSettings pack_settings(const AtlasSettings& settings) {
   pack.width = pack.height = settings.size;
   pack.gutter = settings.gutter;
   pack.rotations = settings.rotations;
+  pack.seed = static_cast<std::uint64_t>(settings.seed);
   // A step of a 16-bit uv, and of the rasteriser.
   pack.slack = settings.size / 65535.0 + 1.0 / 1024;
   return pack;
@@ -69,14 +70,14 @@ TriangleMesh assemble(const TriangleMesh& low, const std::vector<Chart>& charts,
   return atlas;
 }
 
-/// Triangles that face the other way, or none, in `after`, which has those of `before` in some order. The order may
-/// differ, so only the numbers are compared.
-int count_without_area(const TriangleMesh& mesh) {
+/// Triangles that have no area or face against their vertices' normals. A file may change the triangles' order, so that
+/// rounding shows in their number only.
+int count_spoilt(const TriangleMesh& mesh) {
   int count = 0;
   for (const Triangle& t : mesh.triangles) {
-    const Eigen::Vector3d a = mesh.positions[t[0]].cast<double>(), b = mesh.positions[t[1]].cast<double>(),
-                          c = mesh.positions[t[2]].cast<double>();
-    count += !((b - a).cross(c - a).squaredNorm() > 0);
+    const Eigen::Vector3f &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+    const Eigen::Vector3f normals = mesh.normals[t[0]] + mesh.normals[t[1]] + mesh.normals[t[2]];
+    count += !((b - a).cross(c - a).dot(normals) > 0);
   }
   return count;
 }
@@ -127,14 +128,14 @@ AtlasResult make_atlas(const TriangleMesh& low, const AtlasSettings& settings, c
 WrittenAtlas write_atlas(const std::filesystem::path& file, const AtlasResult& atlas) {
   WrittenAtlas written;
   DracoQuantisation quantisation;
-  const int without_area = count_without_area(atlas.mesh);
+  const int spoilt = count_spoilt(atlas.mesh);
   for (;;) {
     save_draco(file, atlas.mesh, quantisation);
     written.mesh = load_draco(file);
     written.measures = measure_atlas(written.mesh, atlas.size, atlas.size);
-    const bool lost_area = count_without_area(written.mesh) > without_area;
+    const bool newly_spoilt = count_spoilt(written.mesh) > spoilt;
     const bool turned_over = written.measures.flipped_triangles > 0 || written.measures.overlapping_texels > 0;
-    const bool finer_positions = lost_area && quantisation.position_bits < most_bits;
+    const bool finer_positions = newly_spoilt && quantisation.position_bits < most_bits;
     const bool finer_uvs = turned_over && quantisation.uv_bits < most_bits;
     if (!finer_positions && !finer_uvs) break;
     quantisation.position_bits += finer_positions;

@@ -11,6 +11,7 @@ struct AtlasSettings {
   double max_stretch_linf = 2;  ///< L-infinity stretch that a chart may have
   double crease = 75;           ///< degrees; a border between charts that bends more, on average, stays a seam
   int rotations = 16;           ///< angles that are tried for each chart when packing
+  int seed = 1;                 ///< of the orders in which packing is attempted; --seed, common to all stages
 };
 
 OptionSet atlas_options(AtlasSettings& settings);

@@ -13,16 +13,22 @@ namespace kiln {
 
 namespace {
 
-/// Flattens every disk of the list; those that cannot be are taken apart and grown again to flatter ones. Returns how
-/// many that were.
+bool within_bounds(const Surface& surface, const Chart& chart, const ChartSettings& settings) {
+  const Stretch stretch = measure_stretch(surface, chart);
+  return stretch.l2 <= settings.largest_l2 && stretch.linf <= settings.largest_linf;
+}
+
+/// Flattens every disk of the list; those that cannot be within the bounds are taken apart and grown again to flatter
+/// ones. Returns how many that were.
 int flatten_or_split(Disks& disks, std::vector<Chart>& charts, std::vector<std::uint32_t> ids,
-                     GrowSettings grow_settings) {
+                     const ChartSettings& settings, GrowSettings grow_settings) {
   int splits = 0;
   while (!ids.empty()) {
     std::vector<std::uint8_t> flat(ids.size());
     tbb::parallel_for(std::size_t{0}, ids.size(), [&](std::size_t i) {
       charts[ids[i]] = chart_of_disk(disks, ids[i]);
-      flat[i] = parameterise_quickly(disks.surface(), charts[ids[i]]);
+      flat[i] = parameterise_quickly(disks.surface(), charts[ids[i]]) &&
+                within_bounds(disks.surface(), charts[ids[i]], settings);
     });
     std::vector<std::uint32_t> pieces;
     grow_settings.largest_spread *= 0.25;
@@ -53,7 +59,7 @@ ChartSet cut_into_charts(const Surface& surface, const ChartSettings& settings, 
   grow_settings.sharpest_bend = settings.crease_degrees * std::numbers::pi / 180;
   grow(disks, disks.ids(), grow_settings);
   progress(0.1);
-  result.split_charts = flatten_or_split(disks, charts, disks.ids(), grow_settings);
+  result.split_charts = flatten_or_split(disks, charts, disks.ids(), settings, grow_settings);
   progress(0.2);
   merge_charts(disks, charts, settings, [&](double fraction) { progress(0.2 + 0.6 * fraction); });
 

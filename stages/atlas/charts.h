@@ -17,7 +17,7 @@ struct ChartSettings {
 
 struct ChartSet {
   std::vector<Chart> charts;
-  int split_charts = 0;  ///< had to be taken apart since no way of flattening them was valid
+  int split_charts = 0;  ///< had to be taken apart since no way of flattening them was valid and within the bounds
 };
 
 /// Cuts a surface into charts, each a topological disk with a valid map to the plane (parameterise.h): every face that

@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
     command.output(atlas_file, "The mesh with uvs, a Draco file; atlas.png and atlas.json are written beside it");
     command.options("Atlas", atlas_options(settings));
     command.parse(argc, argv);
+    settings.seed = command.seed();
 
     // Load.
     const TriangleMesh low = load_draco(low_file);

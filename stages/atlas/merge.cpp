@@ -183,12 +183,13 @@ bool packs_well(const Surface& surface, const Chart& chart, double largest_exten
 }
 
 std::optional<Chart> flattened(const Surface& surface, Chart chart, const ChartSettings& settings) {
-  if (is_flip_free(chart)) {
+  if (!is_flip_free(chart) && !unflip(surface, chart)) {
+    if (getenv("NOQ")) return {};
+    if (!parameterise_quickly(surface, chart)) return {};
+  } else {
     relax(surface, chart, {8, 1e-2});
     if (!has_simple_border(chart)) return {};
     equalise_area(surface, chart);
-  } else if (!parameterise_quickly(surface, chart)) {
-    return {};
   }
   const Stretch stretch = measure_stretch(surface, chart);
   if (!(stretch.l2 <= settings.largest_l2 && stretch.linf <= settings.largest_linf)) return {};

@@ -41,6 +41,14 @@ Decomposition decompose(const Matrix2& j) {
 /// energy's.
 double proxy_weight(double s) { return (s + 1) * (s * s + 1) / (s * s * s); }
 
+/// The proxy's metric has the left singular vectors of j, so it is a combination of the identity and j j^T.
+Matrix2 proxy_metric(const Matrix2& j, const Decomposition& d) {
+  const double weight_larger = proxy_weight(d.larger), weight_smaller = proxy_weight(d.smaller);
+  const double gap = d.larger * d.larger - d.smaller * d.smaller;
+  const double slope = gap > 1e-9 ? (weight_larger - weight_smaller) / gap : 0;
+  return (weight_larger - slope * d.larger * d.larger) * Matrix2::Identity() + slope * j * j.transpose();
+}
+
 /// The largest step along `move` before a triangle has no area.
 double largest_step(const Chart& chart, const Uvs& uvs, const Uvs& move) {
   double largest = std::numeric_limits<double>::infinity();
@@ -77,9 +85,24 @@ class Relaxation {
     return sum / area;
   }
 
+  /// As-rigid-as-possible steps (Liu et al. 2008), which need no valid start, until nothing is flipped.
+  bool unflip(int iterations) {
+    for (int i = 0; i < iterations; ++i) {
+      assemble(true);
+      if (i == 0) factorisation_.factorize(matrix_);  // only the right side changes
+      if (factorisation_.info() != Eigen::Success) return false;
+      const Eigen::VectorXd solution = factorisation_.solve(right_side_);
+      if (!solution.allFinite()) return false;
+      for (std::size_t v = 0; v < chart_.uvs.size(); ++v)
+        chart_.uvs[v] = solution.segment<2>(2 * static_cast<Eigen::Index>(v));
+      if (is_flip_free(chart_)) return true;
+    }
+    return false;
+  }
+
   /// One step; the new energy, or the old one where it cannot be lowered.
   double step(double old_energy) {
-    assemble();
+    assemble(false);
     if (factorisation_.factorize(matrix_); factorisation_.info() != Eigen::Success) return old_energy;
     const Eigen::VectorXd solution = factorisation_.solve(right_side_);
     if (!solution.allFinite()) return old_energy;
@@ -134,7 +157,8 @@ class Relaxation {
     }
   }
 
-  void assemble() {
+  /// The quadratic proxy around the present uvs; `rigid` weighs all directions alike.
+  void assemble(bool rigid) {
     constexpr double proximal = 1e-5;  // fixes the translation
     std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
     for (Eigen::Index i = 0; i < matrix_.rows(); ++i) matrix_.valuePtr()[matrix_.outerIndexPtr()[i]] = proximal;
@@ -146,12 +170,7 @@ class Relaxation {
       const RestTriangle& rest = surface_.rest[chart_.faces[i]];
       const Matrix2 j = jacobian(rest, t, chart_.uvs);
       const Decomposition d = decompose(j);
-      // The proxy's metric has the left singular vectors of j, so it is a combination of the identity and j j^T.
-      const double weight_larger = proxy_weight(d.larger), weight_smaller = proxy_weight(d.smaller);
-      const double gap = d.larger * d.larger - d.smaller * d.smaller;
-      const double slope = gap > 1e-9 ? (weight_larger - weight_smaller) / gap : 0;
-      const Matrix2 metric =
-          rest.area * ((weight_larger - slope * d.larger * d.larger) * Matrix2::Identity() + slope * j * j.transpose());
+      const Matrix2 metric = rest.area * (rigid ? Matrix2(Matrix2::Identity()) : proxy_metric(j, d));
       const Matrix2 goal = metric * d.rotation;
       std::size_t entry = 0;
       for (int a = 0; a < 6; ++a)
@@ -174,6 +193,8 @@ class Relaxation {
 };
 
 }  // namespace
+
+bool unflip(const Surface& surface, Chart& chart) { return Relaxation(surface, chart).unflip(6); }
 
 double relax(const Surface& surface, Chart& chart, const RelaxSettings& settings) {
   Relaxation relaxation(surface, chart);

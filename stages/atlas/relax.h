@@ -15,4 +15,8 @@ struct RelaxSettings {
 /// least squares steps. Returns the energy.
 double relax(const Surface& surface, Chart& chart, const RelaxSettings& settings);
 
+/// Moves the uvs of a chart that has flipped triangles to a map near by that has none, if a few as-rigid-as-possible
+/// steps find one.
+bool unflip(const Surface& surface, Chart& chart);
+
 }  // namespace kiln

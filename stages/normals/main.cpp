@@ -1,5 +1,4 @@
 #include "base/command_line.h"
-#include "base/errors.h"
 #include "image/image_file.h"
 #include "mesh/draco_file.h"
 #include "mesh/mesh_file.h"
@@ -21,16 +20,13 @@ int main(int argc, char** argv) {
     // Load.
     const TriangleMesh high = load_mesh(high_file);
     const TriangleMesh atlas = load_atlas(atlas_file);
-    if (atlas.normals.empty())
-      throw BadInput(atlas_file.string(), "a mesh without normals", "the atlas mesh of kiln-atlas",
-                     "run kiln-atlas again");
+    OutputSet outputs(folder);
 
     // Run.
     const NormalsResult result =
         make_normals(high, atlas, settings, read_asset_hints(folder_of(atlas_file)), command.progress("normals"));
 
     // Save.
-    OutputSet outputs(folder);
     write_png(outputs.add("normal.png"), result.normal);
     write_exr(outputs.add("position.exr"), result.position);
     write_png(outputs.add("coverage.png"), result.coverage);

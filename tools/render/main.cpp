@@ -36,15 +36,15 @@ int main(int argc, char** argv) {
     const PrtAsset asset = load_prt_asset(folder);
     const PrtView view = view_of(settings, bounding_box(asset.mesh));
     const LightCoefficients light = all_lights(lights, asset.bands);
+    OutputSet outputs(folder_of(file));
 
     // Run.
     const Stopwatch watch;
-    const EglContext context(settings.gl_device);
+    const EglContext context(settings.gl_device, command.threads());
     const Image<float> radiance = PrtRenderer(asset).render(light, view);
     const double seconds = watch.seconds();
 
     // Save.
-    OutputSet outputs(folder_of(file));
     write_picture(outputs.add(file.filename().string()), radiance, picture);
     command.finish_without_record(outputs, command.result(seconds, render_metrics(asset, specs, radiance, context)));
   });
