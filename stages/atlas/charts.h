@@ -8,7 +8,7 @@
 namespace kiln {
 
 struct ChartSettings {
-  double largest_l2 = 1.01;     ///< stretch of one chart (stretch.h)
+  double largest_l2 = 1.005;    ///< stretch of one chart (stretch.h)
   double largest_linf = 2;      ///< of any triangle
   double crease_degrees = 75;   ///< a border that bends more on average stays a seam
   double largest_extent = 0.8;  ///< of a merged chart, over the square root of the surface's area: longer ones pack

@@ -11,8 +11,8 @@
 #include <queue>
 #include <tbb/parallel_for.h>
 
-#include "atlas/parameterise.h"
 #include "atlas/relax.h"
+#include "atlas/stretch.h"
 
 namespace kiln {
 
@@ -182,15 +182,12 @@ bool packs_well(const Surface& surface, const Chart& chart, double largest_exten
   return small || compact_shape || rectangle;
 }
 
+/// The relaxed chart, if it is valid and within the bounds.
 std::optional<Chart> flattened(const Surface& surface, Chart chart, const ChartSettings& settings) {
-  if (!is_flip_free(chart) && !unflip(surface, chart)) {
-    if (getenv("NOQ")) return {};
-    if (!parameterise_quickly(surface, chart)) return {};
-  } else {
-    relax(surface, chart, {8, 1e-2});
-    if (!has_simple_border(chart)) return {};
-    equalise_area(surface, chart);
-  }
+  if (!is_flip_free(chart) && !unflip(surface, chart)) return {};
+  relax(surface, chart, {8, 1e-2});
+  if (!has_simple_border(chart)) return {};
+  equalise_area(surface, chart);
   const Stretch stretch = measure_stretch(surface, chart);
   if (!(stretch.l2 <= settings.largest_l2 && stretch.linf <= settings.largest_linf)) return {};
   if (!packs_well(surface, chart, settings.largest_extent)) return {};
