@@ -165,8 +165,8 @@ inline TriangleMesh wavy_sheet(int cells, int waves = 3, float amplitude = 0.05f
   return mesh;
 }
 
-/// A patch of a cylinder of radius 1 about the y axis, `height` high, that goes `angle` radians around, facing outwards.
-/// No normals, no uvs.
+/// A patch of a cylinder of radius 1 about the y axis, `height` high, that goes `angle` radians around, facing
+/// outwards. No normals, no uvs.
 inline TriangleMesh cylinder_patch(int cells, float height, float angle) {
   TriangleMesh mesh = plane(cells);
   mesh.normals.clear();
