@@ -59,6 +59,8 @@ Json save_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scen
   if (!paths.detail.empty()) {
     files.normals = "normal.png";
     fs::copy_file(paths.detail / files.normals, outputs.add(files.normals), fs::copy_options::overwrite_existing);
+  } else {
+    outputs.remove_stale("normal.png");
   }
   write_planes(outputs, {result.transfer}, scene.receivers, settings.bits, files);
   const TransferVectors stored = read_planes(outputs.staging(), scene.receivers).front();
