@@ -81,8 +81,8 @@ TEST_P(Backends, FurnaceGivesTheUnoccludedTransfer) {
   for (std::size_t r = 0; r < transfer.receivers; ++r) {
     const std::vector<float> truth = unoccluded_transfer(basis, bench.normals[r]);
     EXPECT_NEAR(transfer.plane(0)[r], t_0, 1e-3 * t_0);
-    // 1,024 Fibonacci directions integrate these smooth products to about 1e-4; 5e-4 leaves room for grazing directions
-    // at the facets.
+    // 1,024 Fibonacci directions integrate these smooth products to about 1e-4; 1e-3 of t_0 leaves room for grazing
+    // directions at the facets.
     for (int i = 0; i < transfer.coefficients; ++i)
       EXPECT_NEAR(transfer.plane(i)[r], truth[i], 1e-3 * t_0) << "coefficient " << i;
   }
