@@ -1,10 +1,17 @@
-// Texels of the atlas (or any points) that receive light.
+// Texels of the atlas (or any points) that receive light, and the tiles of them that a pass visits: one per workgroup.
 struct Receiver {
   vec4 position;  // xyz, object space
   vec4 normal;    // xyz, unit
 };
 
+layout(local_size_x = 64) in;
+
 layout(std430, binding = 1) readonly buffer ReceiverList {
   Receiver receivers[];
 };
+layout(std430, binding = 4) readonly buffer TileList {
+  uint tiles[];
+};
 uniform int receiver_count;
+
+int receiver_index() { return int(tiles[gl_WorkGroupID.x] * gl_WorkGroupSize.x + gl_LocalInvocationID.x); }

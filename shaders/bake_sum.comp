@@ -1,30 +1,37 @@
-// Projects a batch: totals += weights * basis rows, a chunk of coefficients per workgroup row. The batch's sums stay in
-// registers, and the totals are read and written once per batch.
-//   BATCH   directions of a full batch; the rows of those beyond a smaller one are zero
+// Projects a block of directions: its float32 sums of weights * basis rows stay in registers, and are added to the
+// totals as fixed-point numbers, so that the order of blocks does not matter (stages/core/sh/transfer_sums.h).
+//   BLOCK   directions of a full block; the weights of those beyond a smaller one are zero
 //   CHUNK   coefficients of a chunk, a multiple of 4
-layout(local_size_x = 64) in;
+#include "bake_receivers.glsl"
 
 layout(std430, binding = 2) readonly buffer Weights {
   float weights[];  // direction after direction
 };
 layout(std430, binding = 3) buffer Totals {
-  float totals[];  // plane after plane, whole chunks
+  uvec2 totals[];  // plane after plane, whole chunks; 64-bit integers: low word, high word
 };
-// Basis functions at the batch's directions times the quadrature weight. A uniform block, whose constant addresses cost nothing.
+// Basis functions at the block's directions. A uniform block, whose constant addresses cost nothing.
 layout(std140, binding = 0) uniform BasisRows {
-  vec4 basis_rows[BATCH * CHUNK / 4];
+  vec4 basis_rows[BLOCK * CHUNK / 4];
 };
-uniform int receiver_count;
 uniform int first_coefficient;
 
 void main() {
-  int r = int(gl_GlobalInvocationID.x);
+  int r = receiver_index();
   if (r >= receiver_count) return;
   vec4 sums[CHUNK / 4];
   for (int i = 0; i < CHUNK / 4; ++i) sums[i] = vec4(0.0);
-  for (int d = 0; d < BATCH; ++d) {
+  for (int d = 0; d < BLOCK; ++d) {
     float weight = weights[d * receiver_count + r];
     for (int i = 0; i < CHUNK / 4; ++i) sums[i] += weight * basis_rows[d * CHUNK / 4 + i];
   }
-  for (int i = 0; i < CHUNK; ++i) totals[(first_coefficient + i) * receiver_count + r] += sums[i / 4][i % 4];
+  for (int i = 0; i < CHUNK; ++i) {
+    int sum = int(roundEven(sums[i / 4][i % 4] * 8388608.0));
+    int at = (first_coefficient + i) * receiver_count + r;
+    uvec2 total = totals[at];
+    uint carry;
+    total.x = uaddCarry(total.x, uint(sum), carry);
+    total.y += uint(sum >> 31) + carry;
+    totals[at] = total;
+  }
 }

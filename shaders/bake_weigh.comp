@@ -3,14 +3,13 @@
 #include "bake_views.glsl"
 #include "bake_receivers.glsl"
 
-layout(local_size_x = 64) in;
-
 layout(std430, binding = 2) writeonly buffer Weights {
   float weights[];  // direction after direction
 };
 
 layout(binding = 0) uniform sampler2DArray depth_maps;
 uniform int batch_directions;
+uniform int first_row;               // of the batch among the block's weights
 uniform float depth_bias;            // in map depths, 0 to 1
 uniform float normal_offset_texels;  // of the depth map
 
@@ -35,13 +34,13 @@ float visibility(int layer, vec3 position, vec3 normal) {
 }
 
 void main() {
-  int r = int(gl_GlobalInvocationID.x);
+  int r = receiver_index();
   if (r >= receiver_count) return;
   vec3 position = receivers[r].position.xyz;
   vec3 normal = receivers[r].normal.xyz;
   for (int d = 0; d < batch_directions; ++d) {
     float weight = dot(normal, views[d].direction.xyz);
     if (weight > 0.0) weight *= visibility(d, position, normal);
-    weights[d * receiver_count + r] = max(weight, 0.0);
+    weights[(first_row + d) * receiver_count + r] = max(weight, 0.0);
   }
 }

@@ -12,28 +12,24 @@ namespace kiln {
 
 namespace {
 
-std::unique_ptr<TransferEngine> make_engine(BakeBackend backend, const BakeSettings& settings, int threads) {
-  if (backend == BakeBackend::embree) return std::make_unique<EmbreeEngine>(settings.ray_offset);
+std::unique_ptr<TransferEngine> make_engine(BakeBackend backend, const Occluders& occluders,
+                                            const BakeSettings& settings, int threads) {
+  const TransferScene scene{occluders.mesh.positions, occluders.mesh.triangles, occluders.hull, occluders.closed};
+  if (backend == BakeBackend::embree) return std::make_unique<EmbreeEngine>(scene, settings.ray_offset);
   ShadowMapSettings shadows;
   shadows.size_texels = settings.shadow_size;
   shadows.depth_bias = settings.shadow_bias;
   shadows.normal_offset_texels = settings.normal_offset;
   shadows.filter =
       settings.shadow_filter == BakeShadowFilter::nearest ? ShadowFilter::nearest : ShadowFilter::two_by_two;
-  return std::make_unique<EglEngine>(settings.gl_device, threads, shadows);
+  return std::make_unique<EglEngine>(scene, settings.gl_device, threads, shadows);
 }
 
-TransferRequest make_request(const Receivers& receivers, const Occluders& occluders,
-                             std::span<const Eigen::Vector3f> directions, int bands) {
-  TransferRequest request;
-  request.receivers = receivers;
-  request.occluder_positions = occluders.mesh.positions;
-  request.occluder_triangles = occluders.mesh.triangles;
-  request.occluder_hull = occluders.hull;
-  request.occluders_closed = occluders.closed;
-  request.directions = directions;
-  request.bands = bands;
-  return request;
+TransferVectors integrate(TransferEngine& engine, const Receivers& receivers,
+                          std::span<const Eigen::Vector3f> directions, int bands, const ProgressFunction& progress) {
+  engine.set_receivers(receivers, bands);
+  engine.add(directions, progress);
+  return engine.sums().transfer();
 }
 
 /// Every `step`-th receiver's transfer.
@@ -50,9 +46,9 @@ BakeResult bake(const TexelReceivers& receivers, const Occluders& occluders, con
                 int threads, const ProgressFunction& progress) {
   const Stopwatch stopwatch;
   const std::vector<Eigen::Vector3f> directions = sample_directions(settings.sampling, settings.directions, seed);
-  const std::unique_ptr<TransferEngine> engine = make_engine(settings.backend, settings, threads);
+  const std::unique_ptr<TransferEngine> engine = make_engine(settings.backend, occluders, settings, threads);
   BakeResult result;
-  result.transfer = engine->compute(make_request(receivers.view(), occluders, directions, settings.bands), progress);
+  result.transfer = integrate(*engine, receivers.view(), directions, settings.bands, progress);
   result.renderer = engine->renderer();
   result.software_renderer = engine->is_software();
   result.seconds = stopwatch.seconds();
@@ -67,10 +63,9 @@ BakeVerification verify(const BakeResult& result, const TransferVectors& stored,
   // Step 1: the other backend, over the very same directions.
   const BakeBackend other = settings.backend == BakeBackend::egl ? BakeBackend::embree : BakeBackend::egl;
   const std::vector<Eigen::Vector3f> directions = sample_directions(settings.sampling, settings.directions, seed);
-  const std::unique_ptr<TransferEngine> engine = make_engine(other, settings, threads);
-  const TransferVectors other_transfer =
-      engine->compute(make_request(receivers.view(), occluders, directions, settings.bands),
-                      [&](double fraction) { progress(0.5 * fraction); });
+  const std::unique_ptr<TransferEngine> engine = make_engine(other, occluders, settings, threads);
+  const TransferVectors other_transfer = integrate(*engine, receivers.view(), directions, settings.bands,
+                                                   [&](double fraction) { progress(0.5 * fraction); });
   verification.other_backend = engine->renderer();
   const bool rays_are_other = other == BakeBackend::embree;
   verification.backend_difference =
@@ -86,9 +81,9 @@ BakeVerification verify(const BakeResult& result, const TransferVectors& stored,
   }
   const std::vector<Eigen::Vector3f> many =
       sample_directions(Sampling::fibonacci, settings.verify_directions, seed + 1u);
-  const TransferVectors reference = EmbreeEngine(settings.ray_offset)
-                                        .compute(make_request({positions, normals}, occluders, many, settings.bands),
-                                                 [&](double fraction) { progress(0.5 + 0.5 * fraction); });
+  const TransferVectors reference =
+      integrate(*make_engine(BakeBackend::embree, occluders, settings, threads), {positions, normals}, many,
+                settings.bands, [&](double fraction) { progress(0.5 + 0.5 * fraction); });
   verification.reference_directions = settings.verify_directions;
   verification.reference_texels = positions.size();
   verification.integration_error = relative_l2(thin_out(result.transfer, step), reference);

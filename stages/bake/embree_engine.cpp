@@ -2,19 +2,32 @@
 
 #include <Eigen/Geometry>
 
-#include "raycast/ray_scene.h"
 #include "raycast/ray_transfer.h"
+#include "sh/basis.h"
 
 namespace kiln {
 
-TransferVectors EmbreeEngine::compute(const TransferRequest& request, const ProgressFunction& progress) {
+namespace {
+
+float diagonal_of(std::span<const Eigen::Vector3f> points) {
   Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& position : request.occluder_hull) box.extend(position);
-  const RayScene scene(request.occluder_positions, request.occluder_triangles);
-  return transfer_by_rays(scene, request.receivers, request.directions, request.bands,
-                          static_cast<float>(ray_offset_) * box.diagonal().norm(), progress);
+  for (const Eigen::Vector3f& point : points) box.extend(point);
+  return box.diagonal().norm();
 }
 
-std::string EmbreeEngine::renderer() const { return ray_library_name(); }
+}  // namespace
+
+EmbreeEngine::EmbreeEngine(const TransferScene& scene, double ray_offset)
+    : scene_(scene.positions, scene.triangles), ray_offset_(static_cast<float>(ray_offset) * diagonal_of(scene.hull)) {}
+
+void EmbreeEngine::set_receivers(const Receivers& receivers, int bands) {
+  receivers_ = receivers;
+  sums_ = TransferSums(receivers.size(), coefficient_count(bands));
+}
+
+void EmbreeEngine::add(std::span<const Eigen::Vector3f> directions, const ProgressFunction& progress) {
+  add_transfer_by_rays(scene_, receivers_, directions, ray_offset_, sums_, progress);
+  work_.pairs += static_cast<std::uint64_t>(receivers_.size()) * directions.size();
+}
 
 }  // namespace kiln

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "bake/transfer_engine.h"
+#include "raycast/ray_scene.h"
 
 namespace kiln {
 
@@ -8,14 +9,21 @@ namespace kiln {
 class EmbreeEngine : public TransferEngine {
  public:
   /// Rays start `ray_offset` off the receiver along its normal, a fraction of the occluders' bounding box diagonal.
-  explicit EmbreeEngine(double ray_offset) : ray_offset_(ray_offset) {}
+  EmbreeEngine(const TransferScene& scene, double ray_offset);
 
-  TransferVectors compute(const TransferRequest& request, const ProgressFunction& progress) override;
-  std::string renderer() const override;
+  void set_receivers(const Receivers& receivers, int bands) override;
+  void add(std::span<const Eigen::Vector3f> directions, const ProgressFunction& progress) override;
+  TransferSums sums() override { return sums_; }
+  TransferWork work() const override { return work_; }
+  std::string renderer() const override { return ray_library_name(); }
   bool is_software() const override { return true; }
 
  private:
-  double ray_offset_;
+  RayScene scene_;
+  float ray_offset_;
+  Receivers receivers_;
+  TransferSums sums_;
+  TransferWork work_;
 };
 
 }  // namespace kiln

@@ -7,30 +7,58 @@
 #include <string>
 
 #include "base/progress.h"
-#include "sh/transfer.h"
+#include "sh/transfer_sums.h"
 
 namespace kiln {
 
-/// What a bake integrates: receivers, occluders and directions in; transfer out.
-struct TransferRequest {
-  Receivers receivers;  ///< neighbours next to each other
-  std::span<const Eigen::Vector3f> occluder_positions;
-  std::span<const std::array<std::uint32_t, 3>> occluder_triangles;
+/// What casts shadows. The engine copies what it keeps.
+struct TransferScene {
+  std::span<const Eigen::Vector3f> positions;
+  std::span<const std::array<std::uint32_t, 3>> triangles;
   /// Points whose convex hull holds all occluders: the corners of their hull, or simply all positions.
-  std::span<const Eigen::Vector3f> occluder_hull;
-  /// Whether every edge of the occluders has one triangle on either side, so that their back faces need not be drawn.
-  bool occluders_closed = false;
-  std::span<const Eigen::Vector3f> directions;  ///< spread evenly over the sphere
-  int bands = 5;
+  std::span<const Eigen::Vector3f> hull;
+  /// Whether every edge has one triangle on either side, so that back faces need not be drawn.
+  bool closed = false;
 };
 
-/// Evaluates t_i = 4/N sum over N directions of B_i(s) V(s) max(0, n.s) for every receiver.
+/// How many pairs of a receiver and a direction were decided how. What is in none of the skipped kinds was tested.
+struct TransferWork {
+  std::uint64_t pairs = 0;           ///< all of them
+  std::uint64_t behind_tiles = 0;    ///< skipped: the whole tile of receivers faces away (normal cone)
+  std::uint64_t lit_tiles = 0;       ///< not tested: nothing stands before the whole tile
+  std::uint64_t shadowed_tiles = 0;  ///< not tested: all of the tile lies behind something
+  std::uint64_t ambiguous = 0;       ///< depth tests within the map's error band
+  std::uint64_t refined = 0;         ///< of these, decided by rays
+
+  TransferWork& operator+=(const TransferWork& other) {
+    pairs += other.pairs;
+    behind_tiles += other.behind_tiles;
+    lit_tiles += other.lit_tiles;
+    shadowed_tiles += other.shadowed_tiles;
+    ambiguous += other.ambiguous;
+    refined += other.refined;
+    return *this;
+  }
+};
+
+/// Receivers, occluders, directions in; sums of transfer out. One engine has one scene.
 class TransferEngine {
  public:
   virtual ~TransferEngine() = default;
 
-  /// Same request, same bytes.
-  virtual TransferVectors compute(const TransferRequest& request, const ProgressFunction& progress) = 0;
+  /// From now on these receivers, whose sums start at zero; neighbours should stand next to each other. They must
+  /// outlive their use. `bands` of spherical harmonics.
+  virtual void set_receivers(const Receivers& receivers, int bands) = 0;
+
+  /// Adds unit vectors towards the light, block after block of block_directions. The same directions in the same blocks
+  /// add the same bits whichever calls they come in. Directions of a block that lie close together go faster.
+  virtual void add(std::span<const Eigen::Vector3f> directions, const ProgressFunction& progress) = 0;
+
+  /// What was added since set_receivers.
+  virtual TransferSums sums() = 0;
+
+  /// Of all calls of add().
+  virtual TransferWork work() const = 0;
 
   /// What did the work, for the record: the GL renderer's name, or the ray library's.
   virtual std::string renderer() const = 0;

@@ -19,37 +19,36 @@ struct Scene {
   Occluders occluders = join_occluders({bunny});
   std::vector<Eigen::Vector3f> directions = sample_directions(Sampling::fibonacci, 256, 1);
 
-  TransferRequest request() const {
-    TransferRequest request;
-    request.receivers = {bunny.positions, bunny.normals};
-    request.occluder_positions = occluders.mesh.positions;
-    request.occluder_triangles = occluders.mesh.triangles;
-    request.occluder_hull = occluders.hull;
-    request.occluders_closed = occluders.closed;
-    request.directions = directions;
-    request.bands = 5;
-    return request;
+  TransferScene scene() const {
+    return {occluders.mesh.positions, occluders.mesh.triangles, occluders.hull, occluders.closed};
   }
 };
 
-void run(benchmark::State& state, TransferEngine& engine) {
+const Scene& bunny() {
   static const Scene scene;
-  const TransferRequest request = scene.request();
-  for (auto _ : state) benchmark::DoNotOptimize(engine.compute(request, no_progress));
-  state.SetItemsProcessed(
-      static_cast<std::int64_t>(state.iterations() * request.receivers.size() * request.directions.size()));
+  return scene;
+}
+
+void run(benchmark::State& state, TransferEngine& engine) {
+  const Receivers receivers{bunny().bunny.positions, bunny().bunny.normals};
+  for (auto _ : state) {
+    engine.set_receivers(receivers, 5);
+    engine.add(bunny().directions, no_progress);
+    benchmark::DoNotOptimize(engine.sums());
+  }
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * receivers.size() * bunny().directions.size()));
   state.SetLabel(engine.renderer());
 }
 
 void bake_embree(benchmark::State& state) {
-  EmbreeEngine engine(1e-4);
+  EmbreeEngine engine(bunny().scene(), 1e-4);
   run(state, engine);
 }
 
 void bake_egl(benchmark::State& state) {
   ShadowMapSettings shadows;
   shadows.size_texels = static_cast<int>(state.range(0));
-  EglEngine engine("auto", 0, shadows);
+  EglEngine engine(bunny().scene(), "auto", 0, shadows);
   run(state, engine);
 }
 

@@ -87,20 +87,16 @@ int main(int argc, char** argv) {
   }
   const std::vector<Eigen::Vector3f> sphere = kiln::sample_directions(kiln::Sampling::fibonacci, directions, 1);
 
-  kiln::TransferRequest request;
-  request.receivers = {positions, normals};
-  request.occluder_positions = ball.positions;
-  request.occluder_triangles = ball.triangles;
-  request.occluder_hull = ball.positions;
-  request.occluders_closed = true;
-  request.bands = bands;
+  const kiln::TransferScene scene{ball.positions, ball.triangles, ball.positions, true};
   try {
-    kiln::EglEngine engine(device, 0, shadows);
-    request.directions = std::span(sphere).first(std::min<std::size_t>(sphere.size(), shadows.batch_directions));
-    engine.compute(request, kiln::no_progress);  // compiles the shaders
-    request.directions = sphere;
+    kiln::EglEngine engine(scene, device, 0, shadows);
+    engine.set_receivers({positions, normals}, bands);
+    engine.add(std::span(sphere).first(std::min<std::size_t>(sphere.size(), kiln::block_directions)),
+               kiln::no_progress);  // compiles the shaders
     const auto start = std::chrono::steady_clock::now();
-    const kiln::TransferVectors transfer = engine.compute(request, kiln::no_progress);
+    engine.set_receivers({positions, normals}, bands);
+    engine.add(sphere, kiln::no_progress);
+    const kiln::TransferVectors transfer = engine.sums().transfer();
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     double mean = 0;
     for (float value : transfer.plane(0)) mean += value / static_cast<double>(transfer.receivers);

@@ -38,24 +38,23 @@ struct Bench {
   int bands = 5;
   int shadow_size = 512;  // spares the software renderer work
 
-  TransferRequest request() const {
-    TransferRequest request;
-    request.receivers = {positions, normals};
-    request.occluder_positions = occluders.positions;
-    request.occluder_triangles = occluders.triangles;
-    request.occluder_hull = occluders.positions;
-    request.occluders_closed = is_closed(occluders);
-    request.directions = directions;
-    request.bands = bands;
-    return request;
+  TransferScene scene() const {
+    return {occluders.positions, occluders.triangles, occluders.positions, is_closed(occluders)};
   }
-  TransferVectors egl(bool layered_pass = true) const {
-    ShadowMapSettings settings;
+  TransferVectors run(TransferEngine& engine) const {
+    engine.set_receivers({positions, normals}, bands);
+    engine.add(directions, no_progress);
+    return engine.sums().transfer();
+  }
+  TransferVectors egl(ShadowMapSettings settings = {}) const {
     settings.size_texels = shadow_size;
-    settings.layered_pass = layered_pass;
-    return EglEngine("auto", 0, settings).compute(request(), no_progress);
+    EglEngine engine(scene(), "auto", 0, settings);
+    return run(engine);
   }
-  TransferVectors embree() const { return EmbreeEngine(1e-4).compute(request(), no_progress); }
+  TransferVectors embree() const {
+    EmbreeEngine engine(scene(), 1e-4);
+    return run(engine);
+  }
 };
 
 /// Points of the unit sphere, which shadows only itself: the furnace.
@@ -141,10 +140,15 @@ TEST_P(Backends, ManyBandsGoThroughInChunks) {
 INSTANTIATE_TEST_SUITE_P(Bake, Backends, testing::Values(BakeBackend::egl, BakeBackend::embree),
                          [](const auto& backend) { return backend.param == BakeBackend::egl ? "egl" : "embree"; });
 
-TEST(BakeEgl, LayersGiveWhatSinglePassesGive) {
+TEST(BakeEgl, LayersAndBatchesGiveWhatSinglePassesGive) {
   Bench bench = furnace();
   bench.directions.resize(100);  // not a multiple of the batch
-  EXPECT_EQ(bench.egl().values, bench.egl(false).values);
+  const TransferVectors layers = bench.egl();
+  ShadowMapSettings other;
+  other.layered_pass = false;
+  EXPECT_EQ(layers.values, bench.egl(other).values);
+  other.batch_directions = 4;
+  EXPECT_EQ(layers.values, bench.egl(other).values);
 }
 
 TEST(BakeEgl, AgreesWithRaysOnTheBunny) {

@@ -60,6 +60,19 @@ inline GlBuffer make_zero_buffer(GLsizeiptr bytes, GLbitfield flags = 0) {
   return GlBuffer(name);
 }
 
+/// A buffer of `bytes` whose content is replaced again and again.
+inline GlBuffer make_refilled_buffer(std::size_t bytes) {
+  GLuint name = 0;
+  glCreateBuffers(1, &name);
+  glNamedBufferStorage(name, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
+  return GlBuffer(name);
+}
+
+template <class Value>
+void refill_buffer(const GlBuffer& buffer, std::span<const Value> values) {
+  glNamedBufferSubData(buffer.name(), 0, static_cast<GLsizeiptr>(values.size_bytes()), values.data());
+}
+
 inline GlTexture make_texture(GLenum target) {
   GLuint name = 0;
   glCreateTextures(target, 1, &name);

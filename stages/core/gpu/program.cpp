@@ -64,6 +64,10 @@ GlProgram load_program(std::initializer_list<std::string_view> files, const Shad
   return program;
 }
 
+GLint uniform_location(const GlProgram& program, const char* name) {
+  return glGetUniformLocation(program.name(), name);
+}
+
 void check_gl(const char* doing) {
   const GLenum error = glGetError();
   if (error == GL_OUT_OF_MEMORY) throw MachineLacks(std::string("the GL device ran out of memory while ") + doing);

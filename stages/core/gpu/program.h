@@ -18,6 +18,9 @@ using ShaderDefines = std::vector<std::pair<std::string, std::string>>;
 /// std::runtime_error with the driver's log.
 GlProgram load_program(std::initializer_list<std::string_view> files, const ShaderDefines& defines = {});
 
+/// Where `program` has that uniform; -1, which glUniform ignores, where it has none.
+GLint uniform_location(const GlProgram& program, const char* name);
+
 /// Throws std::runtime_error that names `doing` if GL has noted an error; MachineLacks where that is the lack of
 /// memory.
 void check_gl(const char* doing);

@@ -12,35 +12,32 @@ namespace kiln {
 
 namespace {
 
-constexpr std::size_t block_receivers = 256;  // one stream of rays
-constexpr std::size_t group_blocks = 64;      // between two reports of progress
-constexpr int sum_directions = 64;            // short sums added to long ones keep float32's error down
+constexpr std::size_t stream_receivers = 256;
+constexpr std::size_t group_streams = 64;  // between two reports of progress
 
-/// B_i(s_d) of all directions, row after row, with the quadrature weight and 1/pi in it.
-std::vector<float> weighted_basis(std::span<const Eigen::Vector3f> directions, int bands) {
+/// B_i(s_d) of all directions, row after row.
+std::vector<float> basis_at(std::span<const Eigen::Vector3f> directions, int bands) {
   const ShBasis basis(bands);
   std::vector<float> rows(directions.size() * basis.size());
   std::vector<double> values(basis.size());
-  const double weight = 4.0 / static_cast<double>(directions.size());
   for (std::size_t d = 0; d < directions.size(); ++d) {
     basis.evaluate<double>(directions[d].cast<double>(), values);
-    for (int i = 0; i < basis.size(); ++i) rows[d * basis.size() + i] = static_cast<float>(weight * values[i]);
+    std::copy(values.begin(), values.end(), rows.begin() + d * basis.size());
   }
   return rows;
 }
 
 }  // namespace
 
-TransferVectors transfer_by_rays(const RayScene& scene, const Receivers& receivers,
-                                 std::span<const Eigen::Vector3f> directions, int bands, float ray_offset,
-                                 const ProgressFunction& progress) {
-  const int coefficients = coefficient_count(bands);
-  const std::vector<float> basis_rows = weighted_basis(directions, bands);
-  TransferVectors transfer(receivers.size(), coefficients);
+void add_transfer_by_rays(const RayScene& scene, const Receivers& receivers,
+                          std::span<const Eigen::Vector3f> directions, float ray_offset, TransferSums& sums,
+                          const ProgressFunction& progress) {
+  const int coefficients = sums.coefficients;
+  const std::vector<float> basis_rows = basis_at(directions, band_of(coefficients - 1) + 1);
 
-  const auto shade_block = [&](std::size_t begin) {
-    const std::size_t count = std::min(block_receivers, receivers.size() - begin);
-    std::vector<float> sums(count * coefficients, 0.f), short_sums(count * coefficients, 0.f);
+  const auto shade_stream = [&](std::size_t begin) {
+    const std::size_t count = std::min(stream_receivers, receivers.size() - begin);
+    std::vector<float> block_sums(count * coefficients, 0.f);
     std::vector<Eigen::Vector3f> origins(count);
     std::vector<std::uint32_t> facing(count);
     std::vector<float> cosines(count);
@@ -61,29 +58,37 @@ TransferVectors transfer_by_rays(const RayScene& scene, const Receivers& receive
       const float* row = basis_rows.data() + d * coefficients;
       for (std::size_t k = 0; k < rays; ++k) {
         if (occluded[k] != 0) continue;
-        float* sum = short_sums.data() + static_cast<std::size_t>(facing[k]) * coefficients;
+        float* sum = block_sums.data() + static_cast<std::size_t>(facing[k]) * coefficients;
         for (int i = 0; i < coefficients; ++i) sum[i] += cosines[k] * row[i];
       }
-      if ((d + 1) % sum_directions == 0 || d + 1 == directions.size()) {
-        for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += short_sums[k];
-        std::fill(short_sums.begin(), short_sums.end(), 0.f);
+      if ((d + 1) % block_directions == 0 || d + 1 == directions.size()) {
+        for (int i = 0; i < coefficients; ++i)
+          for (std::size_t r = 0; r < count; ++r)
+            sums.plane(i)[begin + r] += to_fixed_point(block_sums[r * coefficients + i]);
+        std::fill(block_sums.begin(), block_sums.end(), 0.f);
       }
     }
-    for (int i = 0; i < coefficients; ++i)
-      for (std::size_t r = 0; r < count; ++r) transfer.plane(i)[begin + r] = sums[r * coefficients + i];
   };
 
-  const std::size_t blocks = (receivers.size() + block_receivers - 1) / block_receivers;
-  for (std::size_t first = 0; first < blocks; first += group_blocks) {
-    const std::size_t last = std::min(first + group_blocks, blocks);
+  const std::size_t streams = (receivers.size() + stream_receivers - 1) / stream_receivers;
+  for (std::size_t first = 0; first < streams; first += group_streams) {
+    const std::size_t last = std::min(first + group_streams, streams);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(first, last, 1),
                       [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t block = range.begin(); block != range.end(); ++block)
-                          shade_block(block * block_receivers);
+                        for (std::size_t stream = range.begin(); stream != range.end(); ++stream)
+                          shade_stream(stream * stream_receivers);
                       });
-    progress(static_cast<double>(last) / static_cast<double>(blocks));
+    progress(static_cast<double>(last) / static_cast<double>(streams));
   }
-  return transfer;
+  sums.directions += static_cast<std::int64_t>(directions.size());
+}
+
+TransferVectors transfer_by_rays(const RayScene& scene, const Receivers& receivers,
+                                 std::span<const Eigen::Vector3f> directions, int bands, float ray_offset,
+                                 const ProgressFunction& progress) {
+  TransferSums sums(receivers.size(), coefficient_count(bands));
+  add_transfer_by_rays(scene, receivers, directions, ray_offset, sums, progress);
+  return sums.transfer();
 }
 
 }  // namespace kiln
