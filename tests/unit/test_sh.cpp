@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
@@ -109,7 +110,7 @@ TEST(ShBasis, ClampedCosineMatchesQuadrature) {
 }
 
 TEST(Directions, AreUnitVectorsThatBalance) {
-  for (const Sampling sampling : {Sampling::fibonacci, Sampling::stratified})
+  for (const Sampling sampling : {Sampling::fibonacci, Sampling::stratified, Sampling::progressive})
     for (const int count : {1, 2, 7, 1000, 1024}) {
       const std::vector<Eigen::Vector3f> directions = sample_directions(sampling, count, 5);
       ASSERT_EQ(directions.size(), static_cast<std::size_t>(count));
@@ -166,6 +167,104 @@ TEST(Directions, FibonacciIsTwiceAsAccurateAsStratified) {
   RecordProperty("fibonacci", std::to_string(fibonacci));
   RecordProperty("stratified", std::to_string(stratified));
   EXPECT_LT(2 * fibonacci, stratified) << "fibonacci " << fibonacci << ", stratified " << stratified;
+}
+
+TEST(Directions, ProgressiveIsTheSameHoweverItIsCut) {
+  const auto whole = sample_directions(Sampling::progressive, 1000, 9);
+  std::vector<Eigen::Vector3f> pieces;
+  for (const int count : {1, 31, 0, 32, 500, 436})
+    for (const Eigen::Vector3f& direction : progressive_directions(static_cast<std::int64_t>(pieces.size()), count, 9))
+      pieces.push_back(direction);
+  EXPECT_EQ(pieces, whole);
+  EXPECT_NE(progressive_directions(0, 1, 10)[0], whole[0]);
+}
+
+TEST(Directions, ProgressiveStaysUnitAndDistinctFarOut) {
+  // Neighbours in a batch of 1,024 are about sqrt(4 pi / 1024) = 0.11 apart; the lattice has to hold at 10^8 too.
+  for (const std::int64_t first : {std::int64_t{0}, std::int64_t{99'999'744}, std::int64_t{1} << 29}) {
+    const auto directions = progressive_directions(first, 1024, 3);
+    double nearest = 2;
+    for (std::size_t a = 0; a < directions.size(); ++a) {
+      ASSERT_NEAR(directions[a].norm(), 1, 1e-6);
+      for (std::size_t b = 0; b < a; ++b) nearest = std::min<double>(nearest, (directions[a] - directions[b]).norm());
+    }
+    // Random points would come as close as 0.002.
+    EXPECT_GT(nearest, 0.03) << "from " << first;
+  }
+}
+
+TEST(Directions, ProgressivePrefixesIntegrateSphericalHarmonics) {
+  // Smooth integrands: the error falls nearly as 1 / count (a lattice, and its ragged end), where random points have
+  // about 4 / sqrt(count) in the worst entry, which is 400 / count at 10,000, and stratified ones 55 / count. Measured:
+  // 30 / count.
+  const ShBasis basis(6);
+  std::vector<double> values(basis.size());
+  const auto directions = sample_directions(Sampling::progressive, 10'016, 4);
+  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(basis.size(), basis.size());
+  for (int count = 1; count <= 10'016; ++count) {
+    basis.evaluate<double>(directions[count - 1].cast<double>(), values);
+    const Eigen::Map<const Eigen::VectorXd> row(values.data(), basis.size());
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(row, 4 * std::numbers::pi);
+    if (count % 32 != 0 || count < 64) continue;
+    const Eigen::MatrixXd lower = gram.triangularView<Eigen::Lower>();
+    const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(basis.size(), basis.size());
+    ASSERT_LT((lower / count - identity).cwiseAbs().maxCoeff(), 40.0 / count) << count << " directions";
+  }
+}
+
+TEST(Directions, ProgressivePrefixesAreNearlyAsAccurateAsFibonacci) {
+  // Measured over many more cases: at most 1.4 times Fibonacci's error at any prefix; 60 cases leave some scatter.
+  for (const int count : {64, 96, 224, 320, 608, 1024, 1440, 2528, 4096}) {
+    const double progressive = cap_error(Sampling::progressive, count),
+                 fibonacci = cap_error(Sampling::fibonacci, count);
+    EXPECT_LT(progressive, 1.6 * fibonacci) << count << " directions: Fibonacci " << fibonacci;
+  }
+  const double progressive = cap_error(Sampling::progressive, 1024), stratified = cap_error(Sampling::stratified, 1024);
+  EXPECT_LT(2 * progressive, stratified) << "progressive " << progressive << ", stratified " << stratified;
+}
+
+/// The largest angle in degrees between a direction of a block of 32 and the block's mean, over all blocks.
+double widest_block_degrees(const std::vector<Eigen::Vector3f>& directions) {
+  double widest = 0;
+  for (std::size_t begin = 0; begin < directions.size(); begin += 32) {
+    const std::size_t end = std::min(directions.size(), begin + 32);
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (std::size_t i = begin; i < end; ++i) mean += directions[i].cast<double>();
+    for (std::size_t i = begin; i < end; ++i)
+      widest = std::max(widest, std::acos(std::min(1.0, mean.normalized().dot(directions[i].cast<double>()))));
+  }
+  return widest * 180 / std::numbers::pi;
+}
+
+TEST(Directions, CoherentOrderIsAPermutationIntoCompactBlocks) {
+  for (const Sampling sampling : {Sampling::fibonacci, Sampling::progressive})
+    for (const int count : {256, 1024, 1000, 10'000}) {
+      const auto before = sample_directions(sampling, count, 2);
+      auto after = before;
+      order_coherently(after);
+      const auto by_components = [](const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+        return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+      };
+      auto sorted_before = before, sorted_after = after;
+      std::sort(sorted_before.begin(), sorted_before.end(), by_components);
+      std::sort(sorted_after.begin(), sorted_after.end(), by_components);
+      EXPECT_EQ(sorted_before, sorted_after);
+      // No patch can be rounder than a disc of its area; a square's corner is 1.25 times as far off (sqrt(pi / 2)), and
+      // ragged edges add to that.
+      const double disc_degrees = std::acos(1 - 2.0 * 32 / count) * 180 / std::numbers::pi;
+      EXPECT_LT(widest_block_degrees(after), 1.5 * disc_degrees) << count << " directions";
+      EXPECT_GT(widest_block_degrees(before), 80) << "as generated, blocks reach round the sphere or a parallel of it";
+    }
+}
+
+TEST(Directions, CoherentOrderTakesAnyCountAndBlock) {
+  for (const int count : {1, 5, 32, 33, 64, 65, 97})
+    for (const int block : {1, 32, 100}) {
+      auto directions = sample_directions(Sampling::progressive, count, 2);
+      const auto before = directions;
+      order_coherently(directions, block);
+      EXPECT_TRUE(std::is_permutation(before.begin(), before.end(), directions.begin())) << count << ", " << block;
+    }
 }
 
 TEST(Lights, WhiteFacingSurfaceHasRadianceOne) {

@@ -12,10 +12,35 @@ enum class Sampling {
                ///< whole
   stratified,  ///< one jittered point in each cell of a unit square, mapped to the sphere with equal areas (the patent,
                ///< the thesis)
+  progressive,  ///< the first `count` of progressive_directions
 };
 
 /// `count` >= 1 unit vectors; the same for the same arguments on any machine.
 std::vector<Eigen::Vector3f> sample_directions(Sampling sampling, int count, std::uint64_t seed);
+
+/// Directions `first` to `first` + `count` - 1 of an endless sequence of unit vectors of which every prefix is spread
+/// nearly as well as a Fibonacci set of its size. `first` >= 0; `count` >= 0, none gives none. Element i depends on i
+/// and the seed alone, so a sequence cut into batches is the same however it is cut; integer arithmetic up to the sine
+/// and cosine, so that two machines differ by the rounding of libm and the compiler at most.
+///
+/// Source: an extensible rank-1 lattice (Hickernell, Hong, L'Ecuyer and Lemieux, "Extensible lattice sequences for
+/// quasi-Monte Carlo quadrature", 2000): frac(phi(i) (1, a)) with phi the radical inverse in base 2, mapped to the
+/// sphere with equal areas (the height first) and rotated at random as a whole. The first 2^m are a lattice, and what
+/// comes after them a shifted copy, up to 2^30 directions. Properties, over prefixes of 64 to 2,097,152 directions, 36
+/// coefficients of clamped cosine times visibility, where one to three caps of 10 to 50 degrees block:
+/// - its relative error is 1.2 times that of the Fibonacci set of the same size: 1.0 to 1.25 times at powers of two, at
+///   most 1.4 times at any multiple of 32; it falls as count^-3/4, as Fibonacci's does. Stratified jitter has 1.7 (at a
+///   million) to 3.3 times (at 64) Fibonacci's error.
+/// - Half the distance between the mean of the first half and that of the second is 1.5 times the error of the whole
+///   (1.1 to 2.0): the halves err in opposite directions, so this estimate is on the safe side.
+std::vector<Eigen::Vector3f> progressive_directions(std::int64_t first, int count, std::uint64_t seed);
+
+/// Reorders unit vectors so that each consecutive `block` >= 1 of them, counted from the first (the last may have
+/// fewer), is a compact patch: the sphere is cut into two caps and collars of nearly square patches (after Leopardi, "A
+/// partition of the unit sphere into regions of equal area and small diameter", 2006), by rank, so that patches follow
+/// the density of the directions. Meant for sets that cover the sphere about evenly; a deterministic permutation of
+/// any.
+void order_coherently(std::vector<Eigen::Vector3f>& directions, int block = 32);
 
 /// The unit vector of an azimuth (0 is +Z, 90 is +X) and an elevation above the horizon (90 is +Y).
 Eigen::Vector3f direction_from_angles(double azimuth_degrees, double elevation_degrees);
