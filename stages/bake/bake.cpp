@@ -1,35 +1,47 @@
 #include "bake/bake.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <map>
 #include <memory>
 #include <vector>
 
-#include "bake/egl_engine.h"
-#include "bake/embree_engine.h"
+#include "bake/engines.h"
 #include "base/command_line.h"
+#include "base/errors.h"
+#include "sh/basis.h"
 
 namespace kiln {
 
+namespace fs = std::filesystem;
+
 namespace {
 
-std::unique_ptr<TransferEngine> make_engine(BakeBackend backend, const Occluders& occluders,
-                                            const BakeSettings& settings, int threads) {
-  const TransferScene scene{occluders.mesh.positions, occluders.mesh.triangles, occluders.hull, occluders.closed};
-  if (backend == BakeBackend::embree) return std::make_unique<EmbreeEngine>(scene, settings.ray_offset);
-  ShadowMapSettings shadows;
-  shadows.size_texels = settings.shadow_size;
-  shadows.depth_bias = settings.shadow_bias;
-  shadows.normal_offset_texels = settings.normal_offset;
-  shadows.filter =
-      settings.shadow_filter == BakeShadowFilter::nearest ? ShadowFilter::nearest : ShadowFilter::two_by_two;
-  return std::make_unique<EglEngine>(scene, settings.gl_device, threads, shadows);
+/// What a result tells besides the transfer.
+BakeResult describe(const Integration& integration, const Stopwatch& stopwatch) {
+  BakeResult result;
+  result.backend = integration.backend();
+  result.sampling = integration.sampling();
+  result.directions = integration.directions();
+  result.unoccluded = integration.unoccluded();
+  result.choice = integration.choice();
+  result.seconds = stopwatch.seconds();
+  return result;
 }
 
-TransferVectors integrate(TransferEngine& engine, const Receivers& receivers,
-                          std::span<const Eigen::Vector3f> directions, int bands, const ProgressFunction& progress) {
-  engine.set_receivers(receivers, bands);
-  engine.add(directions, progress);
-  return engine.sums().transfer();
+/// The same after the engine has worked, `before` being its work ahead of that.
+BakeResult describe(Integration& integration, const TransferWork& before, const Stopwatch& stopwatch) {
+  BakeResult result = describe(integration, stopwatch);
+  result.renderer = integration.engine().renderer();
+  result.software_renderer = integration.engine().is_software();
+  result.work = integration.engine().work() - before;
+  return result;
+}
+
+ProgressFunction part_of(const ProgressFunction& progress, std::size_t part, std::size_t parts) {
+  return [&progress, part, parts](double fraction) {
+    progress((static_cast<double>(part) + fraction) / static_cast<double>(parts));
+  };
 }
 
 /// Every `step`-th receiver's transfer.
@@ -43,15 +55,84 @@ TransferVectors thin_out(const TransferVectors& transfer, std::size_t step) {
 }  // namespace
 
 BakeResult bake(const TexelReceivers& receivers, const Occluders& occluders, const BakeSettings& settings, int seed,
-                int threads, const ProgressFunction& progress) {
+                int threads, const Checkpoints& checkpoints, const ProgressFunction& progress) {
   const Stopwatch stopwatch;
-  const std::vector<Eigen::Vector3f> directions = sample_directions(settings.sampling, settings.directions, seed);
-  const std::unique_ptr<TransferEngine> engine = make_engine(settings.backend, occluders, settings, threads);
-  BakeResult result;
-  result.transfer = integrate(*engine, receivers.view(), directions, settings.bands, progress);
-  result.renderer = engine->renderer();
-  result.software_renderer = engine->is_software();
-  result.seconds = stopwatch.seconds();
+  Integration integration(receivers.view(), occluders, settings, seed, threads, progress);
+  const TransferWork before = integration.engine().work();
+  TransferVectors transfer(receivers.texels.size(), coefficient_count(settings.bands));
+  integration.put_unoccluded(transfer);
+  for (std::size_t slab = 0; slab < integration.slabs(); ++slab)
+    integration.put(slab, integration.sum(slab, {}, checkpoints, part_of(progress, slab, integration.slabs())).sums,
+                    transfer);
+  BakeResult result = describe(integration, before, stopwatch);
+  result.transfer = std::move(transfer);
+  return result;
+}
+
+BakeResult bake_shard(OutputSet& outputs, const Shard& shard, const TexelReceivers& receivers,
+                      const Occluders& occluders, const BakeSettings& settings, int seed, int threads,
+                      const Checkpoints& checkpoints, const ProgressFunction& progress) {
+  const Stopwatch stopwatch;
+  Integration integration(receivers.view(), occluders, settings, seed, threads, progress);
+  const TransferWork before = integration.engine().work();
+  for (std::size_t slab = 0; slab < integration.slabs(); ++slab)
+    write_sums(outputs.add(slab_name(slab)),
+               integration.sum(slab, shard, checkpoints, part_of(progress, slab, integration.slabs())));
+  BakeResult result = describe(integration, before, stopwatch);
+  result.transfer = TransferVectors(0, coefficient_count(settings.bands));
+  return result;
+}
+
+BakeResult merge_shards(const std::vector<fs::path>& folders, const TexelReceivers& receivers,
+                        const Occluders& occluders, const BakeSettings& settings, int seed, int threads,
+                        const ProgressFunction& progress) {
+  const Stopwatch stopwatch;
+  // Step 1: the first shard says how many directions there are, and who integrated them.
+  const Json first = read_sums(folders.front() / slab_name(0)).key;
+  BakeSettings merged = settings;
+  if (parse_error_target(settings.max_error).wanted) {
+    merged.sampling = Sampling::progressive;
+    merged.directions = first.value("directions", 1);
+  }
+  if (const std::string backend = first.value("backend", ""); settings.backend == BakeBackend::automatic)
+    merged.backend = backend == "egl" ? BakeBackend::egl : BakeBackend::embree;
+  const std::string renderer = first.value("renderer", "");
+  merged.max_error = "none";
+  const Integration integration(receivers.view(), occluders, merged, seed, threads, progress);
+
+  // Step 2: slab after slab, add.
+  const int count = static_cast<int>(folders.size());
+  TransferVectors transfer(receivers.texels.size(), coefficient_count(settings.bands));
+  integration.put_unoccluded(transfer);
+  for (std::size_t slab = 0; slab < integration.slabs(); ++slab) {
+    std::map<std::string, fs::path> seen;
+    TransferSums sums;
+    for (const fs::path& folder : folders) {
+      const fs::path path = folder / slab_name(slab);
+      SumsFile part = read_sums(path);
+      const std::string name = part.key.value("shard", "1/1");
+      const Shard shard = parse_shard(name);
+      if (part.key != integration.key(shard, renderer))
+        throw BadInput(path.string(), "holds sums of a bake with other inputs, settings or renderer",
+                       "a shard of the same command", "repeat the command of the shards, with --merge for --shard");
+      if (shard.count != count)
+        throw BadInput(path.string(), "is shard " + name + ", of " + std::to_string(count) + " given",
+                       std::to_string(shard.count) + " shards", "give --merge once for each of them");
+      if (!part.complete()) throw BadInput(path.string(), "is a checkpoint", "a whole shard", "bake it to its end");
+      if (!seen.emplace(name, path).second)
+        throw BadInput(path.string(), "is shard " + name + ", as is " + seen[name].string(), "each shard once",
+                       "give --merge once for each of them");
+      if (sums.values.empty())
+        sums = std::move(part.sums);
+      else
+        sums.add(part.sums);
+    }
+    integration.put(slab, sums, transfer);
+    progress(static_cast<double>(slab + 1) / static_cast<double>(integration.slabs()));
+  }
+  BakeResult result = describe(integration, stopwatch);
+  result.renderer = renderer;
+  result.transfer = std::move(transfer);
   return result;
 }
 
@@ -61,12 +142,16 @@ BakeVerification verify(const BakeResult& result, const TransferVectors& stored,
   BakeVerification verification;
 
   // Step 1: the other backend, over the very same directions.
-  const BakeBackend other = settings.backend == BakeBackend::egl ? BakeBackend::embree : BakeBackend::egl;
-  const std::vector<Eigen::Vector3f> directions = sample_directions(settings.sampling, settings.directions, seed);
-  const std::unique_ptr<TransferEngine> engine = make_engine(other, occluders, settings, threads);
-  const TransferVectors other_transfer = integrate(*engine, receivers.view(), directions, settings.bands,
-                                                   [&](double fraction) { progress(0.5 * fraction); });
-  verification.other_backend = engine->renderer();
+  const BakeBackend other = result.backend == BakeBackend::egl ? BakeBackend::embree : BakeBackend::egl;
+  BakeSettings other_settings = settings;
+  other_settings.backend = other;
+  other_settings.max_error = "none";
+  other_settings.directions = result.directions;
+  other_settings.sampling = result.sampling;
+  const BakeResult other_result =
+      bake(receivers, occluders, other_settings, seed, threads, {}, [&](double fraction) { progress(0.5 * fraction); });
+  const TransferVectors& other_transfer = other_result.transfer;
+  verification.other_backend = other_result.renderer;
   const bool rays_are_other = other == BakeBackend::embree;
   verification.backend_difference =
       rays_are_other ? relative_l2(result.transfer, other_transfer) : relative_l2(other_transfer, result.transfer);
@@ -81,9 +166,10 @@ BakeVerification verify(const BakeResult& result, const TransferVectors& stored,
   }
   const std::vector<Eigen::Vector3f> many =
       sample_directions(Sampling::fibonacci, settings.verify_directions, seed + 1u);
-  const TransferVectors reference =
-      integrate(*make_engine(BakeBackend::embree, occluders, settings, threads), {positions, normals}, many,
-                settings.bands, [&](double fraction) { progress(0.5 + 0.5 * fraction); });
+  const std::unique_ptr<TransferEngine> rays = make_engine(BakeBackend::embree, occluders, settings, threads);
+  rays->set_receivers({positions, normals}, settings.bands);
+  rays->add(many, [&](double fraction) { progress(0.5 + 0.5 * fraction); });
+  const TransferVectors reference = rays->sums().transfer();
   verification.reference_directions = settings.verify_directions;
   verification.reference_texels = positions.size();
   verification.integration_error = relative_l2(thin_out(result.transfer, step), reference);

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "bake/bake_settings.h"
+#include "bake/integration.h"
 #include "bake/occluders.h"
 #include "bake/texel_receivers.h"
+#include "base/outputs.h"
 #include "base/progress.h"
 #include "sh/transfer.h"
 
@@ -13,21 +17,39 @@ namespace kiln {
 
 struct BakeResult {
   TransferVectors transfer;  ///< of every receiver, bands^2 coefficients
-  std::string renderer;      ///< what did the work
+  BakeBackend backend = BakeBackend::embree;
+  std::string renderer;  ///< what did the work
   bool software_renderer = false;
+  Sampling sampling = Sampling::fibonacci;
+  int directions = 0;          ///< of all shards together
+  std::size_t unoccluded = 0;  ///< receivers that took the analytic transfer
+  TransferWork work;           ///< of this run, for the others
+  std::optional<DirectionChoice> choice;
   double seconds = 0;  ///< of the integration alone, the engine's start included
 };
 
-/// Integrates the transfer of every receiver, shadowed by the occluders, over settings.directions directions drawn with
-/// `seed`. `threads` is for a software GL renderer. Throws MachineLacks where the backend cannot run.
+/// Integrates the transfer of every receiver, shadowed by the occluders, over directions drawn with `seed`. `threads`
+/// is for a software GL renderer. Leaves and takes up checkpoints as asked for, and removes them when done. Throws
+/// MachineLacks where the backend cannot run, Interrupted, and BadInput for checkpoints that do not fit.
 BakeResult bake(const TexelReceivers& receivers, const Occluders& occluders, const BakeSettings& settings, int seed,
-                int threads, const ProgressFunction& progress = no_progress);
+                int threads, const Checkpoints& checkpoints = {}, const ProgressFunction& progress = no_progress);
+
+/// Integrates one shard's directions alone and writes the sums into `outputs`; `transfer` of the result is empty.
+BakeResult bake_shard(OutputSet& outputs, const Shard& shard, const TexelReceivers& receivers,
+                      const Occluders& occluders, const BakeSettings& settings, int seed, int threads,
+                      const Checkpoints& checkpoints = {}, const ProgressFunction& progress = no_progress);
+
+/// Adds what bake_shard left in `folders`, one for each shard of one bake, in any order: bit for bit what bake() gives.
+/// Throws BadInput where a shard is missing, there twice, or of another bake.
+BakeResult merge_shards(const std::vector<std::filesystem::path>& folders, const TexelReceivers& receivers,
+                        const Occluders& occluders, const BakeSettings& settings, int seed, int threads,
+                        const ProgressFunction& progress = no_progress);
 
 /// How far a baked asset is from the truth.
 struct BakeVerification {
   std::string other_backend;
-  double backend_difference =
-      0;  ///< relative L2 to the other backend over the same directions, all texels, before quantisation
+  /// Relative L2 to the other backend over the same directions, all texels, before quantisation.
+  double backend_difference = 0;
   int reference_directions = 0;
   std::size_t reference_texels = 0;
   double integration_error = 0;  ///< relative L2 to that many rays, before quantisation

@@ -3,6 +3,8 @@
 #include <optional>
 
 #include "bake/coefficient_planes.h"
+#include "bake/vertex_planes.h"
+#include "bake/vertex_receivers.h"
 #include "base/errors.h"
 #include "detail/asset_hints.h"
 #include "detail/detail_maps.h"
@@ -23,11 +25,54 @@ int packed_size(const fs::path& atlas) {
   return hints.size > 0 ? hints.size : default_size_texels;
 }
 
+std::vector<TriangleMesh> load_occluders(const BakePaths& paths) {
+  std::vector<TriangleMesh> meshes;
+  for (const fs::path& occluder : paths.occluders) meshes.push_back(load_mesh(occluder));
+  if (meshes.empty()) meshes.push_back(load_mesh(paths.atlas));
+  return meshes;
+}
+
+BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings) {
+  if (!paths.detail.empty())
+    throw WrongUsage(
+        "per-vertex: found --detail; expected none, which is for texels; --receiver high takes the first "
+        "--occluder as the high mesh");
+  if (settings.size != 0) throw WrongUsage("per-vertex: found --size; expected none, which is for texels");
+  BakeScene scene;
+  scene.vertex_mesh = load_vertex_mesh(paths.atlas);
+  const std::vector<TriangleMesh> occluders = load_occluders(paths);
+  scene.occluders = join_occluders(occluders);
+  const bool on_high = settings.receiver == BakeReceiver::high && !paths.occluders.empty();
+  VertexReceivers vertices = on_high ? receivers_on_high_of_vertices(scene.vertex_mesh, occluders.front())
+                                     : receivers_on_vertices(scene.vertex_mesh);
+  scene.receivers = std::move(vertices.receivers);
+  for (std::size_t r = 0; r < scene.receivers.texels.size(); ++r)
+    scene.vertex_mesh.normals[scene.receivers.texels[r]] = scene.receivers.normals[r];
+  scene.vertex_metrics = {{"receiver_distance_largest", vertices.largest_distance},
+                          {"vertices_facing_away", vertices.facing_away}};
+  return scene;
+}
+
+void write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeResult& result,
+                    const BakeSettings& settings) {
+  AssetFiles files{"atlas.drc", ""};
+  fs::copy_file(paths.atlas, outputs.add(files.mesh), fs::copy_options::overwrite_existing);
+  if (!paths.detail.empty()) {
+    files.normals = "normal.png";
+    fs::copy_file(paths.detail / files.normals, outputs.add(files.normals), fs::copy_options::overwrite_existing);
+  } else {
+    outputs.remove_stale("normal.png");
+  }
+  write_planes(outputs, {result.transfer}, scene.receivers, settings.bits, files);
+  outputs.remove_stale(vertex_mesh_name);
+}
+
 }  // namespace
 
 BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) {
   if (settings.bits != 8 && settings.bits != 16)
     throw WrongUsage("bits: found '" + std::to_string(settings.bits) + "'; expected 8 or 16");
+  if (settings.per_vertex) return load_vertex_scene(paths, settings);
   if (settings.receiver == BakeReceiver::high && paths.detail.empty())
     throw WrongUsage("receiver high: found no --detail FOLDER; expected the output of kiln-normals, or --receiver low");
   const TriangleMesh atlas = load_atlas(paths.atlas);
@@ -45,38 +90,55 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
   if (scene.receivers.texels.empty())
     throw BadInput(paths.atlas.string(), "covers no texel", "an atlas packed for this size", "bake at a larger size");
 
-  std::vector<TriangleMesh> meshes;
-  for (const fs::path& occluder : paths.occluders) meshes.push_back(load_mesh(occluder));
-  if (meshes.empty()) meshes.push_back(load_mesh(paths.atlas));
-  scene.occluders = join_occluders(meshes);
+  scene.occluders = join_occluders(load_occluders(paths));
   return scene;
+}
+
+Json describe_bake(const BakeScene& scene, const BakeResult& result) {
+  const double texel_directions = static_cast<double>(scene.receivers.texels.size()) * result.directions;
+  Json metrics = {{"backend", result.backend == BakeBackend::egl ? "egl" : "embree"},
+                  {"renderer", result.renderer},
+                  {"software_renderer", result.software_renderer},
+                  {"texels", scene.receivers.texels.size()},
+                  {"directions", result.directions},
+                  {"texel_directions_per_second", texel_directions / result.seconds},
+                  {"coefficients", result.transfer.coefficients},
+                  {"occluder_triangles", scene.occluders.mesh.triangles.size()},
+                  {"occluders_closed", scene.occluders.closed}};
+  if (result.choice)
+    metrics["max_error"] = {{"target", result.choice->target_error}, {"estimated", result.choice->estimated_error}};
+  // Shares of all pairs of a texel and a direction.
+  const auto all = static_cast<double>(result.work.pairs);
+  const auto share = [&](std::uint64_t pairs) { return all > 0 ? static_cast<double>(pairs) / all : 0; };
+  metrics["skipped"] = {{"unoccluded_texels",
+                         static_cast<double>(result.unoccluded) / static_cast<double>(scene.receivers.texels.size())},
+                        {"behind_tiles", share(result.work.behind_tiles)},
+                        {"lit_tiles", share(result.work.lit_tiles)},
+                        {"shadowed_tiles", share(result.work.shadowed_tiles)}};
+  metrics["ambiguous"] = share(result.work.ambiguous);
+  metrics["refined"] = share(result.work.refined);
+  return metrics;
 }
 
 Json save_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeResult& result,
                const BakeSettings& settings, const CommandLine& command) {
-  AssetFiles files{"atlas.drc", ""};
-  fs::copy_file(paths.atlas, outputs.add(files.mesh), fs::copy_options::overwrite_existing);
-  if (!paths.detail.empty()) {
-    files.normals = "normal.png";
-    fs::copy_file(paths.detail / files.normals, outputs.add(files.normals), fs::copy_options::overwrite_existing);
+  TransferVectors stored;
+  Json places;  // what they are and how many
+  if (settings.per_vertex) {
+    const std::vector<std::uint32_t> sources =
+        write_vertex_planes(outputs, {result.transfer}, scene.receivers, scene.vertex_mesh, settings.bits);
+    stored = read_vertex_planes(outputs.staging(), scene.receivers, sources).front();
+    places = {{"vertices", sources.size()}};
+    places.update(scene.vertex_metrics);
   } else {
-    outputs.remove_stale("normal.png");
+    write_textured(outputs, paths, scene, result, settings);
+    stored = read_planes(outputs.staging(), scene.receivers).front();
+    places = {{"width", scene.receivers.width}, {"height", scene.receivers.height}};
   }
-  write_planes(outputs, {result.transfer}, scene.receivers, settings.bits, files);
-  const TransferVectors stored = read_planes(outputs.staging(), scene.receivers).front();
 
-  const double texel_directions = static_cast<double>(scene.receivers.texels.size()) * settings.directions;
-  Json metrics = {{"renderer", result.renderer},
-                  {"software_renderer", result.software_renderer},
-                  {"texels", scene.receivers.texels.size()},
-                  {"directions", settings.directions},
-                  {"texel_directions_per_second", texel_directions / result.seconds},
-                  {"width", scene.receivers.width},
-                  {"height", scene.receivers.height},
-                  {"coefficients", result.transfer.coefficients},
-                  {"occluder_triangles", scene.occluders.mesh.triangles.size()},
-                  {"occluders_closed", scene.occluders.closed},
-                  {"quantisation_error", relative_l2(stored, result.transfer)}};
+  Json metrics = describe_bake(scene, result);
+  metrics["quantisation_error"] = relative_l2(stored, result.transfer);
+  metrics.update(places);
   if (settings.verify_directions > 0) {
     const BakeVerification v = verify(result, stored, scene.receivers, scene.occluders, settings, command.seed(),
                                       command.threads(), command.progress("verify"));

@@ -9,7 +9,7 @@
 namespace kiln {
 
 struct BakePaths {
-  std::filesystem::path atlas;
+  std::filesystem::path atlas;                   ///< per vertex: any mesh
   std::filesystem::path detail;                  ///< empty: none
   std::vector<std::filesystem::path> occluders;  ///< empty: the atlas' own mesh
   std::filesystem::path output;
@@ -18,13 +18,21 @@ struct BakePaths {
 struct BakeScene {
   TexelReceivers receivers;
   Occluders occluders;
+
+  // Of a bake per vertex alone.
+  TriangleMesh vertex_mesh;  ///< as it is to be written, normals those of the receivers
+  Json vertex_metrics;
 };
 
 /// Loads what a bake needs. Throws WrongUsage where settings and paths do not go together, BadInput for bad files.
 BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings);
 
-/// Writes the planes, ranges.json and copies of the mesh and the normal map, so that the folder is all a runtime needs;
-/// reads the planes back and measures; verifies if settings ask for it. Gives the metrics of bake.json.
+/// Metrics of bake.json that do not depend on what was written.
+Json describe_bake(const BakeScene& scene, const BakeResult& result);
+
+/// Writes the planes, ranges.json and copies of the mesh and the normal map (per vertex: ranges.json and the mesh that
+/// holds the coefficients), so that the folder is all a runtime needs; reads the planes back and measures; verifies if
+/// settings ask for it. Gives the metrics of bake.json.
 Json save_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeResult& result,
                const BakeSettings& settings, const CommandLine& command);
 

@@ -6,12 +6,24 @@ OptionSet bake_options(BakeSettings& settings) {
   OptionSet options;
   options.integer("bands", settings.bands, 1, 24, "Bands of spherical harmonics; n bands have n*n coefficients")
       .integer("directions", settings.directions, 1, 100'000'000, "Directions that the transfer is integrated over")
-      .choice("sampling", settings.sampling, {{"fibonacci", Sampling::fibonacci}, {"stratified", Sampling::stratified}},
+      .choice("sampling", settings.sampling,
+              {{"fibonacci", Sampling::fibonacci},
+               {"progressive", Sampling::progressive},
+               {"stratified", Sampling::stratified}},
               "How the directions are spread")
-      .choice("backend", settings.backend, {{"egl", BakeBackend::egl}, {"embree", BakeBackend::embree}},
-              "Shadows from depth maps on the GPU, or from rays on the CPU")
-      .choice("receiver", settings.receiver, {{"high", BakeReceiver::high}, {"low", BakeReceiver::low}},
-              "Which surface receives light: the high mesh's point of a texel (needs --detail) or the low mesh's")
+      .text(
+          "max-error", settings.max_error,
+          "Takes as many directions as bring the estimated error of integration under this: a relative L2 of transfer "
+          "vectors, or auto for what --bits costs; the directions are then progressive ones")
+      .integer("max-directions", settings.max_directions, 64, 100'000'000, "The most directions that --max-error takes")
+      .choice("backend", settings.backend,
+              {{"auto", BakeBackend::automatic}, {"egl", BakeBackend::egl}, {"embree", BakeBackend::embree}},
+              "Shadows from depth maps on the GPU, or from rays on the CPU; auto: the GPU if EGL has one")
+      .choice(
+          "receiver", settings.receiver, {{"high", BakeReceiver::high}, {"low", BakeReceiver::low}},
+          "Which surface receives light: the high mesh's point of a texel (needs --detail) or of a vertex (the closest "
+          "of the first --occluder), or the low mesh's")
+      .toggle("per-vertex", settings.per_vertex, "Bake into the vertices of any mesh: no atlas, no --detail, no --size")
       .integer("bits", settings.bits, 8, 16, "Bits of a stored coefficient, 8 or 16")
       .integer("size", settings.size, 0, 16384,
                "Width and height in texels where no --detail says it; 0 for what kiln-atlas packed for")

@@ -7,9 +7,10 @@
 
 namespace kiln {
 
-enum class BakeBackend { egl, embree };
+/// `automatic`: egl where EGL has a GPU, else embree.
+enum class BakeBackend { automatic, egl, embree };
 
-/// Which surface receives light: the point of the high mesh that a texel stands for, or the texel's point of the low
+/// Which surface receives light: the point of the high mesh that a texel or vertex stands for, or its point of the low
 /// mesh.
 enum class BakeReceiver { high, low };
 
@@ -18,11 +19,14 @@ enum class BakeShadowFilter { nearest, two_by_two };
 struct BakeSettings {
   int bands = 5;  ///< bands^2 coefficients
   int directions = 1024;
+  std::string max_error = "none";  ///< none, auto or relative L2: decides the number of directions
+  int max_directions = 65536;      ///< that max_error may take
   Sampling sampling = Sampling::fibonacci;
   int bits = 8;  ///< of a stored coefficient
-  BakeBackend backend = BakeBackend::egl;
+  BakeBackend backend = BakeBackend::automatic;
   BakeReceiver receiver = BakeReceiver::high;
-  int size = 0;  ///< texels, where there is no detail folder to say so; 0: what the atlas was packed for
+  bool per_vertex = false;  ///< vertices receive light, not texels
+  int size = 0;             ///< texels, where there is no detail folder to say so; 0: what the atlas was packed for
   std::string gl_device = "auto";
   int shadow_size = 1024;    ///< texels
   double shadow_bias = 0;    ///< fraction of the occluders' extent along the direction

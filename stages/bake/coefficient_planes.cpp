@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <set>
 
-#include "base/options.h"
 #include "image/gutter.h"
 #include "image/image_file.h"
 #include "sh/basis.h"
@@ -46,6 +44,26 @@ float PlaneRange::recover(std::uint32_t stored, int bits) const {
   return static_cast<float>(lowest + stored / top * (static_cast<double>(highest) - lowest));
 }
 
+PlaneRange range_of(std::span<const float> values) {
+  const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
+  return {*lowest, *highest};
+}
+
+Json ranges_head(int channels, int coefficients, int bits) {
+  return {{"format", "kiln-prt"},
+          {"version", 1},
+          {"bands", band_of(coefficients - 1) + 1},
+          {"channels", channels},
+          {"bits", bits}};
+}
+
+void remove_stale_planes(OutputSet& outputs, const std::set<std::string>& written) {
+  for (const auto& entry : std::filesystem::directory_iterator(outputs.folder())) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("coeff_") && name.ends_with(".png") && !written.contains(name)) outputs.remove_stale(name);
+  }
+}
+
 void write_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels, const TexelReceivers& receivers,
                   int bits, const AssetFiles& files) {
   const std::vector<std::uint8_t> covered = receivers.covered();
@@ -54,8 +72,7 @@ void write_planes(OutputSet& outputs, const std::vector<TransferVectors>& channe
   for (std::size_t channel = 0; channel < channels.size(); ++channel)
     for (int i = 0; i < channels[channel].coefficients; ++i) {
       const std::span<const float> values = channels[channel].plane(i);
-      const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
-      const PlaneRange range{*lowest, *highest};
+      const PlaneRange range = range_of(values);
       Image<float> plane(receivers.width, receivers.height, 1);
       for (std::size_t r = 0; r < values.size(); ++r) plane.values()[receivers.texels[r]] = values[r];
       fill_gutters(plane, covered);
@@ -69,23 +86,15 @@ void write_planes(OutputSet& outputs, const std::vector<TransferVectors>& channe
           {{"file", name}, {"channel", channel}, {"coefficient", i}, {"min", range.lowest}, {"max", range.highest}});
     }
 
-  Json ranges = {{"format", "kiln-prt"},
-                 {"version", 1},
-                 {"bands", band_of(channels[0].coefficients - 1) + 1},
-                 {"channels", channels.size()},
-                 {"bits", bits},
-                 {"width", receivers.width},
-                 {"height", receivers.height},
-                 {"basis", "real-sh-orthonormal"},
-                 {"mesh", files.mesh}};
+  Json ranges = ranges_head(static_cast<int>(channels.size()), channels[0].coefficients, bits);
+  ranges["width"] = receivers.width;
+  ranges["height"] = receivers.height;
+  ranges["basis"] = basis_name;
+  ranges["mesh"] = files.mesh;
   if (!files.normals.empty()) ranges["normals"] = files.normals;
   ranges["planes"] = planes;
   outputs.add_text("ranges.json", ranges.dump(2) + "\n");
-
-  for (const auto& entry : std::filesystem::directory_iterator(outputs.folder())) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("coeff_") && name.ends_with(".png") && !written.contains(name)) outputs.remove_stale(name);
-  }
+  remove_stale_planes(outputs, written);
 }
 
 std::vector<TransferVectors> read_planes(const std::filesystem::path& folder, const TexelReceivers& receivers) {

@@ -2,10 +2,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "bake/texel_receivers.h"
+#include "base/options.h"
 #include "base/outputs.h"
 #include "sh/transfer.h"
 
@@ -20,6 +23,18 @@ struct PlaneRange {
   std::uint32_t store(float value, int bits) const;
   float recover(std::uint32_t stored, int bits) const;
 };
+
+/// The range of one plane's values, at least one.
+PlaneRange range_of(std::span<const float> values);
+
+/// What ranges.json says of the basis: sh/basis.h.
+inline constexpr char basis_name[] = "real-sh-orthonormal";
+
+/// The fields that every ranges.json begins with.
+Json ranges_head(int channels, int coefficients, int bits);
+
+/// Has commit() remove the planes in the output folder that are not among the names `written`.
+void remove_stale_planes(OutputSet& outputs, const std::set<std::string>& written);
 
 /// What a consumer finds in the folder besides the planes; names relative to it.
 struct AssetFiles {

@@ -30,14 +30,10 @@ struct TransferWork {
   std::uint64_t ambiguous = 0;       ///< depth tests within the map's error band
   std::uint64_t refined = 0;         ///< of these, decided by rays
 
-  TransferWork& operator+=(const TransferWork& other) {
-    pairs += other.pairs;
-    behind_tiles += other.behind_tiles;
-    lit_tiles += other.lit_tiles;
-    shadowed_tiles += other.shadowed_tiles;
-    ambiguous += other.ambiguous;
-    refined += other.refined;
-    return *this;
+  TransferWork operator-(const TransferWork& earlier) const {
+    return {pairs - earlier.pairs,         behind_tiles - earlier.behind_tiles,
+            lit_tiles - earlier.lit_tiles, shadowed_tiles - earlier.shadowed_tiles,
+            ambiguous - earlier.ambiguous, refined - earlier.refined};
   }
 };
 

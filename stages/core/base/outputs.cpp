@@ -4,6 +4,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <new>
 #include <system_error>
 #include <unistd.h>
 #include <xxhash.h>
@@ -87,9 +88,9 @@ std::string read_text(const fs::path& file) {
   return text;
 }
 
-std::string hash_file(const fs::path& file) {
-  const std::string bytes = read_text(file);
-  const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
+namespace {
+
+std::string hexadecimal(const XXH128_hash_t& hash) {
   XXH128_canonical_t canonical;
   XXH128_canonicalFromHash(&canonical, hash);
   std::string text;
@@ -99,6 +100,23 @@ std::string hash_file(const fs::path& file) {
     text += digits[byte & 15];
   }
   return text;
+}
+
+}  // namespace
+
+std::string hash_bytes(const std::vector<std::span<const std::byte>>& parts) {
+  XXH3_state_t* state = XXH3_createState();
+  if (state == nullptr) throw std::bad_alloc();
+  XXH3_128bits_reset(state);
+  for (const std::span<const std::byte>& part : parts) XXH3_128bits_update(state, part.data(), part.size());
+  const XXH128_hash_t hash = XXH3_128bits_digest(state);
+  XXH3_freeState(state);
+  return hexadecimal(hash);
+}
+
+std::string hash_file(const fs::path& file) {
+  const std::string bytes = read_text(file);
+  return hexadecimal(XXH3_128bits(bytes.data(), bytes.size()));
 }
 
 }  // namespace kiln

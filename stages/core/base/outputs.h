@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,6 +50,9 @@ std::filesystem::path folder_of(const std::filesystem::path& file);
 
 /// The whole content of a file. Throws BadInput.
 std::string read_text(const std::filesystem::path& file);
+
+/// XXH3 (128 bits) of parts of memory one after another, in hexadecimal.
+std::string hash_bytes(const std::vector<std::span<const std::byte>>& parts);
 
 /// XXH3 (128 bits) of a file's bytes, in hexadecimal. Throws BadInput.
 std::string hash_file(const std::filesystem::path& file);

@@ -120,4 +120,12 @@ bool EglContext::is_software() const {
   return false;
 }
 
+bool has_hardware_egl(const std::string& device) {
+  try {
+    return !EglContext(device, 0).is_software();
+  } catch (const MachineLacks&) {
+    return false;
+  }
+}
+
 }  // namespace kiln

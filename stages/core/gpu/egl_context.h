@@ -28,4 +28,7 @@ class EglContext {
   std::string renderer_;
 };
 
+/// Whether EglContext(device, ...) would be a GPU's.
+bool has_hardware_egl(const std::string& device);
+
 }  // namespace kiln

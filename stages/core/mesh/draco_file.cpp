@@ -4,6 +4,10 @@
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
 #include <fstream>
+#include <memory>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
 
 #include "base/errors.h"
 #include "base/outputs.h"
@@ -11,6 +15,9 @@
 namespace kiln {
 
 namespace {
+
+constexpr char remedy[] = "run the stage that writes it again";
+constexpr char name_entry[] = "name";  // of an attribute's metadata
 
 template <class Vector>
 int add_attribute(draco::Mesh& encoded, draco::GeometryAttribute::Type type, const std::vector<Vector>& values) {
@@ -35,10 +42,9 @@ std::vector<Vector> read_attribute(const draco::Mesh& decoded, draco::GeometryAt
   return values;
 }
 
-}  // namespace
-
-void save_draco(const std::filesystem::path& file, const TriangleMesh& mesh, const DracoQuantisation& quantisation) {
-  draco::Mesh encoded;
+/// Positions, triangles and what else the mesh has as the first attributes of `encoded`, and how to quantise them.
+void add_mesh(draco::Mesh& encoded, const TriangleMesh& mesh, const DracoQuantisation& quantisation,
+              std::vector<std::pair<int, int>>& attribute_bits) {
   encoded.set_num_points(static_cast<std::uint32_t>(mesh.positions.size()));
   encoded.SetNumFaces(mesh.triangles.size());
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -46,39 +52,66 @@ void save_draco(const std::filesystem::path& file, const TriangleMesh& mesh, con
     for (int corner = 0; corner < 3; ++corner) face[corner] = draco::PointIndex(mesh.triangles[i][corner]);
     encoded.SetFace(draco::FaceIndex(i), face);
   }
-  const int positions = add_attribute(encoded, draco::GeometryAttribute::POSITION, mesh.positions);
-  const int normals =
-      mesh.normals.empty() ? -1 : add_attribute(encoded, draco::GeometryAttribute::NORMAL, mesh.normals);
-  const int uvs = mesh.uvs.empty() ? -1 : add_attribute(encoded, draco::GeometryAttribute::TEX_COORD, mesh.uvs);
+  using draco::GeometryAttribute;
+  attribute_bits.emplace_back(add_attribute(encoded, GeometryAttribute::POSITION, mesh.positions),
+                              quantisation.position_bits);
+  if (!mesh.normals.empty())
+    attribute_bits.emplace_back(add_attribute(encoded, GeometryAttribute::NORMAL, mesh.normals),
+                                quantisation.normal_bits);
+  if (!mesh.uvs.empty())
+    attribute_bits.emplace_back(add_attribute(encoded, GeometryAttribute::TEX_COORD, mesh.uvs), quantisation.uv_bits);
+}
 
+/// A generic attribute of `components` unsigned integers a vertex, one after another in `values`.
+template <class Stored, class Value>
+void add_integers(draco::Mesh& encoded, const std::string& name, std::size_t components, draco::DataType type,
+                  const std::vector<Value>& values) {
+  draco::GeometryAttribute description;
+  description.Init(draco::GeometryAttribute::GENERIC, nullptr, static_cast<std::uint8_t>(components), type, false,
+                   static_cast<std::int64_t>(sizeof(Stored) * components), 0);
+  const int id = encoded.AddAttribute(description, true, encoded.num_points());
+  std::vector<Stored> vertex(components);
+  for (std::uint32_t i = 0; i < encoded.num_points(); ++i) {
+    for (std::size_t k = 0; k < components; ++k) vertex[k] = static_cast<Stored>(values[i * components + k]);
+    encoded.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i), vertex.data());
+  }
+  auto metadata = std::make_unique<draco::AttributeMetadata>();
+  metadata->AddEntryString(name_entry, name);
+  encoded.AddAttributeMetadata(id, std::move(metadata));
+}
+
+std::string encode(const draco::Mesh& encoded, const std::vector<std::pair<int, int>>& attribute_bits) {
   draco::ExpertEncoder encoder(encoded);
   encoder.SetSpeedOptions(0, 0);  // smallest file
-  encoder.SetAttributeQuantization(positions, quantisation.position_bits);
-  if (normals >= 0) encoder.SetAttributeQuantization(normals, quantisation.normal_bits);
-  if (uvs >= 0) encoder.SetAttributeQuantization(uvs, quantisation.uv_bits);
+  for (const auto& [attribute, bits] : attribute_bits) encoder.SetAttributeQuantization(attribute, bits);
   draco::EncoderBuffer buffer;
   const draco::Status status = encoder.EncodeToBuffer(&buffer);
   if (!status.ok()) throw std::runtime_error("Draco cannot encode the mesh: " + status.error_msg_string());
+  return {buffer.data(), buffer.size()};
+}
 
+void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
   std::ofstream stream(file, std::ios::binary);
-  stream.write(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+  stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   stream.close();
   if (!stream)
     throw BadInput(file.string(), "cannot be written", "space on the disk", "free some or choose another output");
 }
 
-TriangleMesh load_draco(const std::filesystem::path& file) {
-  const std::string name = file.string();
-  const std::string bytes = read_text(file);
-  if (bytes.empty()) throw BadInput(name, "is empty", "a Draco mesh", "run the stage that writes it again");
+/// `name` is for messages.
+std::unique_ptr<draco::Mesh> decode(const std::string& bytes, const std::string& name) {
+  if (bytes.empty()) throw BadInput(name, "is empty", "a Draco mesh", remedy);
   draco::DecoderBuffer buffer;
   buffer.Init(bytes.data(), bytes.size());
   draco::Decoder decoder;
   auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
   if (!decoded.ok())
     throw BadInput(name, "is no whole Draco mesh (" + decoded.status().error_msg_string() + ")", "a Draco mesh",
-                   "run the stage that writes it again");
-  const draco::Mesh& source = *decoded.value();
+                   remedy);
+  return std::move(decoded).value();
+}
+
+TriangleMesh mesh_of(const draco::Mesh& source, const std::string& name) {
   TriangleMesh mesh;
   mesh.positions = read_attribute<Eigen::Vector3f>(source, draco::GeometryAttribute::POSITION);
   mesh.normals = read_attribute<Eigen::Vector3f>(source, draco::GeometryAttribute::NORMAL);
@@ -88,14 +121,96 @@ TriangleMesh load_draco(const std::filesystem::path& file) {
     for (int corner = 0; corner < 3; ++corner)
       mesh.triangles[i][corner] = source.face(draco::FaceIndex(i))[corner].value();
   if (mesh.triangles.empty() || mesh.positions.empty())
-    throw BadInput(name, "has no faces", "a Draco mesh of triangles", "run the stage that writes it again");
+    throw BadInput(name, "has no faces", "a Draco mesh of triangles", remedy);
   for (const Eigen::Vector3f& position : mesh.positions)
     if (!position.allFinite())
-      throw BadInput(name, "has a coordinate that is not a finite number", "finite coordinates",
-                     "run the stage that writes it again");
+      throw BadInput(name, "has a coordinate that is not a finite number", "finite coordinates", remedy);
   for (Eigen::Vector3f& normal : mesh.normals)
     normal = normal.squaredNorm() > 0 ? Eigen::Vector3f(normal.normalized()) : Eigen::Vector3f::UnitY();
   return mesh;
+}
+
+/// Which vertex of `mesh` each vertex of `written`, a file of it, is. The walk over the triangles that orders vertices
+/// depends on the triangles alone, so another file that holds nothing but positions and the vertices' indices has the
+/// same order; that both hold the same positions and triangles is checked.
+std::vector<std::uint32_t> find_sources(const TriangleMesh& mesh, const TriangleMesh& written,
+                                        const DracoQuantisation& quantisation) {
+  draco::Mesh companion;
+  std::vector<std::pair<int, int>> attribute_bits;
+  add_mesh(companion, {mesh.positions, mesh.triangles, {}, {}}, quantisation, attribute_bits);
+  std::vector<std::uint32_t> indices(mesh.positions.size());
+  std::iota(indices.begin(), indices.end(), 0u);
+  add_integers<std::uint32_t>(companion, "vertex", 1, draco::DT_UINT32, indices);
+  const std::unique_ptr<draco::Mesh> decoded = decode(encode(companion, attribute_bits), "companion");
+  const TriangleMesh mapped = mesh_of(*decoded, "companion");
+  if (mapped.positions != written.positions || mapped.triangles != written.triangles)
+    throw std::runtime_error("Draco orders the vertices of two files of one mesh differently");
+  const draco::PointAttribute& source = *decoded->GetNamedAttribute(draco::GeometryAttribute::GENERIC);
+  std::vector<std::uint32_t> sources(decoded->num_points());
+  for (std::uint32_t i = 0; i < sources.size(); ++i)
+    source.ConvertValue<std::uint32_t>(source.mapped_index(draco::PointIndex(i)), 1, &sources[i]);
+  return sources;
+}
+
+}  // namespace
+
+void save_draco(const std::filesystem::path& file, const TriangleMesh& mesh, const DracoQuantisation& quantisation) {
+  draco::Mesh encoded;
+  std::vector<std::pair<int, int>> attribute_bits;
+  add_mesh(encoded, mesh, quantisation, attribute_bits);
+  write_bytes(file, encode(encoded, attribute_bits));
+}
+
+std::vector<std::uint32_t> save_attributed_draco(const std::filesystem::path& file, const TriangleMesh& mesh,
+                                                 const std::vector<IntegerAttribute>& attributes,
+                                                 const DracoQuantisation& quantisation) {
+  draco::Mesh encoded;
+  std::vector<std::pair<int, int>> attribute_bits;
+  add_mesh(encoded, mesh, quantisation, attribute_bits);
+  for (const IntegerAttribute& attribute : attributes) {
+    const auto components = static_cast<std::size_t>(attribute.components);
+    if (attribute.components < 1 || attribute.components > 4 || (attribute.bits != 8 && attribute.bits != 16) ||
+        attribute.values.size() != mesh.positions.size() * components)
+      throw std::invalid_argument("save_attributed_draco: 1 to 4 components of 8 or 16 bits are needed per vertex");
+    if (attribute.bits == 8)
+      add_integers<std::uint8_t>(encoded, attribute.name, components, draco::DT_UINT8, attribute.values);
+    else
+      add_integers<std::uint16_t>(encoded, attribute.name, components, draco::DT_UINT16, attribute.values);
+  }
+  const std::string bytes = encode(encoded, attribute_bits);
+  write_bytes(file, bytes);
+  const std::string name = file.string();
+  return find_sources(mesh, mesh_of(*decode(bytes, name), name), quantisation);
+}
+
+AttributedMesh load_attributed_draco(const std::filesystem::path& file) {
+  const std::unique_ptr<draco::Mesh> decoded = decode(read_text(file), file.string());
+  AttributedMesh result{mesh_of(*decoded, file.string()), {}};
+  for (int id = 0; id < decoded->num_attributes(); ++id) {
+    const draco::PointAttribute& source = *decoded->attribute(id);
+    if (source.attribute_type() != draco::GeometryAttribute::GENERIC) continue;
+    IntegerAttribute attribute;
+    const draco::AttributeMetadata* metadata = decoded->GetAttributeMetadataByAttributeId(id);
+    const bool is_integer = source.data_type() == draco::DT_UINT8 || source.data_type() == draco::DT_UINT16;
+    if (metadata == nullptr || !metadata->GetEntryString(name_entry, &attribute.name) || !is_integer ||
+        source.num_components() > 4)
+      throw BadInput(file.string(), "has a generic attribute without a name or not of unsigned integers",
+                     "a mesh of kiln-bake --per-vertex", remedy);
+    attribute.components = source.num_components();
+    attribute.bits = source.data_type() == draco::DT_UINT8 ? 8 : 16;
+    attribute.unique_id = source.unique_id();
+    const auto components = static_cast<std::size_t>(attribute.components);
+    attribute.values.resize(decoded->num_points() * components);
+    for (std::uint32_t i = 0; i < decoded->num_points(); ++i)
+      source.ConvertValue<std::uint16_t>(source.mapped_index(draco::PointIndex(i)),
+                                         static_cast<std::int8_t>(components), &attribute.values[i * components]);
+    result.attributes.push_back(std::move(attribute));
+  }
+  return result;
+}
+
+TriangleMesh load_draco(const std::filesystem::path& file) {
+  return mesh_of(*decode(read_text(file), file.string()), file.string());
 }
 
 TriangleMesh load_atlas(const std::filesystem::path& file) {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "mesh/triangle_mesh.h"
 
@@ -18,6 +21,31 @@ struct DracoQuantisation {
 /// order and that of the triangles may change, so whoever measures the result loads it again.
 void save_draco(const std::filesystem::path& file, const TriangleMesh& mesh,
                 const DracoQuantisation& quantisation = {});
+
+/// Whole numbers at every vertex, which a Draco file keeps exactly: a generic attribute of unsigned integers. Consumers
+/// find it by the entry `name` of its metadata, or by its unique id.
+struct IntegerAttribute {
+  std::string name;
+  int components = 1;                 ///< 1 to 4, so that it fits a shader's attribute
+  int bits = 8;                       ///< 8 or 16 of a component
+  std::vector<std::uint16_t> values;  ///< vertex * components + component; below 2^bits
+  std::uint32_t unique_id = 0;        ///< in the file: set by load_attributed_draco
+};
+
+struct AttributedMesh {
+  TriangleMesh mesh;
+  std::vector<IntegerAttribute> attributes;
+};
+
+/// save_draco with further attributes. Gives, for every vertex of the file in its order there, which vertex of `mesh`
+/// it was. A vertex where sheets of surface touch may be there more than once; one without a proper triangle is left
+/// out.
+std::vector<std::uint32_t> save_attributed_draco(const std::filesystem::path& file, const TriangleMesh& mesh,
+                                                 const std::vector<IntegerAttribute>& attributes,
+                                                 const DracoQuantisation& quantisation = {});
+
+/// Reads what save_attributed_draco wrote; attributes in the order they were given. Throws BadInput for anything else.
+AttributedMesh load_attributed_draco(const std::filesystem::path& file);
 
 /// Reads what save_draco wrote, vertices and triangles as they are in the file. Throws BadInput for anything else.
 TriangleMesh load_draco(const std::filesystem::path& file);

@@ -1,0 +1,69 @@
+#include "bake/bake_run.h"
+
+#include "base/errors.h"
+
+namespace kiln {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+fs::path checkpoint_folder(const BakePaths& paths) {
+  fs::path output = paths.output.lexically_normal();
+  if (!output.has_filename()) output = output.parent_path();  // "prt/"
+  return output.string() + ".checkpoint";
+}
+
+}  // namespace
+
+void add_run_options(CommandLine& command, BakeRun& run) {
+  command.app()
+      .add_option("--shard", run.shard, "K/N: integrate every N-th block of directions from the K-th, for --merge")
+      ->type_name("")
+      ->group("Run");
+  command.app()
+      .add_flag("--resume", run.resume, "Go on from where an interrupted run of the same command was, if there was one")
+      ->group("Run");
+  command.app()
+      .add_option("--checkpoint-seconds", run.checkpoint_seconds,
+                  "Time between two checkpoints, in OUTPUT.checkpoint until the bake is done (default 60; 0 or more)")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("")
+      ->group("Run");
+}
+
+BakeResult run_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeSettings& settings,
+                    const BakeRun& run, const CommandLine& command) {
+  const ProgressFunction progress = command.progress(run.shards.empty() ? "bake" : "merge");
+  if (!run.shards.empty()) {
+    if (run.is_shard() || run.resume) throw WrongUsage("merge: found --shard or --resume; expected neither");
+    return merge_shards(run.shards, scene.receivers, scene.occluders, settings, command.seed(), command.threads(),
+                        progress);
+  }
+  const Checkpoints checkpoints{checkpoint_folder(paths), run.checkpoint_seconds, run.resume};
+  BakeResult result;
+  try {
+    if (run.is_shard())
+      return bake_shard(outputs, parse_shard(run.shard), scene.receivers, scene.occluders, settings, command.seed(),
+                        command.threads(), checkpoints, progress);
+    result = bake(scene.receivers, scene.occluders, settings, command.seed(), command.threads(), checkpoints, progress);
+  } catch (const Interrupted&) {
+    if (fs::exists(checkpoints.folder)) command.say("the same command with --resume goes on from here");
+    throw;
+  }
+  if (result.choice && result.choice->estimated_error > result.choice->target_error)
+    command.say("WARNING: " + std::to_string(result.directions) + " directions leave an estimated error of " +
+                std::to_string(result.choice->estimated_error) + ", above the " +
+                std::to_string(result.choice->target_error) + " asked for; raise --max-directions");
+  if (settings.backend == BakeBackend::egl && result.software_renderer)
+    command.say("WARNING: SOFTWARE RENDERER " + result.renderer +
+                "; a GPU would be far faster, and --backend embree is likely to be");
+  return result;
+}
+
+void remove_checkpoints(const BakePaths& paths) {
+  std::error_code ignored;
+  fs::remove_all(checkpoint_folder(paths), ignored);
+}
+
+}  // namespace kiln

@@ -1,0 +1,228 @@
+// However a bake is cut (slabs, shards, checkpoints), its bits are the same; and it takes as many directions as its
+// error needs.
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "bake/bake.h"
+#include "bake/engines.h"
+#include "bake/error_driven.h"
+#include "base/errors.h"
+#include "mesh/mesh_file.h"
+#include "shapes.h"
+
+namespace kiln {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Folder {
+ public:
+  Folder() : path_(fs::temp_directory_path() / ("kiln-integration-" + std::to_string(getpid()))) {
+    fs::remove_all(path_);
+    fs::create_directories(path_);
+  }
+  ~Folder() { fs::remove_all(path_); }
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  fs::path path_;
+};
+
+/// A torus, whose inside shadows itself, and its vertices as receivers.
+struct Content {
+  TriangleMesh mesh = shapes::torus(36);
+  Occluders occluders = join_occluders({mesh});
+  TexelReceivers receivers;
+  BakeSettings settings;
+
+  Content() {
+    receivers.positions = mesh.positions;
+    for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+      const Eigen::Vector3f& p = mesh.positions[v];
+      const Eigen::Vector3f ring = Eigen::Vector3f(p.x(), 0, p.z()).normalized();  // of radius 1
+      receivers.normals.push_back((p - ring).normalized());
+      receivers.texels.push_back(v);
+    }
+    receivers.width = static_cast<int>(mesh.positions.size());
+    receivers.height = 1;
+    settings.bands = 3;
+    settings.directions = 300;  // not whole blocks
+    settings.shadow_size = 128;
+    settings.gl_device = "software";
+  }
+};
+
+class Cuts : public testing::TestWithParam<BakeBackend> {
+ protected:
+  Cuts() { content.settings.backend = GetParam(); }
+  BakeResult whole() const { return bake(content.receivers, content.occluders, content.settings, 7, 2); }
+  Content content;
+  Folder folder;
+};
+
+TEST_P(Cuts, SlabsGiveTheSameBits) {
+  Integration integration(content.receivers.view(), content.occluders, content.settings, 7, 2, no_progress, 500);
+  TransferVectors transfer(content.receivers.texels.size(), 9);
+  integration.put_unoccluded(transfer);
+  ASSERT_GT(integration.slabs(), 1u);
+  for (std::size_t slab = 0; slab < integration.slabs(); ++slab)
+    integration.put(slab, integration.sum(slab, {}, {}, no_progress).sums, transfer);
+  EXPECT_EQ(transfer.values, whole().transfer.values);
+}
+
+TEST_P(Cuts, ShardsAddUpToTheSameBits) {
+  std::vector<fs::path> folders;
+  for (int index : {3, 1, 2}) {
+    folders.push_back(folder / std::to_string(index));
+    OutputSet outputs(folders.back());
+    bake_shard(outputs, {index, 3}, content.receivers, content.occluders, content.settings, 7, 2);
+    outputs.commit();
+  }
+  const auto merge = [&](const std::vector<fs::path>& parts, const BakeSettings& settings, int seed) {
+    return merge_shards(parts, content.receivers, content.occluders, settings, seed, 2);
+  };
+  EXPECT_EQ(merge(folders, content.settings, 7).transfer.values, whole().transfer.values);
+  EXPECT_THROW(merge({folders[0], folders[1]}, content.settings, 7), BadInput);
+  EXPECT_THROW(merge({folders[0], folders[1], folders[1]}, content.settings, 7), BadInput);
+  EXPECT_THROW(merge(folders, content.settings, 8), BadInput);
+  BakeSettings other = content.settings;
+  other.bands = 4;
+  EXPECT_THROW(merge(folders, other, 7), BadInput);
+}
+
+TEST_P(Cuts, AnInterruptedBakeGoesOnToTheSameBits) {
+  const Checkpoints first{folder / "checkpoint", 0, false};
+  Checkpoints again = first;
+  again.resume = true;
+  int interruptions = 0;
+  BakeResult result;
+  for (Checkpoints checkpoints = first;; checkpoints = again) {
+    int calls = 0;
+    try {
+      result = bake(content.receivers, content.occluders, content.settings, 7, 2, checkpoints, [&](double) {
+        if (++calls > 1 && interruptions < 2) throw Interrupted();
+      });
+      break;
+    } catch (const Interrupted&) {
+      ++interruptions;
+      const SumsFile left = read_sums(first.folder / slab_name(0));
+      EXPECT_GT(left.blocks_done, 0);
+      EXPECT_LT(left.blocks_done, left.blocks_all);
+    }
+  }
+  EXPECT_EQ(interruptions, 2);
+  EXPECT_LT(result.work.pairs, content.receivers.texels.size() * 300);  // the rest alone
+  EXPECT_EQ(result.transfer.values, whole().transfer.values);
+
+  BakeSettings other = content.settings;
+  other.directions = 301;
+  EXPECT_THROW(bake(content.receivers, content.occluders, other, 7, 2, again), BadInput);
+}
+
+INSTANTIATE_TEST_SUITE_P(Integration, Cuts, testing::Values(BakeBackend::egl, BakeBackend::embree),
+                         [](const auto& backend) { return backend.param == BakeBackend::egl ? "egl" : "embree"; });
+
+TEST(SumsFile, RoundTripsAndRefusesWhatIsNotWhole) {
+  const Folder folder;
+  SumsFile file;
+  file.key = {{"what", "a test"}};
+  file.first_receiver = 5;
+  file.blocks_done = 2;
+  file.blocks_all = 3;
+  file.sums = TransferSums(2, 4);
+  for (std::size_t k = 0; k < 8; ++k) file.sums.values[k] = (k % 2 == 0 ? 1 : -1) * (std::int64_t{1} << (8 * k - k));
+  file.sums.directions = 64;
+  const fs::path path = folder / "sums";
+  write_sums(path, file);
+  const SumsFile read = read_sums(path);
+  EXPECT_EQ(read.key, file.key);
+  EXPECT_EQ(read.first_receiver, 5u);
+  EXPECT_EQ(read.sums.values, file.sums.values);
+  EXPECT_EQ(read.sums.directions, 64);
+  EXPECT_FALSE(read.complete());
+
+  const std::uintmax_t size = fs::file_size(path);
+  const auto damaged = [&](auto damage) {
+    write_sums(path, file);
+    damage();
+    EXPECT_THROW(read_sums(path), BadInput);
+  };
+  damaged([&] { fs::resize_file(path, size - 1); });
+  damaged([&] { fs::resize_file(path, 10); });
+  damaged([&] { fs::resize_file(path, 0); });
+  damaged([&] { std::ofstream(path) << "solid cube\n"; });
+  damaged([&] { std::ofstream(path) << "{\"format\": \"kiln-sums\"}\n"; });
+  damaged([&] {
+    std::fstream stream(path, std::ios::in | std::ios::out | std::ios::binary);
+    stream.seekp(static_cast<std::streamoff>(size) - 3);
+    stream.put('\x55');
+  });
+  EXPECT_THROW(read_sums(folder / "none"), BadInput);
+}
+
+TEST(ErrorDriven, ReadsItsOptions) {
+  EXPECT_FALSE(parse_error_target("none").wanted);
+  EXPECT_TRUE(parse_error_target("auto").floor);
+  EXPECT_DOUBLE_EQ(parse_error_target("0.004").error, 0.004);
+  for (const char* wrong : {"", "0", "1", "-0.1", "0.1x", "nan", "inf", "often"})
+    EXPECT_THROW(parse_error_target(wrong), WrongUsage) << wrong;
+  EXPECT_EQ(parse_shard("2/3").index, 2);
+  EXPECT_EQ(parse_shard("2/3").count, 3);
+  for (const char* wrong : {"", "1", "0/3", "4/3", "1/", "/3", "1/3x", "a/b", "-1/3"})
+    EXPECT_THROW(parse_shard(wrong), WrongUsage) << wrong;
+}
+
+TEST(ErrorDriven, TheFloorIsWhatStoringCosts) {
+  // Values that fill a range evenly, as the formula supposes.
+  TransferVectors transfer(4096, 4), stored(4096, 4);
+  for (int i = 0; i < 4; ++i) {
+    for (std::size_t r = 0; r < 4096; ++r) transfer.plane(i)[r] = static_cast<float>((r * 2654435761u % 4096) / 4095.0);
+    const double step = 1.0 / 255;
+    for (std::size_t r = 0; r < 4096; ++r)
+      stored.plane(i)[r] = static_cast<float>(step * std::round(transfer.plane(i)[r] / step));
+  }
+  EXPECT_NEAR(quantisation_floor(transfer, 8), relative_l2(stored, transfer), 0.05 * quantisation_floor(transfer, 8));
+}
+
+TEST(ErrorDriven, StopsAtAnErrorThatRaysConfirm) {
+  Content content;
+  content.mesh = load_mesh("/usr/share/glmark2/models/bunny.obj");
+  content.occluders = join_occluders({content.mesh});
+  content.receivers = {};
+  for (std::size_t v = 0; v < content.mesh.positions.size(); v += 20) {
+    content.receivers.texels.push_back(static_cast<std::uint32_t>(content.receivers.texels.size()));
+    content.receivers.positions.push_back(content.mesh.positions[v]);
+    content.receivers.normals.push_back(content.mesh.normals[v]);
+  }
+  BakeSettings settings;
+  settings.backend = BakeBackend::embree;
+  BakeSettings truth_settings = settings;
+  truth_settings.directions = 16384;  // about a tenth of the errors below
+  const TransferVectors truth = bake(content.receivers, content.occluders, truth_settings, 99, 2).transfer;
+  int before = 0;
+  for (const char* target : {"0.03", "0.01"}) {
+    settings.max_error = target;
+    const BakeResult result = bake(content.receivers, content.occluders, settings, 1, 2);
+    ASSERT_TRUE(result.choice);
+    EXPECT_LE(result.choice->estimated_error, std::stod(target));
+    EXPECT_EQ(result.sampling, Sampling::progressive);
+    EXPECT_EQ(result.directions % block_directions, 0);
+    EXPECT_GT(result.directions, before);
+    before = result.directions;
+    const double error = relative_l2(result.transfer, truth);
+    EXPECT_LT(error, std::stod(target));
+    // It does not take far more than it needs: on the safe side by 2 at most.
+    EXPECT_GT(error, 0.3 * result.choice->estimated_error);
+  }
+  settings.max_error = "1e-6";
+  settings.max_directions = 100;
+  const BakeResult limited = bake(content.receivers, content.occluders, settings, 1, 2);
+  EXPECT_EQ(limited.directions, 100);
+  EXPECT_GT(limited.choice->estimated_error, limited.choice->target_error);
+}
+
+}  // namespace
+}  // namespace kiln
