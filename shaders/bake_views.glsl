@@ -4,6 +4,7 @@ struct View {
   vec4 row_v;
   vec4 row_depth;
   vec4 direction;  // xyz: unit vector towards the light; w: size of a depth map's texel in object units
+  vec4 extent;     // of the map in object units: width, height, depth
 };
 
 layout(std430, binding = 0) readonly buffer Views {

@@ -94,8 +94,7 @@ BakeResult merge_shards(const std::vector<fs::path>& folders, const TexelReceive
     merged.sampling = Sampling::progressive;
     merged.directions = first.value("directions", 1);
   }
-  if (const std::string backend = first.value("backend", ""); settings.backend == BakeBackend::automatic)
-    merged.backend = backend == "egl" ? BakeBackend::egl : BakeBackend::embree;
+  if (settings.backend == BakeBackend::automatic) bake_options(merged).find("backend")->set(first.value("backend", ""));
   const std::string renderer = first.value("renderer", "");
   merged.max_error = "none";
   const Integration integration(receivers.view(), occluders, merged, seed, threads, progress);
@@ -142,7 +141,7 @@ BakeVerification verify(const BakeResult& result, const TransferVectors& stored,
   BakeVerification verification;
 
   // Step 1: the other backend, over the very same directions.
-  const BakeBackend other = result.backend == BakeBackend::egl ? BakeBackend::embree : BakeBackend::egl;
+  const BakeBackend other = result.backend == BakeBackend::embree ? BakeBackend::egl : BakeBackend::embree;
   BakeSettings other_settings = settings;
   other_settings.backend = other;
   other_settings.max_error = "none";

@@ -57,8 +57,8 @@ struct BakeVerification {
   double relighting_error = 0;   ///< the same as expected relighting error
 };
 
-/// Compares `result` with the other backend, and it and the planes read back (`stored`) with settings.verify_directions
-/// rays from settings.verify_texels of the texels.
+/// Compares `result` with the other backend (embree, or egl if embree baked it), and it and the planes read back
+/// (`stored`) with settings.verify_directions rays from settings.verify_texels of the texels.
 BakeVerification verify(const BakeResult& result, const TransferVectors& stored, const TexelReceivers& receivers,
                         const Occluders& occluders, const BakeSettings& settings, int seed, int threads,
                         const ProgressFunction& progress = no_progress);

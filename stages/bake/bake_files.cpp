@@ -96,7 +96,7 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
 
 Json describe_bake(const BakeScene& scene, const BakeResult& result) {
   const double texel_directions = static_cast<double>(scene.receivers.texels.size()) * result.directions;
-  Json metrics = {{"backend", result.backend == BakeBackend::egl ? "egl" : "embree"},
+  Json metrics = {{"backend", backend_name(result.backend)},
                   {"renderer", result.renderer},
                   {"software_renderer", result.software_renderer},
                   {"texels", scene.receivers.texels.size()},

@@ -2,6 +2,61 @@
 
 namespace kiln {
 
+namespace {
+
+/// How the EGL engine decides visibility; shadow_settings.h has what each means.
+void add_shadow_options(OptionSet& options, BakeSettings& settings) {
+  ShadowMapSettings& shadows = settings.shadows;
+  options
+      .integer_or_auto("shadow-size", settings.shadow_size, 16, 16384,
+                       "Width and height of a depth map in texels; auto: the least of 256 to 4096 whose error, against "
+                       "rays from some receivers, is under what --bits costs (egl)")
+      .choice("shadow-depth", shadows.depth,
+              {{"32f", ShadowDepth::float_32}, {"24", ShadowDepth::fixed_24}, {"16", ShadowDepth::fixed_16}},
+              "Bits of a depth: floating-point or fixed-point (egl)")
+      .choice("shadow-faces", shadows.faces,
+              {{"front", ShadowFaces::front}, {"back", ShadowFaces::back}, {"midpoint", ShadowFaces::midpoint}},
+              "Which surface of closed occluders a depth map holds: the first, the first back face, or halfway (egl)")
+      .choice("shadow-filter", shadows.filter,
+              {{"nearest", ShadowFilter::nearest},
+               {"2x2", ShadowFilter::two_by_two},
+               {"3x3", ShadowFilter::three_by_three}},
+              "Depth comparisons per receiver and direction (egl)")
+      .choice("shadow-compare", shadows.receiver_plane, {{"plane", true}, {"point", false}},
+              "Depth that a texel is compared with: of the receiver's tangent plane there, or the receiver's own (egl)")
+      .number("shadow-bias", shadows.depth_bias, 0, 1,
+              "Constant depth bias as a fraction of the occluders' depth (egl)")
+      .number("shadow-angle-bias", shadows.angle_bias_texels, 0, 16,
+              "Depth bias in depth map texels times the tangent of the angle between normal and direction (egl)")
+      .number("normal-offset", shadows.normal_offset_texels, 0, 16,
+              "How far receivers are moved along their normal, in depth map texels (egl)")
+      .toggle(
+          "shadow-ids", shadows.triangle_ids,
+          "The triangle that a receiver stands on, and those that share a corner with it, cast no shadow on it (egl)")
+      .choice("refine", shadows.refine, {{"none", false}, {"rays", true}},
+              "Decide what a depth map cannot by rays: within its error band, and where texels do not agree (egl)")
+      .number("shadow-band", shadows.error_band_texels, 0, 16,
+              "Error band of a depth map in texels times the tangent as above (egl)")
+      .toggle("count-ambiguous", shadows.count_ambiguous, "Count those even where rays do not decide them (egl)");
+}
+
+}  // namespace
+
+namespace {
+
+const std::vector<std::pair<std::string, BakeBackend>> backend_words = {{"auto", BakeBackend::automatic},
+                                                                        {"egl", BakeBackend::egl},
+                                                                        {"beams", BakeBackend::beams},
+                                                                        {"embree", BakeBackend::embree}};
+
+}  // namespace
+
+std::string backend_name(BakeBackend backend) {
+  for (const auto& [name, value] : backend_words)
+    if (value == backend) return name;
+  return {};
+}
+
 OptionSet bake_options(BakeSettings& settings) {
   OptionSet options;
   options.integer("bands", settings.bands, 1, 24, "Bands of spherical harmonics; n bands have n*n coefficients")
@@ -16,9 +71,9 @@ OptionSet bake_options(BakeSettings& settings) {
           "Takes as many directions as bring the estimated error of integration under this: a relative L2 of transfer "
           "vectors, or auto for what --bits costs; the directions are then progressive ones")
       .integer("max-directions", settings.max_directions, 64, 100'000'000, "The most directions that --max-error takes")
-      .choice("backend", settings.backend,
-              {{"auto", BakeBackend::automatic}, {"egl", BakeBackend::egl}, {"embree", BakeBackend::embree}},
-              "Shadows from depth maps on the GPU, or from rays on the CPU; auto: the GPU if EGL has one")
+      .choice("backend", settings.backend, backend_words,
+              "Shadows from depth maps on the GPU, from beams of rays on the CPU, or ray by ray from Embree, the "
+              "reference; auto: egl if EGL has a GPU, else beams")
       .choice(
           "receiver", settings.receiver, {{"high", BakeReceiver::high}, {"low", BakeReceiver::low}},
           "Which surface receives light: the high mesh's point of a texel (needs --detail) or of a vertex (the closest "
@@ -27,15 +82,9 @@ OptionSet bake_options(BakeSettings& settings) {
       .integer("bits", settings.bits, 8, 16, "Bits of a stored coefficient, 8 or 16")
       .integer("size", settings.size, 0, 16384,
                "Width and height in texels where no --detail says it; 0 for what kiln-atlas packed for")
-      .text("gl-device", settings.gl_device, "EGL device: auto, software, or its number")
-      .integer("shadow-size", settings.shadow_size, 16, 16384, "Width and height of a depth map in texels (egl)")
-      .number("shadow-bias", settings.shadow_bias, 0, 1,
-              "Constant depth bias as a fraction of the occluders' depth (egl)")
-      .number("normal-offset", settings.normal_offset, 0, 16,
-              "How far receivers are moved along their normal, in depth map texels (egl)")
-      .choice("shadow-filter", settings.shadow_filter,
-              {{"nearest", BakeShadowFilter::nearest}, {"2x2", BakeShadowFilter::two_by_two}},
-              "Depth comparisons per receiver and direction (egl)")
+      .text("gl-device", settings.gl_device, "EGL device: auto, software, or its number");
+  add_shadow_options(options, settings);
+  options
       .number("ray-offset", settings.ray_offset, 0, 1,
               "Start of a ray off the surface as a fraction of the occluders' diagonal (embree)")
       .integer("verify-directions", settings.verify_directions, 0, 100'000'000,

@@ -2,19 +2,25 @@
 
 #include <string>
 
+#include "bake/shadow_settings.h"
 #include "base/options.h"
 #include "sh/directions.h"
 
 namespace kiln {
 
-/// `automatic`: egl where EGL has a GPU, else embree.
-enum class BakeBackend { automatic, egl, embree };
+enum class BakeBackend {
+  automatic,  ///< egl where EGL has a GPU, else beams
+  egl,        ///< depth maps
+  beams,      ///< rays in bundles, Kiln's own: the fast way on a CPU
+  embree      ///< ray by ray: the reference
+};
+
+/// As the command line has it.
+std::string backend_name(BakeBackend backend);
 
 /// Which surface receives light: the point of the high mesh that a texel or vertex stands for, or its point of the low
 /// mesh.
 enum class BakeReceiver { high, low };
-
-enum class BakeShadowFilter { nearest, two_by_two };
 
 struct BakeSettings {
   int bands = 5;  ///< bands^2 coefficients
@@ -28,10 +34,8 @@ struct BakeSettings {
   bool per_vertex = false;  ///< vertices receive light, not texels
   int size = 0;             ///< texels, where there is no detail folder to say so; 0: what the atlas was packed for
   std::string gl_device = "auto";
-  int shadow_size = 1024;    ///< texels
-  double shadow_bias = 0;    ///< fraction of the occluders' extent along the direction
-  double normal_offset = 1;  ///< texels of the depth map
-  BakeShadowFilter shadow_filter = BakeShadowFilter::two_by_two;
+  int shadow_size = 1024;     ///< texels; 0: the smallest whose error is under that of storing
+  ShadowMapSettings shadows;  ///< but for the size
   double ray_offset = 1e-4;   ///< fraction of the occluders' bounding box diagonal
   int verify_directions = 0;  ///< 0: no verification
   int verify_texels = 8192;

@@ -7,6 +7,7 @@
 #include <cassert>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bake/shade_pass.h"
@@ -20,6 +21,7 @@ namespace kiln {
 struct EglEngine::Implementation {
   EglContext context;
   ShadowMapSettings settings;
+  ShadowRays rays;
   std::optional<ShadowMaps> maps;
   std::optional<ShadePass> shade_pass;
   std::optional<ShBasis> basis;
@@ -29,9 +31,12 @@ struct EglEngine::Implementation {
 };
 
 EglEngine::EglEngine(const TransferScene& scene, const std::string& device, int software_threads,
-                     const ShadowMapSettings& settings)
-    : implementation_(new Implementation{EglContext(device, software_threads), settings, {}, {}, {}, 0, 0, {}}) {
+                     const ShadowMapSettings& settings, ShadowRays rays)
+    : implementation_(
+          new Implementation{EglContext(device, software_threads), settings, std::move(rays), {}, {}, {}, 0, 0, {}}) {
   assert(block_directions % settings.batch_directions == 0);
+  assert(!settings.triangle_ids || implementation_->rays.triangles_below);
+  assert(!settings.refine || implementation_->rays.occluded);
   GLint most_texels = 0;
   glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most_texels);
   if (settings.size_texels > most_texels)
@@ -53,7 +58,7 @@ void EglEngine::set_receivers(const Receivers& receivers, int bands) {
   Implementation& own = *implementation_;
   own.shade_pass.reset();  // frees its memory before the next one takes some
   own.basis.emplace(bands);
-  own.shade_pass.emplace(receivers, own.basis->size(), own.settings);
+  own.shade_pass.emplace(receivers, own.basis->size(), own.settings, *own.maps, own.rays);
   own.receivers = receivers.size();
   own.directions = 0;
   check_gl("setting up the receivers");
@@ -78,7 +83,7 @@ void EglEngine::add(std::span<const Eigen::Vector3f> directions, const ProgressF
       own.maps->draw(part);
       own.shade_pass->weigh(*own.maps, static_cast<int>(d), static_cast<int>(part.size()));
     }
-    own.shade_pass->end_block();
+    own.shade_pass->end_block(own.work);
     glFinish();  // bounds what is queued, so that progress is true and no submission grows long
     progress(static_cast<double>(first + block.size()) / static_cast<double>(directions.size()));
   }

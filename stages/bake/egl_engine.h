@@ -14,8 +14,9 @@ namespace kiln {
 class EglEngine : public TransferEngine {
  public:
   /// `device` and `software_threads` as EglContext takes them. Throws MachineLacks where there is no such context.
+  /// `rays` must have what `settings` need of it.
   EglEngine(const TransferScene& scene, const std::string& device, int software_threads,
-            const ShadowMapSettings& settings);
+            const ShadowMapSettings& settings, ShadowRays rays = {});
   ~EglEngine() override;
 
   void set_receivers(const Receivers& receivers, int bands) override;

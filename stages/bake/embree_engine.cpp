@@ -1,21 +1,9 @@
 #include "bake/embree_engine.h"
 
-#include <Eigen/Geometry>
-
 #include "raycast/ray_transfer.h"
 #include "sh/basis.h"
 
 namespace kiln {
-
-namespace {
-
-float diagonal_of(std::span<const Eigen::Vector3f> points) {
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& point : points) box.extend(point);
-  return box.diagonal().norm();
-}
-
-}  // namespace
 
 EmbreeEngine::EmbreeEngine(const TransferScene& scene, double ray_offset)
     : scene_(scene.positions, scene.triangles), ray_offset_(static_cast<float>(ray_offset) * diagonal_of(scene.hull)) {}

@@ -1,11 +1,11 @@
 #include "bake/integration.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <charconv>
 #include <stdexcept>
 
 #include "bake/engines.h"
+#include "bake/unoccluded.h"
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "sh/basis.h"
@@ -33,12 +33,6 @@ Sample sample_of(const Receivers& receivers, std::span<const std::uint32_t> indi
     sample.normals.push_back(receivers.normals[r]);
   }
   return sample;
-}
-
-[[maybe_unused]] float diagonal_of(std::span<const Eigen::Vector3f> points) {
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& point : points) box.extend(point);
-  return box.isEmpty() ? 0.f : box.diagonal().norm();
 }
 
 /// The shard's directions, whole blocks; only the last of all blocks may be smaller.
@@ -86,7 +80,8 @@ Integration::Integration(const Receivers& receivers, const Occluders& occluders,
       backend_(choose_backend(settings)),
       sampling_(settings.sampling) {
   // Step 1: the receivers that something may shadow.
-  const std::vector<std::uint8_t> unoccluded(receivers.size(), 0);
+  const float lift = static_cast<float>(settings.ray_offset) * diagonal_of(occluders.hull);
+  const std::vector<std::uint8_t> unoccluded = unoccluded_receivers(occluders.hull, receivers, lift);
   for (std::uint32_t r = 0; r < receivers.size(); ++r)
     if (unoccluded[r] == 0) tested_.push_back(r);
 
@@ -100,7 +95,7 @@ Integration::Integration(const Receivers& receivers, const Occluders& occluders,
       const Sample sample = sample_of(receivers, tested_);
       std::unique_ptr<TransferEngine> rays;
       if (backend_ == BakeBackend::egl && engine().is_software())
-        rays = make_engine(BakeBackend::embree, occluders, settings, threads);
+        rays = make_engine(BakeBackend::beams, occluders, settings, threads);
       choice_ = choose_directions(rays ? *rays : engine(), {sample.positions, sample.normals}, settings, target, seed,
                                   progress);
       count = choice_->directions;
@@ -117,8 +112,19 @@ Integration::Integration(const Receivers& receivers, const Occluders& occluders,
 }
 
 TransferEngine& Integration::engine() {
-  if (!engine_) engine_ = make_engine(backend_, occluders_, settings_, threads_);
+  if (!engine_) {
+    if (backend_ == BakeBackend::egl && settings_.shadow_size == 0) choose_shadow_maps();
+    engine_ = make_engine(backend_, occluders_, settings_, threads_);
+  }
   return *engine_;
+}
+
+void Integration::choose_shadow_maps() {
+  if (!tested_.empty()) {
+    const Sample sample = sample_of(receivers_, tested_);
+    shadow_choice_ = choose_shadow_size({sample.positions, sample.normals}, occluders_, settings_, seed_, threads_);
+  }
+  settings_.shadow_size = shadow_choice_ ? shadow_choice_->size_texels : 256;  // nothing is shadowed
 }
 
 std::size_t Integration::slabs() const { return (tested_.size() + slab_receivers_ - 1) / slab_receivers_; }
@@ -145,7 +151,7 @@ Json Integration::key(const Shard& shard, const std::string& renderer) const {
   return {{"receivers", receivers_hash_},
           {"occluders", occluders_hash_},
           {"settings", relevant},
-          {"backend", backend_ == BakeBackend::egl ? "egl" : "embree"},
+          {"backend", backend_name(backend_)},
           {"renderer", renderer},
           {"directions", directions_.size()},
           {"seed", seed_},

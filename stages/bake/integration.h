@@ -8,6 +8,7 @@
 #include "bake/bake_settings.h"
 #include "bake/error_driven.h"
 #include "bake/occluders.h"
+#include "bake/shadow_choice.h"
 #include "bake/sums_file.h"
 #include "bake/transfer_engine.h"
 #include "base/progress.h"
@@ -61,6 +62,8 @@ class Integration {
   int directions() const { return static_cast<int>(directions_.size()); }
   std::size_t unoccluded() const { return receivers_.size() - tested_.size(); }
   const std::optional<DirectionChoice>& choice() const { return choice_; }
+  /// Made with the engine, for an automatic size of depth maps.
+  const std::optional<ShadowSizeChoice>& shadow_choice() const { return shadow_choice_; }
 
  private:
   struct Slab {
@@ -68,6 +71,7 @@ class Integration {
     std::vector<Eigen::Vector3f> positions, normals;
   };
   Slab gather(std::size_t slab) const;
+  void choose_shadow_maps();
 
   Receivers receivers_;
   const Occluders& occluders_;
@@ -80,6 +84,7 @@ class Integration {
   std::unique_ptr<TransferEngine> engine_;
   std::vector<std::uint32_t> tested_;  // receivers that something may shadow
   std::optional<DirectionChoice> choice_;
+  std::optional<ShadowSizeChoice> shadow_choice_;
   std::vector<Eigen::Vector3f> directions_;  // coherent block after block
   std::string receivers_hash_, occluders_hash_;
 };

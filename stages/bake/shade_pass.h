@@ -15,7 +15,9 @@ namespace kiln {
 /// of directions onto the basis and adds it to the totals.
 class ShadePass {
  public:
-  ShadePass(const Receivers& receivers, int coefficients, const ShadowMapSettings& settings);
+  /// `maps` will be what weigh() takes. Both `receivers` and `rays` must outlive the pass.
+  ShadePass(const Receivers& receivers, int coefficients, const ShadowMapSettings& settings, const ShadowMaps& maps,
+            const ShadowRays& rays);
 
   /// A new block of at most block_directions: `rows` has the basis functions at its directions, coefficients values
   /// each. Counts the pairs in `work`.
@@ -24,8 +26,8 @@ class ShadePass {
   /// The part of the block that `maps` now has: directions first, first + 1, ...
   void weigh(const ShadowMaps& maps, int first, int directions);
 
-  /// Adds the block's sums to the totals.
-  void end_block();
+  /// Decides what the maps could not (settings.refine), and adds the block's sums to the totals. Counts in `work`.
+  void end_block(TransferWork& work);
 
   /// Reads the totals back.
   void read(TransferSums& sums) const;
@@ -40,12 +42,18 @@ class ShadePass {
     GlBuffer weights;  // of the block
     GlBuffer totals;
     GlBuffer tiles;
-    GLuint facing = 0;  // tiles of the block that `tiles` now names
+    GlBuffer corners;                   // with settings.triangle_ids
+    std::vector<std::uint32_t> facing;  // tiles of the block, as `tiles` now has them
   };
 
-  void add_group(const Receivers& receivers, std::size_t first, std::size_t count);
+  void add_group(std::size_t first, std::size_t count);
+  void find_corners(const ShadowMaps& maps);
+  void resolve(const Group& group, TransferWork& work) const;
 
   ShadowMapSettings settings_;
+  Receivers receivers_;
+  const ShadowRays& rays_;
+  std::vector<Eigen::Vector3f> block_;
   int coefficients_;
   int chunk_;
   int chunks_;

@@ -1,29 +1,17 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "bake/shadow_frame.h"
+#include "bake/shadow_settings.h"
 #include "bake/transfer_engine.h"
 #include "gpu/gl_objects.h"
 
 namespace kiln {
-
-/// How receivers are compared with depth maps.
-enum class ShadowFilter {
-  nearest,     ///< one comparison
-  two_by_two,  ///< bilinear mean of 2 x 2 comparisons (percentage-closer filtering: Reeves, Salesin and Cook 1987)
-};
-
-struct ShadowMapSettings {
-  int size_texels = 1024;           ///< width and height of the depth map of one direction
-  double depth_bias = 0;            ///< fraction of the occluders' extent along the direction
-  double normal_offset_texels = 1;  ///< how far receivers are moved along their normal, in texels of the depth map
-  ShadowFilter filter = ShadowFilter::two_by_two;
-  int batch_directions = 16;  ///< depth maps alive at a time; block_directions is a multiple of it
-  bool layered_pass = true;   ///< all maps of a batch in one pass, where GL can; the result is the same
-};
 
 /// The depth maps of a batch of directions.
 class ShadowMaps {
@@ -34,22 +22,40 @@ class ShadowMaps {
   /// shader storage binding 0.
   void draw(std::span<const Eigen::Vector3f> directions);
 
-  const GlTexture& maps() const { return maps_; }
+  /// Binds the maps to texture units: 0 the depths, 1 the back faces' depths (ShadowFaces::midpoint), 2 the triangles
+  /// (settings.triangle_ids); of these also the vertices of each triangle to shader storage binding 6.
+  void bind() const;
+
+  /// The largest error of a stored depth.
+  float depth_rounding() const;
+
+  /// With settings.triangle_ids: the vertices of each triangle, those at the same place as one.
+  std::span<const std::array<std::uint32_t, 3>> corners() const { return corners_; }
 
  private:
-  void draw_layers(int first, int count) const;
+  /// One kind of depth map: what it culls, and where it goes.
+  struct Pass {
+    GLenum culled = GL_NONE;
+    GlTexture maps;
+    GlFramebuffer framebuffer;
+  };
 
+  void add_pass(GLenum culled, int layers);
+  void draw_layers(const Pass& pass, int first, int count) const;
+
+  ShadowMapSettings settings_;
   int size_;
   GLsizei indices_;
-  bool cull_;
   bool layered_;
   std::vector<Eigen::Vector3f> hull_;
   GlBuffer positions_;
   GlBuffer triangles_;
   GlBuffer views_;
   GlVertexArray occluders_;
-  GlTexture maps_;
-  GlFramebuffer framebuffer_;
+  std::vector<Pass> passes_;
+  GlTexture triangle_maps_;
+  std::vector<std::array<std::uint32_t, 3>> corners_;
+  GlBuffer corner_buffer_;
   GlProgram program_;
 };
 

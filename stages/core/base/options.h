@@ -27,6 +27,9 @@ class OptionSet {
   /// An integer of `lowest` to `highest`.
   OptionSet& integer(std::string name, int& value, int lowest, int highest, std::string help);
 
+  /// The same, or "auto", which is kept as 0; `lowest` is above that.
+  OptionSet& integer_or_auto(std::string name, int& value, int lowest, int highest, std::string help);
+
   /// A number of `lowest` to `highest`, both included, finite; pass an `unset` value that stands for "not given" or
   /// "automatic".
   OptionSet& number(std::string name, double& value, double lowest, double highest, std::string help);

@@ -6,7 +6,7 @@
 #include <tbb/parallel_for.h>
 #include <vector>
 
-#include "sh/basis.h"
+#include "raycast/sh_rows.h"
 
 namespace kiln {
 
@@ -15,25 +15,13 @@ namespace {
 constexpr std::size_t stream_receivers = 256;
 constexpr std::size_t group_streams = 64;  // between two reports of progress
 
-/// B_i(s_d) of all directions, row after row.
-std::vector<float> basis_at(std::span<const Eigen::Vector3f> directions, int bands) {
-  const ShBasis basis(bands);
-  std::vector<float> rows(directions.size() * basis.size());
-  std::vector<double> values(basis.size());
-  for (std::size_t d = 0; d < directions.size(); ++d) {
-    basis.evaluate<double>(directions[d].cast<double>(), values);
-    std::copy(values.begin(), values.end(), rows.begin() + d * basis.size());
-  }
-  return rows;
-}
-
 }  // namespace
 
 void add_transfer_by_rays(const RayScene& scene, const Receivers& receivers,
                           std::span<const Eigen::Vector3f> directions, float ray_offset, TransferSums& sums,
                           const ProgressFunction& progress) {
   const int coefficients = sums.coefficients;
-  const std::vector<float> basis_rows = basis_at(directions, band_of(coefficients - 1) + 1);
+  const std::vector<float> basis_rows = sh_rows(directions, band_of(coefficients - 1) + 1);
 
   const auto shade_stream = [&](std::size_t begin) {
     const std::size_t count = std::min(stream_receivers, receivers.size() - begin);

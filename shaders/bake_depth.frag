@@ -1,0 +1,4 @@
+// Which triangle each texel of a depth map shows.
+layout(location = 0) out uint triangle;
+
+void main() { triangle = uint(gl_PrimitiveID); }

@@ -1,0 +1,163 @@
+#include "raycast/beam_scene.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <tuple>
+
+namespace kiln {
+
+namespace {
+
+bool is_closed(std::span<const Eigen::Vector3f> positions, std::span<const std::array<std::uint32_t, 3>> triangles) {
+  // Step 1: one number for each place.
+  std::vector<std::uint32_t> by_place(positions.size()), place(positions.size());
+  std::iota(by_place.begin(), by_place.end(), 0u);
+  const auto key = [&](std::uint32_t v) { return std::tuple(positions[v].x(), positions[v].y(), positions[v].z()); };
+  std::sort(by_place.begin(), by_place.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  for (std::size_t k = 1; k < by_place.size(); ++k)
+    place[by_place[k]] = place[by_place[k - 1]] + (key(by_place[k - 1]) < key(by_place[k]) ? 1 : 0);
+
+  // Step 2: the same edges both ways.
+  std::vector<std::uint64_t> edges, opposite;
+  for (const auto& triangle : triangles)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint64_t from = place[triangle[k]], to = place[triangle[(k + 1) % 3]];
+      edges.push_back(from << 32 | to);
+      opposite.push_back(to << 32 | from);
+    }
+  std::sort(edges.begin(), edges.end());
+  std::sort(opposite.begin(), opposite.end());
+  return edges == opposite;
+}
+
+/// Builds the tree from the top: ranges of triangles are halved, at whole clusters, until a node has 16 children.
+class Builder {
+ public:
+  Builder(BeamScene& scene, std::span<const Eigen::Vector3f> positions,
+          std::span<const std::array<std::uint32_t, 3>> triangles)
+      : scene_(scene), positions_(positions), triangles_(triangles), order_(triangles.size()) {
+    std::iota(order_.begin(), order_.end(), 0u);
+    for (const auto& t : triangles) {
+      centres_.push_back((positions[t[0]] + positions[t[1]] + positions[t[2]]) / 3);
+      const Eigen::Vector3d a = positions[t[0]].cast<double>();
+      normals_.push_back((positions[t[1]].cast<double>() - a).cross(positions[t[2]].cast<double>() - a));
+    }
+    if (!triangles.empty()) node({0, triangles.size()});
+  }
+
+ private:
+  struct Range {
+    std::size_t first, last;
+    std::size_t size() const { return last - first; }
+  };
+
+  /// Halves `range` across the longest side of its triangles' centres. Which triangles go to which side depends on
+  /// their places alone, with the index to break ties.
+  std::array<Range, 2> halves(const Range& range) {
+    Eigen::AlignedBox3f box;
+    for (std::size_t k = range.first; k < range.last; ++k) box.extend(centres_[order_[k]]);
+    int axis = 0;
+    box.sizes().maxCoeff(&axis);
+    const std::size_t clusters = (range.size() + beam_lanes - 1) / beam_lanes;
+    const std::size_t middle = range.first + (clusters + 1) / 2 * beam_lanes;
+    std::nth_element(order_.begin() + range.first, order_.begin() + middle, order_.begin() + range.last,
+                     [&](std::uint32_t a, std::uint32_t b) {
+                       const float at_a = centres_[a][axis], at_b = centres_[b][axis];
+                       return at_a != at_b ? at_a < at_b : a < b;
+                     });
+    return {Range{range.first, middle}, Range{middle, range.last}};
+  }
+
+  void set_cone(const Range& range, int i, BeamBoxes& boxes) const {
+    boxes.cone_sine[i] = 2;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t k = range.first; k < range.last; ++k) sum += normals_[order_[k]].normalized();
+    if (!(sum.squaredNorm() > 0)) return;
+    const Eigen::Vector3f axis = sum.normalized().cast<float>();
+    double least_cosine = 1;
+    for (std::size_t k = range.first; k < range.last; ++k)
+      if (normals_[order_[k]].squaredNorm() > 0)  // without area nothing is hit
+        least_cosine = std::min(least_cosine, normals_[order_[k]].normalized().dot(axis.cast<double>()));
+    if (least_cosine <= 0) return;
+    for (int k = 0; k < 3; ++k) boxes.cone_axis[k][i] = axis[k];
+    constexpr double rounding = 1e-4;  // with room for corners that the tracer moves by a rounding
+    boxes.cone_sine[i] = static_cast<float>(std::sqrt(std::max(0.0, 1 - least_cosine * least_cosine)) + rounding);
+  }
+
+  std::uint32_t cluster(const Range& range) {
+    BeamScene::Cluster cluster{};
+    cluster.count = static_cast<int>(range.size());
+    for (int i = 0; i < beam_lanes; ++i) {
+      const auto& triangle = triangles_[order_[std::min(range.first + i, range.last - 1)]];
+      for (int k = 0; k < 3; ++k)
+        for (int axis = 0; axis < 3; ++axis) cluster.corner[k][axis][i] = positions_[triangle[k]][axis];
+    }
+    scene_.clusters.push_back(cluster);
+    return static_cast<std::uint32_t>(scene_.clusters.size() - 1);
+  }
+
+  std::uint32_t node(const Range& range) {
+    // Step 1: cut into at most 16, always the largest.
+    std::vector<Range> parts{range};
+    while (parts.size() < beam_lanes) {
+      const auto largest = std::max_element(parts.begin(), parts.end(),
+                                            [](const Range& a, const Range& b) { return a.size() < b.size(); });
+      if (largest->size() <= beam_lanes) break;
+      const std::array<Range, 2> two = halves(*largest);
+      *largest = two[0];
+      parts.push_back(two[1]);
+    }
+
+    // Step 2: boxes and children.
+    const auto index = static_cast<std::uint32_t>(scene_.nodes.size());
+    scene_.nodes.emplace_back();
+    BeamScene::Node made{};
+    made.count = static_cast<int>(parts.size());
+    for (int i = 0; i < beam_lanes; ++i) {
+      Eigen::AlignedBox3f box;
+      if (i < made.count) {
+        for (std::size_t k = parts[i].first; k < parts[i].last; ++k)
+          for (std::uint32_t vertex : triangles_[order_[k]]) box.extend(positions_[vertex]);
+        if (parts[i].size() <= beam_lanes) {
+          made.is_cluster |= 1u << i;
+          made.child[i] = cluster(parts[i]);
+        } else {
+          made.child[i] = node(parts[i]);
+        }
+      } else {
+        box.extend(Eigen::Vector3f::Zero());
+      }
+      if (i < made.count) set_cone(parts[i], i, made.boxes);
+      for (int axis = 0; axis < 3; ++axis) {
+        made.boxes.lower[axis][i] = box.min()[axis];
+        made.boxes.upper[axis][i] = box.max()[axis];
+      }
+    }
+    scene_.nodes[index] = made;
+    return index;
+  }
+
+  BeamScene& scene_;
+  std::span<const Eigen::Vector3f> positions_;
+  std::span<const std::array<std::uint32_t, 3>> triangles_;
+  std::vector<std::uint32_t> order_;
+  std::vector<Eigen::Vector3f> centres_;
+  std::vector<Eigen::Vector3d> normals_;
+};
+
+}  // namespace
+
+BeamScene::BeamScene(std::span<const Eigen::Vector3f> positions,
+                     std::span<const std::array<std::uint32_t, 3>> triangles) {
+  Builder(*this, positions, triangles);
+  closed = is_closed(positions, triangles);
+  float largest = 0;
+  for (const auto& triangle : triangles)
+    for (std::uint32_t vertex : triangle) largest = std::max(largest, positions[vertex].cwiseAbs().maxCoeff());
+  slack = 8 * std::numeric_limits<float>::epsilon() * largest;
+}
+
+}  // namespace kiln

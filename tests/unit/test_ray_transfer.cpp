@@ -1,0 +1,206 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <vector>
+
+#include "mesh/mesh_file.h"
+#include "raycast/beam_transfer.h"
+#include "raycast/ray_transfer.h"
+#include "sh/basis.h"
+#include "sh/directions.h"
+#include "shapes.h"
+
+namespace kiln {
+namespace {
+
+constexpr int bands = 3;
+constexpr float ray_offset = 1e-4f;
+
+struct Points {
+  std::vector<Eigen::Vector3f> positions, normals;
+  Receivers view() const { return {positions, normals}; }
+};
+
+/// Every `step`-th vertex, with its normal.
+Points vertices_of(const TriangleMesh& mesh, std::size_t step) {
+  std::vector<Eigen::Vector3f> sums(mesh.positions.size(), Eigen::Vector3f::Zero());
+  for (const Triangle& t : mesh.triangles) {
+    const Eigen::Vector3f &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
+    for (std::uint32_t vertex : t) sums[vertex] += (b - a).cross(c - a);
+  }
+  Points points;
+  for (std::size_t v = 0; v < sums.size(); v += step) {
+    if (!(sums[v].squaredNorm() > 0)) continue;
+    points.positions.push_back(mesh.positions[v]);
+    points.normals.push_back(sums[v].normalized());
+  }
+  return points;
+}
+
+std::vector<Eigen::Vector3f> coherent(int count, int seed) {
+  std::vector<Eigen::Vector3f> directions = sample_directions(Sampling::fibonacci, count, seed);
+  order_coherently(directions, block_directions);
+  return directions;
+}
+
+TransferSums by_beams(const TriangleMesh& mesh, const Points& points, std::span<const Eigen::Vector3f> directions,
+                      BeamSavings* savings = nullptr) {
+  TransferSums sums(points.positions.size(), coefficient_count(bands));
+  const BeamSavings saved = add_transfer_by_beams(BeamScene(mesh.positions, mesh.triangles),
+                                                  BeamReceivers(points.view(), ray_offset), directions, sums);
+  if (savings != nullptr) *savings = saved;
+  return sums;
+}
+
+TransferSums by_streams(const TriangleMesh& mesh, const Points& points, std::span<const Eigen::Vector3f> directions) {
+  TransferSums sums(points.positions.size(), coefficient_count(bands));
+  add_transfer_by_rays(RayScene(mesh), points.view(), directions, ray_offset, sums);
+  return sums;
+}
+
+/// Receivers for which some direction was decided otherwise. The roundings of a block's sum come to some units of fixed
+/// point, a ray to its cosine times 2 million of them in the first plane.
+int receivers_that_differ(const TransferSums& a, const TransferSums& b) {
+  const std::int64_t roundings = 32 * ((a.directions + block_directions - 1) / block_directions);
+  int differing = 0;
+  for (std::size_t r = 0; r < a.receivers; ++r)
+    differing += std::abs(a.plane(0)[r] - b.plane(0)[r]) > roundings ? 1 : 0;
+  return differing;
+}
+
+TEST(RayTransfer, BeamsSeeWhatEmbreeSees) {
+  TriangleMesh open_torus = shapes::torus(40);
+  open_torus.triangles.resize(open_torus.triangles.size() * 3 / 4);
+  TriangleMesh crossing = shapes::joined(shapes::torus(30), shapes::cube(6), {1, 0.1f, 0.05f});
+  struct Case {
+    const char* name;
+    TriangleMesh mesh;
+    std::size_t step;
+  };
+  const std::vector<Case> cases = {{"torus: closed", shapes::torus(40), 1},
+                                   {"open torus: receivers see back faces", open_torus, 1},
+                                   {"crossing: receivers inside another solid", crossing, 1},
+                                   {"sheet", shapes::wavy_sheet(30, 3, 0.1f), 1},
+                                   {"bunny", load_mesh("/usr/share/glmark2/models/bunny.obj"), 17}};
+  for (const Case& c : cases) {
+    const Points points = vertices_of(c.mesh, c.step);
+    for (const int count : {1, 31, 1000}) {
+      const std::vector<Eigen::Vector3f> directions = coherent(count, 3);
+      const int differing =
+          receivers_that_differ(by_beams(c.mesh, points, directions), by_streams(c.mesh, points, directions));
+      // Rays that pass an edge or leave a surface within float32's roundings may go either way.
+      EXPECT_LE(differing, static_cast<int>(points.positions.size()) / 200) << c.name << ", " << count << " directions";
+    }
+  }
+}
+
+TEST(RayTransfer, NoRaySlipsOutOfAClosedCavity) {
+  const TriangleMesh mesh = shapes::icosphere(4);
+  Points points;
+  for (const Eigen::Vector3f& point : sample_directions(Sampling::fibonacci, 500, 4)) {
+    points.positions.push_back(0.9f * point);
+    points.normals.push_back(-point);
+  }
+  const TransferSums sums = by_beams(mesh, points, coherent(5000, 1));
+  for (std::int64_t value : sums.values) ASSERT_EQ(value, 0);
+  // Aimed at corners and at the middles of edges, from the middle of the solid.
+  Points centre{{Eigen::Vector3f::Zero()}, {Eigen::Vector3f(0, 1, 0)}};
+  std::vector<Eigen::Vector3f> aimed;
+  for (const Triangle& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3f &a = mesh.positions[t[k]], &b = mesh.positions[t[(k + 1) % 3]];
+      aimed.push_back(a.normalized());
+      aimed.push_back((a + b).normalized());
+    }
+  for (std::int64_t value : by_beams(mesh, centre, aimed).values) ASSERT_EQ(value, 0);
+}
+
+TEST(RayTransfer, NothingIsTestedWhereNothingStands) {
+  const TriangleMesh mesh = shapes::icosphere(4);
+  const Points points = vertices_of(mesh, 1);
+  BeamSavings savings;
+  const std::vector<Eigen::Vector3f> directions = coherent(2048, 2);
+  by_beams(mesh, points, directions, &savings);
+  const auto pairs = static_cast<double>(points.positions.size() * directions.size());
+  // Of a sphere each direction faces one half, and sees all of it. Packets on the rim are in neither share.
+  EXPECT_GT(static_cast<double>(savings.behind), 0.35 * pairs);
+  EXPECT_GT(static_cast<double>(savings.lit), 0.4 * pairs);
+}
+
+TEST(RayTransfer, SameBitsForAnyThreadsAndAnyCuts) {
+  const TriangleMesh mesh = shapes::torus(40);
+  const Points points = vertices_of(mesh, 1);
+  const std::vector<Eigen::Vector3f> directions = coherent(1000, 5);
+  const auto sums = [&](int threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    return by_beams(mesh, points, directions).values;
+  };
+  const std::vector<std::int64_t> one = sums(1);
+  EXPECT_EQ(one, sums(4));
+
+  // Whole blocks in two calls.
+  TransferSums cut(points.positions.size(), coefficient_count(bands));
+  const BeamScene scene(mesh.positions, mesh.triangles);
+  const BeamReceivers receivers(points.view(), ray_offset);
+  add_transfer_by_beams(scene, receivers, std::span(directions).first(320), cut);
+  add_transfer_by_beams(scene, receivers, std::span(directions).subspan(320), cut);
+  EXPECT_EQ(one, cut.values);
+
+  // Receivers in another order: other packets.
+  Points reversed = points;
+  std::reverse(reversed.positions.begin(), reversed.positions.end());
+  std::reverse(reversed.normals.begin(), reversed.normals.end());
+  const TransferSums backwards = by_beams(mesh, reversed, directions);
+  int differing = 0;
+  for (std::size_t r = 0; r < points.positions.size(); ++r)
+    differing += backwards.plane(0)[points.positions.size() - 1 - r] != one[r] ? 1 : 0;
+  EXPECT_LE(differing, static_cast<int>(points.positions.size()) / 200);  // roundings about another packet's centre
+}
+
+TEST(RayTransfer, SumsAreTrueForAnyNumberOfDirections) {
+  // Nothing stands in the way, so that the sums are known: in float64, from the same float32 directions.
+  Points points;
+  for (const Eigen::Vector3f& normal : sample_directions(Sampling::fibonacci, 3, 7)) {
+    points.positions.push_back(normal);
+    points.normals.push_back(normal);
+  }
+  const ShBasis basis(bands);
+  for (const int count : {1, 1000, 1000000}) {
+    const std::vector<Eigen::Vector3f> directions = sample_directions(Sampling::fibonacci, count, 1);
+    const TransferSums sums = by_beams({}, points, directions);
+    std::vector<double> expected(points.positions.size() * basis.size(), 0), values(basis.size());
+    for (const Eigen::Vector3f& direction : directions) {
+      basis.evaluate<double>(direction.cast<double>(), values);
+      for (std::size_t r = 0; r < points.positions.size(); ++r) {
+        const double cosine = points.normals[r].cast<double>().dot(direction.cast<double>());
+        for (int i = 0; i < basis.size(); ++i) expected[r * basis.size() + i] += std::max(0.0, cosine) * values[i];
+      }
+    }
+    double squared_error = 0, squared = 0;
+    for (std::size_t r = 0; r < points.positions.size(); ++r)
+      for (int i = 0; i < basis.size(); ++i) {
+        const double truth = expected[r * basis.size() + i];
+        const double error = static_cast<double>(sums.plane(i)[r]) / fixed_point_one - truth;
+        squared_error += error * error;
+        squared += truth * truth;
+      }
+    EXPECT_LT(std::sqrt(squared_error / squared), 1e-5) << count << " directions";
+  }
+}
+
+TEST(RayTransfer, EmptyScenesAndFewReceivers) {
+  const std::vector<Eigen::Vector3f> directions = coherent(100, 1);
+  EXPECT_EQ(by_beams(shapes::torus(8), {}, directions).values.size(), 0u);
+  TriangleMesh one;
+  one.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  one.triangles = {{0, 1, 2}};
+  const Points point{{{0.2f, 0.2f, 0.1f}}, {{0, 0, -1}}};
+  const TransferSums hidden = by_beams(one, point, directions), free = by_beams({}, point, directions);
+  EXPECT_LT(hidden.plane(0)[0], free.plane(0)[0]);
+  EXPECT_EQ(receivers_that_differ(hidden, by_streams(one, point, directions)), 0);
+}
+
+}  // namespace
+}  // namespace kiln
