@@ -1,4 +1,4 @@
-// The directions of one batch and the frames of their depth maps, as stages/bake/shadow_frame.h has them.
+// The directions of one batch and the frames of their depth maps, as stages/bake/egl/shadow_frame.h has them.
 struct View {
   vec4 row_u;
   vec4 row_v;

@@ -1,11 +1,11 @@
 // Every receiver against the depth maps of a batch of directions: clamped cosine times visibility
-// (stages/bake/shadow_settings.h says what each option does).
+// (stages/bake/egl/shadow_settings.h says what each option does).
 //   TAPS            1, 2 or 3: so many texels a side are compared
 //   STEEPEST_SLOPE  largest tangent of the angle between normal and direction that a slope or bias follows
 //   RECEIVER_PLANE  1: a texel is compared with the receiver's tangent plane at the texel's centre
 //   TRIANGLE_IDS    1: the receiver's own triangle and those around it cast no shadow on it
 //   MIDPOINT        1: the depth is the mean of front and back faces
-//   MARK            1: pairs that the map cannot decide get the sign bit, for stages/bake/shadow_refine.h to take away
+//   MARK            1: pairs that the map cannot decide get the sign bit, for stages/bake/egl/shadow_refine.h to take away
 #include "bake_views.glsl"
 #include "bake_receivers.glsl"
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "bake/engines.h"
+#include "bake/engines/engines.h"
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "sh/basis.h"

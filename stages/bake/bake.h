@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "bake/bake_settings.h"
-#include "bake/integration.h"
-#include "bake/occluders.h"
-#include "bake/texel_receivers.h"
+#include "bake/integrate/integration.h"
+#include "bake/scene/occluders.h"
+#include "bake/scene/texel_receivers.h"
 #include "base/outputs.h"
 #include "base/progress.h"
 #include "sh/transfer.h"

@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "bake/coefficient_planes.h"
-#include "bake/vertex_planes.h"
-#include "bake/vertex_receivers.h"
+#include "bake/planes/coefficient_planes.h"
+#include "bake/planes/vertex_planes.h"
+#include "bake/scene/vertex_receivers.h"
 #include "base/errors.h"
 #include "detail/asset_hints.h"
 #include "detail/detail_maps.h"

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "bake/shadow_settings.h"
+#include "bake/egl/shadow_settings.h"
 #include "base/options.h"
 #include "sh/directions.h"
 

@@ -4,8 +4,8 @@
 #include <benchmark/benchmark.h>
 
 #include "bake/bake.h"
-#include "bake/egl_engine.h"
-#include "bake/embree_engine.h"
+#include "bake/egl/egl_engine.h"
+#include "bake/engines/embree_engine.h"
 #include "mesh/mesh_file.h"
 #include "sh/directions.h"
 

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/egl_engine.h"
+#include "bake/egl/egl_engine.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 

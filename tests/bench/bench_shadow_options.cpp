@@ -22,11 +22,11 @@
 #include <tuple>
 #include <vector>
 
-#include "bake/embree_engine.h"
-#include "bake/occluders.h"
-#include "bake/shade_pass.h"
-#include "bake/shadow_maps.h"
-#include "bake/shadow_rays.h"
+#include "bake/egl/shade_pass.h"
+#include "bake/egl/shadow_maps.h"
+#include "bake/engines/embree_engine.h"
+#include "bake/engines/shadow_rays.h"
+#include "bake/scene/occluders.h"
 #include "gpu/egl_context.h"
 #include "gpu/program.h"
 #include "mesh/mesh_file.h"

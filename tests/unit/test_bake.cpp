@@ -6,11 +6,11 @@
 #include <tbb/global_control.h>
 
 #include "bake/bake.h"
-#include "bake/beam_engine.h"
-#include "bake/coefficient_planes.h"
-#include "bake/egl_engine.h"
-#include "bake/embree_engine.h"
-#include "bake/shadow_frame.h"
+#include "bake/egl/egl_engine.h"
+#include "bake/egl/shadow_frame.h"
+#include "bake/engines/beam_engine.h"
+#include "bake/engines/embree_engine.h"
+#include "bake/planes/coefficient_planes.h"
 #include "mesh/mesh_file.h"
 #include "sh/basis.h"
 #include "sh/directions.h"

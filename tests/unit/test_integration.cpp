@@ -7,8 +7,8 @@
 #include <unistd.h>
 
 #include "bake/bake.h"
-#include "bake/engines.h"
-#include "bake/error_driven.h"
+#include "bake/engines/engines.h"
+#include "bake/integrate/error_driven.h"
 #include "base/errors.h"
 #include "mesh/mesh_file.h"
 #include "shapes.h"

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 #include <numeric>
 
-#include "bake/occluders.h"
-#include "bake/unoccluded.h"
+#include "bake/integrate/unoccluded.h"
+#include "bake/scene/occluders.h"
 #include "mesh/mesh_file.h"
 #include "raycast/ray_scene.h"
 #include "sh/directions.h"

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "bake/bake.h"
-#include "bake/vertex_planes.h"
-#include "bake/vertex_receivers.h"
+#include "bake/planes/vertex_planes.h"
+#include "bake/scene/vertex_receivers.h"
 #include "base/errors.h"
 #include "base/options.h"
 #include "mesh/draco_file.h"

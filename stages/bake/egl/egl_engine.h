@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+
+#include "bake/egl/shadow_maps.h"
+#include "bake/engines/transfer_engine.h"
+
+namespace kiln {
+
+/// Shadows by rasterising: for each direction an orthographic depth map of the occluders in as tight a frame as their
+/// convex hull allows, against which all receivers are compared (US patent 7,948,490: directions outermost). A batch of
+/// directions goes through one layered depth pass and one compute pass that weighs every receiver; a block of them is
+/// then projected with its sums in registers. Needs EGL and OpenGL 4.5, and of libraries Eigen alone.
+class EglEngine : public TransferEngine {
+ public:
+  /// `device` and `software_threads` as EglContext takes them. Throws MachineLacks where there is no such context.
+  /// `rays` must have what `settings` need of it.
+  EglEngine(const TransferScene& scene, const std::string& device, int software_threads,
+            const ShadowMapSettings& settings, ShadowRays rays = {});
+  ~EglEngine() override;
+
+  void set_receivers(const Receivers& receivers, int bands) override;
+  void add(std::span<const Eigen::Vector3f> directions, const ProgressFunction& progress) override;
+  TransferSums sums() override;
+  TransferWork work() const override;
+  std::string renderer() const override;
+  bool is_software() const override;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace kiln

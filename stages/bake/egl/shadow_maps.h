@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/egl/shadow_frame.h"
+#include "bake/egl/shadow_settings.h"
+#include "bake/engines/transfer_engine.h"
+#include "gpu/gl_objects.h"
+
+namespace kiln {
+
+/// The depth maps of a batch of directions.
+class ShadowMaps {
+ public:
+  ShadowMaps(const TransferScene& scene, const ShadowMapSettings& settings);
+
+  /// Draws one map for each of at most settings.batch_directions directions. Also binds the batch's frames (views) to
+  /// shader storage binding 0.
+  void draw(std::span<const Eigen::Vector3f> directions);
+
+  /// Binds the maps to texture units: 0 the depths, 1 the back faces' depths (ShadowFaces::midpoint), 2 the triangles
+  /// (settings.triangle_ids); of these also the vertices of each triangle to shader storage binding 6.
+  void bind() const;
+
+  /// The largest error of a stored depth.
+  float depth_rounding() const;
+
+  /// With settings.triangle_ids: the vertices of each triangle, those at the same place as one.
+  std::span<const std::array<std::uint32_t, 3>> corners() const { return corners_; }
+
+ private:
+  /// One kind of depth map: what it culls, and where it goes.
+  struct Pass {
+    GLenum culled = GL_NONE;
+    GlTexture maps;
+    GlFramebuffer framebuffer;
+  };
+
+  void add_pass(GLenum culled, int layers);
+  void draw_layers(const Pass& pass, int first, int count) const;
+
+  ShadowMapSettings settings_;
+  int size_;
+  GLsizei indices_;
+  bool layered_;
+  std::vector<Eigen::Vector3f> hull_;
+  GlBuffer positions_;
+  GlBuffer triangles_;
+  GlBuffer views_;
+  GlVertexArray occluders_;
+  std::vector<Pass> passes_;
+  GlTexture triangle_maps_;
+  std::vector<std::array<std::uint32_t, 3>> corners_;
+  GlBuffer corner_buffer_;
+  GlProgram program_;
+};
+
+}  // namespace kiln

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "bake/engines/transfer_engine.h"
+#include "raycast/beam_transfer.h"
+
+namespace kiln {
+
+/// Shadows by beams: the parallel rays of 16 neighbouring receivers through one search of the occluders' tree for a
+/// whole block of directions. Finds the exact visibility that EmbreeEngine finds, up to roundings of rays that pass an
+/// edge, in a third of the time or less: the fast way of a machine without a GPU. Kin of the patent's conservative
+/// regions (section 5), and of shaft culling (Haines and Wallace, "Shaft culling for efficient ray-cast radiosity",
+/// 1991).
+class BeamEngine : public TransferEngine {
+ public:
+  /// Rays start `ray_offset` off the receiver along its normal, a fraction of the occluders' bounding box diagonal.
+  BeamEngine(const TransferScene& scene, double ray_offset);
+
+  void set_receivers(const Receivers& receivers, int bands) override;
+  void add(std::span<const Eigen::Vector3f> directions, const ProgressFunction& progress) override;
+  TransferSums sums() override { return sums_; }
+  TransferWork work() const override { return work_; }
+  std::string renderer() const override { return "Kiln beams"; }
+  bool is_software() const override { return true; }
+
+ private:
+  BeamScene scene_;
+  float ray_offset_;
+  BeamReceivers packets_;
+  TransferSums sums_;
+  TransferWork work_;
+};
+
+}  // namespace kiln

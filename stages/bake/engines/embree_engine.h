@@ -1,0 +1,29 @@
+#pragma once
+
+#include "bake/engines/transfer_engine.h"
+#include "raycast/ray_scene.h"
+
+namespace kiln {
+
+/// Shadows by occlusion rays (Embree): exact visibility of the occluders' triangles. The reference, and the CPU's way.
+class EmbreeEngine : public TransferEngine {
+ public:
+  /// Rays start `ray_offset` off the receiver along its normal, a fraction of the occluders' bounding box diagonal.
+  EmbreeEngine(const TransferScene& scene, double ray_offset);
+
+  void set_receivers(const Receivers& receivers, int bands) override;
+  void add(std::span<const Eigen::Vector3f> directions, const ProgressFunction& progress) override;
+  TransferSums sums() override { return sums_; }
+  TransferWork work() const override { return work_; }
+  std::string renderer() const override { return ray_library_name(); }
+  bool is_software() const override { return true; }
+
+ private:
+  RayScene scene_;
+  float ray_offset_;
+  Receivers receivers_;
+  TransferSums sums_;
+  TransferWork work_;
+};
+
+}  // namespace kiln

@@ -1,0 +1,27 @@
+#include "bake/engines/engines.h"
+
+#include "bake/egl/egl_engine.h"
+#include "bake/engines/beam_engine.h"
+#include "bake/engines/embree_engine.h"
+#include "bake/engines/shadow_rays.h"
+#include "gpu/egl_context.h"
+
+namespace kiln {
+
+BakeBackend choose_backend(const BakeSettings& settings) {
+  if (settings.backend != BakeBackend::automatic) return settings.backend;
+  return has_hardware_egl(settings.gl_device) ? BakeBackend::egl : BakeBackend::beams;
+}
+
+std::unique_ptr<TransferEngine> make_engine(BakeBackend backend, const Occluders& occluders,
+                                            const BakeSettings& settings, int threads) {
+  const TransferScene scene{occluders.mesh.positions, occluders.mesh.triangles, occluders.hull, occluders.closed};
+  if (backend == BakeBackend::beams) return std::make_unique<BeamEngine>(scene, settings.ray_offset);
+  if (backend == BakeBackend::embree) return std::make_unique<EmbreeEngine>(scene, settings.ray_offset);
+  ShadowMapSettings shadows = settings.shadows;
+  shadows.size_texels = settings.shadow_size;
+  return std::make_unique<EglEngine>(scene, settings.gl_device, threads, shadows,
+                                     make_shadow_rays(scene, settings.ray_offset));
+}
+
+}  // namespace kiln

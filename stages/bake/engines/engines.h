@@ -1,0 +1,19 @@
+#pragma once
+
+#include <memory>
+
+#include "bake/bake_settings.h"
+#include "bake/engines/transfer_engine.h"
+#include "bake/scene/occluders.h"
+
+namespace kiln {
+
+/// `automatic` becomes egl where EGL has a GPU, else beams.
+BakeBackend choose_backend(const BakeSettings& settings);
+
+/// The engine of a backend that is not automatic. `threads` is for a software GL renderer. Throws MachineLacks where it
+/// cannot run. `settings.shadow_size` is not automatic (shadow_choice.h); `occluders` outlives the engine.
+std::unique_ptr<TransferEngine> make_engine(BakeBackend backend, const Occluders& occluders,
+                                            const BakeSettings& settings, int threads);
+
+}  // namespace kiln

@@ -1,0 +1,95 @@
+#include "bake/integrate/error_driven.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <vector>
+
+#include "base/errors.h"
+
+namespace kiln {
+
+namespace {
+
+constexpr int fewest_directions = 64;
+constexpr int steps_per_doubling = 4;
+constexpr double half_difference_over_error = 1.15;
+
+/// Numbers of directions to try, whole blocks: the one steps_per_doubling before each is about half of it.
+std::vector<int> direction_counts(int most) {
+  std::vector<int> counts;
+  for (int step = 0;; ++step) {
+    const double count = fewest_directions / 2 * std::exp2(static_cast<double>(step) / steps_per_doubling);
+    const int whole = static_cast<int>(std::lround(count / block_directions)) * block_directions;
+    if (whole >= most) break;
+    if (counts.empty() || whole > counts.back()) counts.push_back(whole);
+  }
+  counts.push_back(most);
+  return counts;
+}
+
+/// Half the distance between the means over the first directions and over the others, relative to the whole mean.
+double half_difference(const TransferSums& first, const TransferSums& all) {
+  const double first_weight = 1.0 / static_cast<double>(first.directions),
+               other_weight = 1.0 / static_cast<double>(all.directions - first.directions),
+               weight = 1.0 / static_cast<double>(all.directions);
+  double difference = 0, reference = 0;
+  for (std::size_t k = 0; k < all.values.size(); ++k) {
+    const auto part = static_cast<double>(first.values[k]), whole = static_cast<double>(all.values[k]);
+    const double d = 0.5 * (part * first_weight - (whole - part) * other_weight), t = whole * weight;
+    difference += d * d;
+    reference += t * t;
+  }
+  return difference == 0 ? 0 : std::sqrt(difference / reference);
+}
+
+}  // namespace
+
+ErrorTarget parse_error_target(const std::string& text) {
+  if (text == "none") return {};
+  if (text == "auto") return {.wanted = true, .floor = true, .error = 0};
+  double error = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), error);
+  if (failure != std::errc{} || end != text.data() + text.size() || !(error > 0 && error < 1))
+    throw WrongUsage("max-error: found '" + text + "'; expected none, auto or a number above 0 and below 1");
+  return {.wanted = true, .floor = false, .error = error};
+}
+
+double quantisation_floor(const TransferVectors& transfer, int bits) {
+  double error = 0, reference = 0;
+  for (int i = 0; i < transfer.coefficients; ++i) {
+    const std::span<const float> plane = transfer.plane(i);
+    if (plane.empty()) return 0;
+    const auto [lowest, highest] = std::minmax_element(plane.begin(), plane.end());
+    const double step = (static_cast<double>(*highest) - *lowest) / ((1 << bits) - 1);
+    error += static_cast<double>(plane.size()) * step * step / 12;
+    for (float value : plane) reference += static_cast<double>(value) * value;
+  }
+  return reference > 0 ? std::sqrt(error / reference) : 0;
+}
+
+DirectionChoice choose_directions(TransferEngine& engine, const Receivers& sample, const BakeSettings& settings,
+                                  const ErrorTarget& target, int seed, const ProgressFunction& progress) {
+  engine.set_receivers(sample, settings.bands);
+  DirectionChoice choice;
+  std::vector<TransferSums> history;
+  const std::vector<int> counts = direction_counts(settings.max_directions);
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    const int before = k == 0 ? 0 : counts[k - 1];
+    engine.add(progressive_directions(before, counts[k] - before, static_cast<std::uint64_t>(seed)), no_progress);
+    history.push_back(engine.sums());
+    progress(static_cast<double>(k + 1) / static_cast<double>(counts.size()));
+    if (counts[k] < fewest_directions) continue;
+    // The earlier prefix nearest to half of this one.
+    const auto half = std::min_element(history.begin(), history.end() - 1, [&](const auto& a, const auto& b) {
+      return std::abs(2 * a.directions - counts[k]) < std::abs(2 * b.directions - counts[k]);
+    });
+    choice.directions = counts[k];
+    choice.estimated_error = half_difference(*half, history.back()) / half_difference_over_error;
+    choice.target_error = target.floor ? quantisation_floor(history.back().transfer(), settings.bits) : target.error;
+    if (choice.estimated_error <= choice.target_error) break;
+  }
+  return choice;
+}
+
+}  // namespace kiln

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+
+#include "bake/bake_settings.h"
+#include "bake/engines/transfer_engine.h"
+
+namespace kiln {
+
+/// The error that decides how many directions a bake takes.
+struct ErrorTarget {
+  bool wanted = false;  ///< not so: settings.directions decides
+  bool floor = false;   ///< the error of range compression at the chosen bits
+  double error = 0;     ///< relative L2 of transfer vectors, where it is not the floor
+};
+
+/// Of --max-error: "none", "auto" or a number above 0 and below 1. Throws WrongUsage.
+ErrorTarget parse_error_target(const std::string& text);
+
+/// Relative L2 that storing `transfer` costs: each plane's values are rounded to 2^bits - 1 steps of its range, an
+/// error of variance step^2 / 12.
+double quantisation_floor(const TransferVectors& transfer, int bits);
+
+struct DirectionChoice {
+  int directions = 0;
+  double estimated_error = 0;  ///< of integration alone, relative L2
+  double target_error = 0;
+};
+
+/// Bakes a sample of the receivers by `engine` over growing prefixes of the progressive directions, until the estimated
+/// error of a prefix is under the target or settings.max_directions is reached. The estimate is half the distance
+/// between the mean of one half of the directions and that of the other, over 1.15: on synthetic occluders that half is
+/// 1.15 to 1.95 times the true error (sh/directions.h).
+DirectionChoice choose_directions(TransferEngine& engine, const Receivers& sample, const BakeSettings& settings,
+                                  const ErrorTarget& target, int seed, const ProgressFunction& progress);
+
+}  // namespace kiln

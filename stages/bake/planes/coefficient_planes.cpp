@@ -1,0 +1,117 @@
+#include "bake/planes/coefficient_planes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "image/gutter.h"
+#include "image/image_file.h"
+#include "sh/basis.h"
+
+namespace kiln {
+
+namespace {
+
+std::string plane_name(int channel, int coefficient) {
+  return fmt::format("coeff_{}_{:02d}.png", channel, coefficient);
+}
+
+template <class Stored>
+Image<Stored> store_plane(const Image<float>& plane, const PlaneRange& range, int bits) {
+  Image<Stored> stored(plane.width(), plane.height(), 1);
+  std::transform(plane.values().begin(), plane.values().end(), stored.values().begin(),
+                 [&](float value) { return static_cast<Stored>(range.store(value, bits)); });
+  return stored;
+}
+
+template <class Stored>
+void recover_plane(const Image<Stored>& stored, const PlaneRange& range, int bits, const TexelReceivers& receivers,
+                   std::span<float> values) {
+  for (std::size_t r = 0; r < values.size(); ++r) values[r] = range.recover(stored.values()[receivers.texels[r]], bits);
+}
+
+}  // namespace
+
+std::uint32_t PlaneRange::store(float value, int bits) const {
+  if (!(highest > lowest)) return 0;
+  const double top = (1u << bits) - 1;
+  const double place = (static_cast<double>(value) - lowest) / (static_cast<double>(highest) - lowest);
+  return static_cast<std::uint32_t>(std::lround(std::clamp(place, 0.0, 1.0) * top));
+}
+
+float PlaneRange::recover(std::uint32_t stored, int bits) const {
+  const double top = (1u << bits) - 1;
+  return static_cast<float>(lowest + stored / top * (static_cast<double>(highest) - lowest));
+}
+
+PlaneRange range_of(std::span<const float> values) {
+  const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
+  return {*lowest, *highest};
+}
+
+Json ranges_head(int channels, int coefficients, int bits) {
+  return {{"format", "kiln-prt"},
+          {"version", 1},
+          {"bands", band_of(coefficients - 1) + 1},
+          {"channels", channels},
+          {"bits", bits}};
+}
+
+void remove_stale_planes(OutputSet& outputs, const std::set<std::string>& written) {
+  for (const auto& entry : std::filesystem::directory_iterator(outputs.folder())) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("coeff_") && name.ends_with(".png") && !written.contains(name)) outputs.remove_stale(name);
+  }
+}
+
+void write_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels, const TexelReceivers& receivers,
+                  int bits, const AssetFiles& files) {
+  const std::vector<std::uint8_t> covered = receivers.covered();
+  std::set<std::string> written;
+  Json planes = Json::array();
+  for (std::size_t channel = 0; channel < channels.size(); ++channel)
+    for (int i = 0; i < channels[channel].coefficients; ++i) {
+      const std::span<const float> values = channels[channel].plane(i);
+      const PlaneRange range = range_of(values);
+      Image<float> plane(receivers.width, receivers.height, 1);
+      for (std::size_t r = 0; r < values.size(); ++r) plane.values()[receivers.texels[r]] = values[r];
+      fill_gutters(plane, covered);
+      const std::string name = plane_name(static_cast<int>(channel), i);
+      if (bits == 8)
+        write_png(outputs.add(name), store_plane<std::uint8_t>(plane, range, bits));
+      else
+        write_png(outputs.add(name), store_plane<std::uint16_t>(plane, range, bits));
+      written.insert(name);
+      planes.push_back(
+          {{"file", name}, {"channel", channel}, {"coefficient", i}, {"min", range.lowest}, {"max", range.highest}});
+    }
+
+  Json ranges = ranges_head(static_cast<int>(channels.size()), channels[0].coefficients, bits);
+  ranges["width"] = receivers.width;
+  ranges["height"] = receivers.height;
+  ranges["basis"] = basis_name;
+  ranges["mesh"] = files.mesh;
+  if (!files.normals.empty()) ranges["normals"] = files.normals;
+  ranges["planes"] = planes;
+  outputs.add_text("ranges.json", ranges.dump(2) + "\n");
+  remove_stale_planes(outputs, written);
+}
+
+std::vector<TransferVectors> read_planes(const std::filesystem::path& folder, const TexelReceivers& receivers) {
+  const Json ranges = Json::parse(read_text(folder / "ranges.json"));
+  const int bits = ranges["bits"], coefficients = coefficient_count(ranges["bands"]);
+  std::vector<TransferVectors> channels(ranges["channels"].get<std::size_t>(),
+                                        TransferVectors(receivers.texels.size(), coefficients));
+  for (const Json& plane : ranges["planes"]) {
+    const PlaneRange range{plane["min"], plane["max"]};
+    const std::span<float> values = channels[plane["channel"].get<std::size_t>()].plane(plane["coefficient"]);
+    const std::filesystem::path file = folder / plane["file"].get<std::string>();
+    if (bits == 8)
+      recover_plane(read_png8(file), range, bits, receivers, values);
+    else
+      recover_plane(read_png16(file), range, bits, receivers, values);
+  }
+  return channels;
+}
+
+}  // namespace kiln

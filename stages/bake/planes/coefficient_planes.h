@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bake/scene/texel_receivers.h"
+#include "base/options.h"
+#include "base/outputs.h"
+#include "sh/transfer.h"
+
+namespace kiln {
+
+/// Range compression of one plane: stored = round((x - lowest) / (highest - lowest) * (2^bits - 1)); where both are
+/// equal every stored value is 0 (Chapter 2010, 4.2.7).
+struct PlaneRange {
+  float lowest = 0;
+  float highest = 0;
+
+  std::uint32_t store(float value, int bits) const;
+  float recover(std::uint32_t stored, int bits) const;
+};
+
+/// The range of one plane's values, at least one.
+PlaneRange range_of(std::span<const float> values);
+
+/// What ranges.json says of the basis: sh/basis.h.
+inline constexpr char basis_name[] = "real-sh-orthonormal";
+
+/// The fields that every ranges.json begins with.
+Json ranges_head(int channels, int coefficients, int bits);
+
+/// Has commit() remove the planes in the output folder that are not among the names `written`.
+void remove_stale_planes(OutputSet& outputs, const std::set<std::string>& written);
+
+/// What a consumer finds in the folder besides the planes; names relative to it.
+struct AssetFiles {
+  std::string mesh;
+  std::string normals;  ///< empty: none
+};
+
+/// Writes `coeff_<c>_<ii>.png` for every channel c and coefficient ii, gutters filled, and ranges.json, last. One entry
+/// of `channels` per channel, all for the same receivers. Planes that an earlier run with more of them left in the
+/// folder are removed.
+void write_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels, const TexelReceivers& receivers,
+                  int bits, const AssetFiles& files);
+
+/// Transfer as it reads back from planes in `folder` that write_planes wrote.
+std::vector<TransferVectors> read_planes(const std::filesystem::path& folder, const TexelReceivers& receivers);
+
+}  // namespace kiln

@@ -1,0 +1,175 @@
+#include "bake/scene/vertex_receivers.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <utility>
+
+#include "base/errors.h"
+#include "mesh/draco_file.h"
+#include "mesh/mesh_file.h"
+#include "raycast/ray_scene.h"
+
+namespace kiln {
+
+namespace {
+
+/// A point that faces as the vertex does is sought within this many times the largest distance of any vertex: beyond,
+/// it is on another part of the object.
+constexpr float largest_detour = 4;
+
+/// Fraction of the diagonal that is sought through at least: positions are quantised to 16 bits.
+constexpr float smallest_search = 1e-4f;
+
+/// Every third bit of 63, the lowest 21 bits of `value`.
+std::uint64_t spread_bits(std::uint64_t value) {
+  value = (value | value << 32) & 0x1f00000000ffffull;
+  value = (value | value << 16) & 0x1f0000ff0000ffull;
+  value = (value | value << 8) & 0x100f00f00f00f00full;
+  value = (value | value << 4) & 0x10c30c30c30c30c3ull;
+  return (value | value << 2) & 0x1249249249249249ull;
+}
+
+/// The indices of `positions` along the Morton curve through their bounding cube (Morton, "A computer oriented geodetic
+/// data base", 1966); those in the same of its 2^63 cells by index.
+std::vector<std::uint32_t> morton_order(const std::vector<Eigen::Vector3f>& positions) {
+  Eigen::Vector3f lowest = positions.front(), highest = positions.front();
+  for (const Eigen::Vector3f& p : positions) {
+    lowest = lowest.cwiseMin(p);
+    highest = highest.cwiseMax(p);
+  }
+  constexpr double top = (1 << 21) - 1;
+  const double side = (highest - lowest).cast<double>().maxCoeff();
+  const double scale = side > 0 ? top / side : 0;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> codes;
+  codes.reserve(positions.size());
+  for (const Eigen::Vector3f& p : positions) {
+    const Eigen::Vector3d place = (p.cast<double>() - lowest.cast<double>()) * scale;
+    std::uint64_t code = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      code |= spread_bits(static_cast<std::uint64_t>(std::clamp(place[axis], 0.0, top))) << axis;
+    codes.emplace_back(code, static_cast<std::uint32_t>(codes.size()));
+  }
+  std::sort(codes.begin(), codes.end());
+  std::vector<std::uint32_t> order;
+  order.reserve(codes.size());
+  for (const auto& entry : codes) order.push_back(entry.second);
+  return order;
+}
+
+/// Points and normals by vertex, listed along the curve.
+TexelReceivers pack(const std::vector<Eigen::Vector3f>& positions, const std::vector<Eigen::Vector3f>& normals) {
+  TexelReceivers receivers{static_cast<int>(positions.size()), 1, morton_order(positions), {}, {}};
+  for (std::uint32_t vertex : receivers.texels) {
+    receivers.positions.push_back(positions[vertex]);
+    receivers.normals.push_back(normals[vertex]);
+  }
+  return receivers;
+}
+
+void check(const TriangleMesh& mesh) {
+  if (mesh.positions.empty() || mesh.normals.size() != mesh.positions.size())
+    throw std::invalid_argument("vertices as receivers: a mesh with normals is needed");
+}
+
+Eigen::Vector3f face_normal(const TriangleMesh& mesh, const Triangle& t) {
+  const Eigen::Vector3f& a = mesh.positions[t[0]];
+  return (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a).normalized();
+}
+
+Eigen::Vector3f at_point(const TriangleMesh& mesh, const std::vector<Eigen::Vector3f>& values,
+                         const SurfacePoint& point) {
+  const Triangle& t = mesh.triangles[point.triangle];
+  return (1 - point.u - point.v) * values[t[0]] + point.u * values[t[1]] + point.v * values[t[2]];
+}
+
+Eigen::Vector3f normal_at(const TriangleMesh& mesh, const SurfacePoint& point) {
+  const Eigen::Vector3f sum = at_point(mesh, mesh.normals, point);
+  // Vertex normals that cancel each other leave the face's.
+  return sum.norm() > 1e-6f ? Eigen::Vector3f(sum.normalized()) : face_normal(mesh, mesh.triangles[point.triangle]);
+}
+
+/// Drops triangles with a repeated vertex, then vertices that no triangle uses: Draco keeps neither.
+void keep_proper(TriangleMesh& mesh) {
+  std::erase_if(mesh.triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+  constexpr std::uint32_t unused = ~0u;
+  std::vector<std::uint32_t> new_index(mesh.positions.size(), unused);
+  for (const Triangle& triangle : mesh.triangles)
+    for (std::uint32_t vertex : triangle) new_index[vertex] = 0;
+  std::uint32_t kept = 0;
+  for (std::uint32_t vertex = 0; vertex < new_index.size(); ++vertex) {
+    if (new_index[vertex] == unused) continue;
+    mesh.positions[kept] = mesh.positions[vertex];
+    mesh.normals[kept] = mesh.normals[vertex];
+    if (!mesh.uvs.empty()) mesh.uvs[kept] = mesh.uvs[vertex];
+    new_index[vertex] = kept++;
+  }
+  mesh.positions.resize(kept);
+  mesh.normals.resize(kept);
+  if (!mesh.uvs.empty()) mesh.uvs.resize(kept);
+  for (Triangle& triangle : mesh.triangles)
+    for (std::uint32_t& vertex : triangle) vertex = new_index[vertex];
+}
+
+template <class Operation>
+void for_each_vertex(std::size_t count, const Operation& operation) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 256), [&](const tbb::blocked_range<std::size_t>& part) {
+    for (std::size_t k = part.begin(); k < part.end(); ++k) operation(k);
+  });
+}
+
+}  // namespace
+
+TriangleMesh load_vertex_mesh(const std::filesystem::path& file) {
+  const bool is_draco = file.extension() == ".drc";
+  TriangleMesh mesh = is_draco ? load_draco(file) : load_mesh(file);
+  if (mesh.normals.empty()) compute_vertex_normals(mesh);
+  keep_proper(mesh);
+  if (mesh.triangles.empty())
+    throw BadInput(file.string(), "has no triangle of three vertices", "a mesh of triangles", "export the mesh again");
+  return mesh;
+}
+
+VertexReceivers receivers_on_vertices(const TriangleMesh& mesh) {
+  check(mesh);
+  return {pack(mesh.positions, mesh.normals), 0, 0};
+}
+
+VertexReceivers receivers_on_high_of_vertices(const TriangleMesh& mesh, const TriangleMesh& high) {
+  check(mesh);
+  check(high);
+  const RayScene scene(high);
+  const std::size_t vertices = mesh.positions.size();
+
+  // Step 1: the closest points of either side, and with them how far to look.
+  std::vector<SurfacePoint> points(vertices);
+  for_each_vertex(vertices, [&](std::size_t k) {
+    points[k] = scene.closest_point(mesh.positions[k], std::numeric_limits<float>::infinity());
+  });
+  float farthest = smallest_search * bounding_box(high).diagonal();
+  for (const SurfacePoint& point : points) farthest = std::max(farthest, largest_detour * point.distance);
+
+  // Step 2: the closest points of the right side.
+  std::vector<std::uint8_t> away(vertices, 0);
+  std::vector<Eigen::Vector3f> positions(vertices), normals(vertices);
+  for_each_vertex(vertices, [&](std::size_t k) {
+    const SurfacePoint facing = scene.closest_facing_point(mesh.positions[k], mesh.normals[k], farthest);
+    away[k] = facing.found() ? 0 : 1;
+    if (facing.found()) points[k] = facing;
+    positions[k] = at_point(high, high.positions, points[k]);
+    normals[k] = normal_at(high, points[k]);
+  });
+
+  VertexReceivers result{pack(positions, normals), 0, 0};
+  for (std::size_t k = 0; k < vertices; ++k) {
+    result.largest_distance = std::max(result.largest_distance, static_cast<double>(points[k].distance));
+    result.facing_away += away[k];
+  }
+  return result;
+}
+
+}  // namespace kiln
