@@ -6,6 +6,7 @@
 //   TRIANGLE_IDS    1: the receiver's own triangle and those around it cast no shadow on it
 //   MIDPOINT        1: the depth is the mean of front and back faces
 //   MARK            1: pairs that the map cannot decide get the sign bit, for stages/bake/egl/shadow_refine.h to take away
+//   REGIONS         1: tiles of receivers that are wholly lit or shadowed are not tested
 #include "bake_views.glsl"
 #include "bake_receivers.glsl"
 
@@ -33,6 +34,10 @@ uniform float angle_bias_texels;     // of the depth map
 uniform float normal_offset_texels;  // of the depth map
 uniform float error_band_texels;     // of the depth map
 uniform float depth_rounding;        // in map depths
+
+#if REGIONS == 1
+#include "bake_tiles.glsl"
+#endif
 
 float stored_depth(ivec3 texel) {
 #if MIDPOINT == 1
@@ -125,10 +130,23 @@ float visibility(int layer, int r, vec3 position, vec3 normal, float cosine) {
 
 void main() {
   int r = receiver_index();
+#if REGIONS == 1
+  classify_tile();
+#endif
   if (r >= receiver_count) return;
   vec3 position = receivers[r].position.xyz;
   vec3 normal = receivers[r].normal.xyz;
+#if REGIONS == 1
+  uint tested = ((2u << uint(batch_directions - 1)) - 1u) & ~(tiles_behind | tiles_lit | tiles_shadowed);
   for (int d = 0; d < batch_directions; ++d) {
+    float lit = float(tiles_lit >> uint(d) & 1u);
+    weights[(first_row + d) * receiver_count + r] = lit * max(dot(normal, views[d].direction.xyz), 0.0);
+  }
+  for (; tested != 0u; tested &= tested - 1u) {
+    int d = findLSB(tested);
+#else
+  for (int d = 0; d < batch_directions; ++d) {
+#endif
     float cosine = dot(normal, views[d].direction.xyz);
     float weight = 0.0;
     if (cosine > 0.0) weight = cosine * visibility(d, r, position, normal, cosine);

@@ -25,6 +25,7 @@ BakeResult describe(const Integration& integration, const Stopwatch& stopwatch) 
   result.directions = integration.directions();
   result.unoccluded = integration.unoccluded();
   result.choice = integration.choice();
+  result.shadow_choice = integration.shadow_choice();
   result.seconds = stopwatch.seconds();
   return result;
 }

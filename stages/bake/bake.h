@@ -7,6 +7,7 @@
 
 #include "bake/bake_settings.h"
 #include "bake/integrate/integration.h"
+#include "bake/integrate/shadow_choice.h"
 #include "bake/scene/occluders.h"
 #include "bake/scene/texel_receivers.h"
 #include "base/outputs.h"
@@ -25,6 +26,7 @@ struct BakeResult {
   std::size_t unoccluded = 0;  ///< receivers that took the analytic transfer
   TransferWork work;           ///< of this run, for the others
   std::optional<DirectionChoice> choice;
+  std::optional<ShadowSizeChoice> shadow_choice;
   double seconds = 0;  ///< of the integration alone, the engine's start included
 };
 

@@ -107,6 +107,10 @@ Json describe_bake(const BakeScene& scene, const BakeResult& result) {
                   {"occluders_closed", scene.occluders.closed}};
   if (result.choice)
     metrics["max_error"] = {{"target", result.choice->target_error}, {"estimated", result.choice->estimated_error}};
+  if (result.shadow_choice)
+    metrics["shadow_map"] = {{"size", result.shadow_choice->size_texels},
+                             {"error", result.shadow_choice->error},
+                             {"floor", result.shadow_choice->floor}};
   // Shares of all pairs of a texel and a direction.
   const auto all = static_cast<double>(result.work.pairs);
   const auto share = [&](std::uint64_t pairs) { return all > 0 ? static_cast<double>(pairs) / all : 0; };

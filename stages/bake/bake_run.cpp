@@ -55,6 +55,11 @@ BakeResult run_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene&
     command.say("WARNING: " + std::to_string(result.directions) + " directions leave an estimated error of " +
                 std::to_string(result.choice->estimated_error) + ", above the " +
                 std::to_string(result.choice->target_error) + " asked for; raise --max-directions");
+  if (result.shadow_choice && !result.shadow_choice->reached)
+    command.say("WARNING: depth maps of " + std::to_string(result.shadow_choice->size_texels) +
+                " texels leave an error of visibility of " + std::to_string(result.shadow_choice->error) +
+                ", above the " + std::to_string(result.shadow_choice->floor) +
+                " that --bits costs; --refine rays brings it under that");
   if (settings.backend == BakeBackend::egl && result.software_renderer)
     command.say("WARNING: SOFTWARE RENDERER " + result.renderer +
                 "; a GPU would be far faster, and --backend embree is likely to be");

@@ -33,16 +33,14 @@ void add_shadow_options(OptionSet& options, BakeSettings& settings) {
       .toggle(
           "shadow-ids", shadows.triangle_ids,
           "The triangle that a receiver stands on, and those that share a corner with it, cast no shadow on it (egl)")
+      .toggle("shadow-regions", shadows.regions,
+              "Do not test tiles of receivers that lie wholly in light or in shadow; changes no result (egl)")
       .choice("refine", shadows.refine, {{"none", false}, {"rays", true}},
               "Decide what a depth map cannot by rays: within its error band, and where texels do not agree (egl)")
       .number("shadow-band", shadows.error_band_texels, 0, 16,
               "Error band of a depth map in texels times the tangent as above (egl)")
       .toggle("count-ambiguous", shadows.count_ambiguous, "Count those even where rays do not decide them (egl)");
 }
-
-}  // namespace
-
-namespace {
 
 const std::vector<std::pair<std::string, BakeBackend>> backend_words = {{"auto", BakeBackend::automatic},
                                                                         {"egl", BakeBackend::egl},

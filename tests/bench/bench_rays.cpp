@@ -7,10 +7,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <embree3/rtcore.h>
 #include <limits>
 #include <memory>
@@ -20,6 +18,7 @@
 #include <tbb/parallel_for.h>
 #include <vector>
 
+#include "cost.h"
 #include "detail/detail_maps.h"
 #include "mesh/draco_file.h"
 #include "mesh/mesh_file.h"
@@ -41,22 +40,6 @@ struct Points {
   std::vector<Eigen::Vector3f> positions, normals;
   Receivers view() const { return {positions, normals}; }
 };
-
-/// Wall-clock and processor seconds of a piece of work.
-struct Cost {
-  double wall = std::numeric_limits<double>::infinity(), cpu = std::numeric_limits<double>::infinity();
-};
-
-template <class Work>
-Cost cost_of(const Work& work) {
-  const auto start = std::chrono::steady_clock::now();
-  const std::clock_t begin = std::clock();
-  work();
-  return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
-          static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC};
-}
-
-Cost lesser(const Cost& a, const Cost& b) { return {std::min(a.wall, b.wall), std::min(a.cpu, b.cpu)}; }
 
 /// The probe: what one writes in an afternoon. Direction outermost, 256 neighbouring receivers a stream, Embree's
 /// defaults with the incoherent flag, plain sums.

@@ -175,6 +175,34 @@ TEST_P(ShadowOptions, BatchesGiveTheSameBytes) {
   EXPECT_EQ(work.ambiguous, stand.work.ambiguous);
 }
 
+TEST_P(ShadowOptions, RegionsChangeNoBit) {
+  // Tiles of 8 x 8 points under a plate: some see it before all of a direction's light, some before none.
+  Stand plate;
+  plate.occluders = shapes::plane(8);
+  for (Eigen::Vector3f& position : plate.occluders.positions) position.y() += 0.3f;
+  for (int tile = 0; tile < 36; ++tile)
+    for (int point = 0; point < 64; ++point) {
+      plate.positions.emplace_back(0.2f * static_cast<float>(tile % 6) - 0.6f + 0.02f * static_cast<float>(point % 8),
+                                   0.f,
+                                   0.2f * static_cast<float>(tile / 6) - 0.6f + 0.02f * static_cast<float>(point / 8));
+      plate.normals.emplace_back(0, 1, 0);
+    }
+  for (Stand stand : {plate, torus()}) {
+    stand.directions = sample_directions(Sampling::fibonacci, 40, 1);
+    ShadowMapSettings settings = GetParam().settings;
+    const TransferVectors without = stand.egl(settings);
+    const TransferWork work = stand.work;
+    settings.regions = true;
+    EXPECT_EQ(without.values, stand.egl(settings).values);
+    EXPECT_EQ(work.ambiguous, stand.work.ambiguous);
+    if (stand.positions.size() != plate.positions.size()) continue;
+    EXPECT_GT(stand.work.lit_tiles, 0u);
+    // With ids the nearest triangle may be one that casts no shadow.
+    EXPECT_TRUE(settings.triangle_ids || stand.work.shadowed_tiles > 0);
+    EXPECT_LE(stand.work.lit_tiles + stand.work.shadowed_tiles + stand.work.behind_tiles, stand.work.pairs);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Bake, ShadowOptions, testing::ValuesIn(options),
                          [](const auto& tested) { return tested.param.name; });
 

@@ -24,6 +24,25 @@ std::vector<NormalCone> normal_cones(std::span<const Eigen::Vector3f> normals) {
   return cones;
 }
 
+std::vector<TileBounds> tile_bounds(const Receivers& receivers, std::span<const NormalCone> cones) {
+  std::vector<TileBounds> bounds;
+  for (std::size_t tile = 0; tile < cones.size(); ++tile) {
+    const std::size_t first = tile * tile_receivers;
+    const auto points = receivers.positions.subspan(first, std::min(tile_receivers, receivers.size() - first));
+    Eigen::Vector3f lower = points.front(), upper = points.front();
+    for (const Eigen::Vector3f& point : points) {
+      lower = lower.cwiseMin(point);
+      upper = upper.cwiseMax(point);
+    }
+    const Eigen::Vector3f centre = 0.5f * (lower + upper);
+    float radius = 0;
+    for (const Eigen::Vector3f& point : points) radius = std::max(radius, (point - centre).norm());
+    bounds.push_back({{centre.x(), centre.y(), centre.z(), radius},
+                      {cones[tile].axis.x(), cones[tile].axis.y(), cones[tile].axis.z(), cones[tile].sine}});
+  }
+  return bounds;
+}
+
 std::vector<std::uint32_t> facing_tiles(std::span<const NormalCone> cones, std::size_t receivers,
                                         std::span<const Eigen::Vector3f> directions, std::uint64_t& behind_pairs) {
   std::vector<std::uint32_t> facing;

@@ -25,6 +25,15 @@ struct NormalCone {
 /// One cone for each tile of `normals`, the last tile perhaps a smaller one.
 std::vector<NormalCone> normal_cones(std::span<const Eigen::Vector3f> normals);
 
+/// A tile as shaders/bake_tiles.glsl has it (std430).
+struct TileBounds {
+  Eigen::Vector4f sphere;  ///< centre and radius of a sphere that holds the receivers
+  Eigen::Vector4f cone;    ///< NormalCone's axis and sine
+};
+
+/// The bounds of each tile of `receivers`, whose normals have these cones.
+std::vector<TileBounds> tile_bounds(const Receivers& receivers, std::span<const NormalCone> cones);
+
 /// The tiles that at least one of `directions` does not see from behind, in order; `behind_pairs` grows by the number
 /// of pairs of the others' receivers and directions.
 std::vector<std::uint32_t> facing_tiles(std::span<const NormalCone> cones, std::size_t receivers,

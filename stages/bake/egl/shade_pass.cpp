@@ -1,6 +1,7 @@
 #include "bake/egl/shade_pass.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "bake/egl/shadow_refine.h"
@@ -21,6 +22,8 @@ struct GpuTotal {
   std::uint32_t low, high;
 };
 
+using TileCounts = std::array<std::uint32_t, 3>;  // behind, lit, shadowed
+
 int in_fours(int coefficients) { return (coefficients + 3) / 4 * 4; }
 
 /// Texels a side that a receiver is compared with. One alone would not show that a shadow's edge is near.
@@ -38,7 +41,9 @@ GlProgram load_weigh_program(const ShadowMapSettings& settings) {
                                             {"RECEIVER_PLANE", flag(settings.receiver_plane)},
                                             {"TRIANGLE_IDS", flag(settings.triangle_ids)},
                                             {"MIDPOINT", flag(settings.faces == ShadowFaces::midpoint)},
-                                            {"MARK", flag(marks(settings))}});
+                                            {"MARK", flag(marks(settings))},
+                                            {"REGIONS", flag(settings.regions)},
+                                            {"CELL", std::to_string(region_texels)}});
 }
 
 }  // namespace
@@ -62,6 +67,7 @@ ShadePass::ShadePass(const Receivers& receivers, int coefficients, const ShadowM
   for (std::size_t first = 0; first < receivers.size(); first += most)
     add_group(first, std::min(most, receivers.size() - first));
   if (settings.triangle_ids) find_corners(maps);
+  if (settings.regions) tile_counts_ = make_zero_buffer(sizeof(TileCounts), GL_DYNAMIC_STORAGE_BIT);
 }
 
 void ShadePass::find_corners(const ShadowMaps& maps) {
@@ -90,6 +96,9 @@ void ShadePass::add_group(std::size_t first, std::size_t count) {
   group.weights = make_zero_buffer(static_cast<GLsizeiptr>(count * block_directions * sizeof(float)),
                                    marks(settings_) ? GL_DYNAMIC_STORAGE_BIT : 0);
   group.totals = make_zero_buffer(static_cast<GLsizeiptr>(count * chunk_ * chunks_ * sizeof(GpuTotal)));
+  if (settings_.regions)
+    group.bounds = make_buffer<TileBounds>(tile_bounds(
+        {receivers_.positions.subspan(first, count), receivers_.normals.subspan(first, count)}, group.cones));
   group.tiles = make_refilled_buffer(group.cones.size() * sizeof(std::uint32_t));
 }
 
@@ -114,6 +123,10 @@ void ShadePass::begin_block(std::span<const Eigen::Vector3f> directions, std::sp
 }
 
 void ShadePass::weigh(const ShadowMaps& maps, int first, int directions) {
+  if (settings_.regions) {
+    maps.draw_regions(directions);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 8, tile_counts_.name());
+  }
   glUseProgram(weigh_program_.name());
   maps.bind();
   glUniform1i(uniform_location(weigh_program_, "batch_directions"), directions);
@@ -133,6 +146,7 @@ void ShadePass::weigh(const ShadowMaps& maps, int first, int directions) {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, group.weights.name());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, group.tiles.name());
     if (settings_.triangle_ids) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, group.corners.name());
+    if (settings_.regions) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 7, group.bounds.name());
     glDispatchCompute(static_cast<GLuint>(group.facing.size()), 1, 1);
   }
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
@@ -148,6 +162,14 @@ void ShadePass::resolve(const Group& group, TransferWork& work) const {
 }
 
 void ShadePass::end_block(TransferWork& work) {
+  if (settings_.regions) {
+    TileCounts counts{};
+    glGetNamedBufferSubData(tile_counts_.name(), 0, sizeof counts, counts.data());
+    work.behind_tiles += counts[0];
+    work.lit_tiles += counts[1];
+    work.shadowed_tiles += counts[2];
+    refill_buffer<std::uint32_t>(tile_counts_, TileCounts{});
+  }
   if (marks(settings_))
     for (const Group& group : groups_)
       if (!group.facing.empty()) resolve(group, work);

@@ -43,6 +43,7 @@ class ShadePass {
     GlBuffer totals;
     GlBuffer tiles;
     GlBuffer corners;                   // with settings.triangle_ids
+    GlBuffer bounds;                    // with settings.regions
     std::vector<std::uint32_t> facing;  // tiles of the block, as `tiles` now has them
   };
 
@@ -59,6 +60,7 @@ class ShadePass {
   int chunks_;
   std::vector<Group> groups_;
   std::vector<GlBuffer> rows_;  // one per chunk
+  GlBuffer tile_counts_;        // of the block: pairs behind, lit, shadowed
   GlProgram weigh_program_;
   GlProgram sum_program_;
 };

@@ -10,6 +10,7 @@ namespace kiln {
 namespace {
 
 constexpr int frame_margin_texels = 2;
+constexpr GLsizei most_draw_triangles = 16'000'000;  // of all layers: a few tens of milliseconds on hardware
 
 constexpr GLuint no_triangle = ~0u;
 
@@ -86,6 +87,12 @@ ShadowMaps::ShadowMaps(const TransferScene& scene, const ShadowMapSettings& sett
     glNamedFramebufferDrawBuffer(framebuffer, GL_COLOR_ATTACHMENT0);
   }
   if (settings.faces == ShadowFaces::midpoint) add_pass(scene.closed ? GL_FRONT : GL_NONE, settings.batch_directions);
+  if (settings.regions) {
+    region_maps_ = make_map_array(GL_RG32F, (size_ + region_texels - 1) / region_texels, settings.batch_directions);
+    region_program_ = load_program(
+        {"bake_regions.comp"},
+        {{"CELL", std::to_string(region_texels)}, {"MIDPOINT", settings.faces == ShadowFaces::midpoint ? "1" : "0"}});
+  }
 }
 
 void ShadowMaps::add_pass(GLenum culled, int layers) {
@@ -146,12 +153,30 @@ void ShadowMaps::draw_layers(const Pass& pass, int first, int count) const {
   if (settings_.triangle_ids && &pass == &passes_[0])
     glClearNamedFramebufferuiv(pass.framebuffer.name(), GL_COLOR, 0, &no_triangle);
   glUniform1i(uniform_location(program_, "first_layer"), first);
-  glDrawElementsInstanced(GL_TRIANGLES, indices_, GL_UNSIGNED_INT, nullptr, count);
+  // Short submissions: drivers reset a device that does not come back for seconds.
+  const GLsizei step = 3 * std::max<GLsizei>(1, most_draw_triangles / count);
+  for (GLsizei begin = 0; begin < indices_; begin += step) {
+    glDrawElementsInstanced(GL_TRIANGLES, std::min(step, indices_ - begin), GL_UNSIGNED_INT,
+                            reinterpret_cast<const void*>(static_cast<std::uintptr_t>(begin) * sizeof(std::uint32_t)),
+                            count);
+    if (begin + step < indices_) glFlush();
+  }
+}
+
+void ShadowMaps::draw_regions(int directions) const {
+  glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
+  glUseProgram(region_program_.name());
+  bind();
+  glBindImageTexture(0, region_maps_.name(), 0, GL_TRUE, 0, GL_WRITE_ONLY, GL_RG32F);
+  const auto cells = static_cast<GLuint>((size_ + region_texels - 1) / region_texels);
+  glDispatchCompute((cells + 7) / 8, (cells + 7) / 8, static_cast<GLuint>(directions));
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
 void ShadowMaps::bind() const {
   glBindTextureUnit(0, passes_.front().maps.name());
   glBindTextureUnit(1, passes_.back().maps.name());
+  if (settings_.regions) glBindTextureUnit(3, region_maps_.name());
   if (!settings_.triangle_ids) return;
   glBindTextureUnit(2, triangle_maps_.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 6, corner_buffer_.name());

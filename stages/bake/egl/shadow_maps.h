@@ -13,6 +13,9 @@
 
 namespace kiln {
 
+/// Side of a region of a depth map.
+inline constexpr int region_texels = 16;
+
 /// The depth maps of a batch of directions.
 class ShadowMaps {
  public:
@@ -25,6 +28,10 @@ class ShadowMaps {
   /// Binds the maps to texture units: 0 the depths, 1 the back faces' depths (ShadowFaces::midpoint), 2 the triangles
   /// (settings.triangle_ids); of these also the vertices of each triangle to shader storage binding 6.
   void bind() const;
+
+  /// With settings.regions: the least and the greatest depth of every region_texels x region_texels texels of the maps
+  /// now drawn, to texture unit 3 by bind().
+  void draw_regions(int directions) const;
 
   /// The largest error of a stored depth.
   float depth_rounding() const;
@@ -57,6 +64,8 @@ class ShadowMaps {
   std::vector<std::array<std::uint32_t, 3>> corners_;
   GlBuffer corner_buffer_;
   GlProgram program_;
+  GlTexture region_maps_;  // with settings.regions
+  GlProgram region_program_;
 };
 
 }  // namespace kiln

@@ -54,6 +54,9 @@ struct ShadowMapSettings {
   /// Decides the ambiguous pairs by rays. Needs ShadowRays::occluded; implies count_ambiguous, and takes at least 2 x 2
   /// texels to tell them.
   bool refine = false;
+  /// Tiles of receivers that a coarse map of least and greatest depths shows to be wholly lit or wholly shadowed are
+  /// not tested (the patent's conservative regions, section 5). Changes no result.
+  bool regions = false;
   int batch_directions = 16;  ///< depth maps alive at a time; block_directions is a multiple of it
   bool layered_pass = true;   ///< all maps of a batch in one pass, where GL can; the result is the same
 

@@ -112,19 +112,17 @@ Integration::Integration(const Receivers& receivers, const Occluders& occluders,
 }
 
 TransferEngine& Integration::engine() {
-  if (!engine_) {
-    if (backend_ == BakeBackend::egl && settings_.shadow_size == 0) choose_shadow_maps();
-    engine_ = make_engine(backend_, occluders_, settings_, threads_);
+  if (engine_) return *engine_;
+  BakeSettings settings = settings_;
+  if (backend_ == BakeBackend::egl && settings.shadow_size == 0) {
+    if (!tested_.empty()) {
+      const Sample sample = sample_of(receivers_, tested_);
+      shadow_choice_ = choose_shadow_size({sample.positions, sample.normals}, occluders_, settings, seed_, threads_);
+    }
+    settings.shadow_size = shadow_choice_ ? shadow_choice_->size_texels : 256;  // nothing is shadowed
   }
+  engine_ = make_engine(backend_, occluders_, settings, threads_);
   return *engine_;
-}
-
-void Integration::choose_shadow_maps() {
-  if (!tested_.empty()) {
-    const Sample sample = sample_of(receivers_, tested_);
-    shadow_choice_ = choose_shadow_size({sample.positions, sample.normals}, occluders_, settings_, seed_, threads_);
-  }
-  settings_.shadow_size = shadow_choice_ ? shadow_choice_->size_texels : 256;  // nothing is shadowed
 }
 
 std::size_t Integration::slabs() const { return (tested_.size() + slab_receivers_ - 1) / slab_receivers_; }

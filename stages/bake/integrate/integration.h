@@ -71,7 +71,6 @@ class Integration {
     std::vector<Eigen::Vector3f> positions, normals;
   };
   Slab gather(std::size_t slab) const;
-  void choose_shadow_maps();
 
   Receivers receivers_;
   const Occluders& occluders_;

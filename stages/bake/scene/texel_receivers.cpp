@@ -8,15 +8,21 @@ namespace kiln {
 
 namespace {
 
-constexpr int tile_texels = 16;  // 256 texels of a full tile are one stream of rays
+constexpr int outer_tile_texels = 16;  // 256 texels of a full tile are one stream of rays
+constexpr int inner_tile_texels = 8;   // 64 are one workgroup of the GPU
 
-/// Calls visit(i, j) for all texels, tile after tile.
+/// Calls visit(i, j) for all texels, tile after tile, and within each in four smaller tiles.
 template <class Visit>
 void for_each_texel(int width, int height, const Visit& visit) {
-  for (int tile_j = 0; tile_j < height; tile_j += tile_texels)
-    for (int tile_i = 0; tile_i < width; tile_i += tile_texels)
-      for (int j = tile_j; j < std::min(tile_j + tile_texels, height); ++j)
-        for (int i = tile_i; i < std::min(tile_i + tile_texels, width); ++i) visit(i, j);
+  const auto for_each_tile = [](int first_i, int first_j, int last_i, int last_j, int side, const auto& inner) {
+    for (int j = first_j; j < last_j; j += side)
+      for (int i = first_i; i < last_i; i += side) inner(i, j, std::min(i + side, last_i), std::min(j + side, last_j));
+  };
+  for_each_tile(0, 0, width, height, outer_tile_texels, [&](int outer_i, int outer_j, int end_i, int end_j) {
+    for_each_tile(outer_i, outer_j, end_i, end_j, inner_tile_texels, [&](int i, int j, int last_i, int last_j) {
+      for_each_tile(i, j, last_i, last_j, 1, [&](int at_i, int at_j, int, int) { visit(at_i, at_j); });
+    });
+  });
 }
 
 Eigen::Vector3f vector_at(const Image<float>& image, int i, int j) {

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+
+#include "bake/bake_files.h"
+
+namespace kiln {
+
+/// Receivers are the texels of `asset`, a folder of `kiln build` (atlas.drc and normals/), or with an empty one the
+/// vertices of `mesh`, which casts the shadows.
+inline BakeScene load_bench_scene(const std::filesystem::path& asset, const std::filesystem::path& mesh) {
+  BakePaths paths;
+  BakeSettings settings;
+  paths.occluders = {mesh};
+  if (asset.empty()) {
+    paths.atlas = mesh;
+    settings.per_vertex = true;
+    settings.receiver = BakeReceiver::low;  // the vertices themselves
+  } else {
+    paths.atlas = asset / "atlas.drc";
+    paths.detail = asset / "normals";
+  }
+  return load_bake_scene(paths, settings);
+}
+
+}  // namespace kiln
