@@ -203,6 +203,44 @@ TEST_P(ShadowOptions, RegionsChangeNoBit) {
   }
 }
 
+TEST(ShadowMaps, SumsAreTrueForAnyNumberOfDirections) {
+  // All that could shadow lies below, so that the sums are known: in float64, from the same float32 directions.
+  Stand stand;
+  stand.occluders = shapes::plane(1);
+  for (const Eigen::Vector3f& normal : {Eigen::Vector3f(0, 1, 0), Eigen::Vector3f(0.1f, 0.99f, -0.05f).normalized()}) {
+    stand.positions.emplace_back(0.f, 50.f, 0.f);
+    stand.normals.push_back(normal);
+  }
+  ShadowMapSettings settings;
+  settings.size_texels = 16;
+  const ShBasis basis(4);
+  for (const int count : {1, 1000, 1000000}) {
+    // Of the sphere's upper part alone: where no receiver can look down at the plane.
+    stand.directions = sample_directions(Sampling::fibonacci, count + 1, 1);
+    std::erase_if(stand.directions, [](const Eigen::Vector3f& direction) { return direction.y() < 0.2f; });
+    if (count == 1) stand.directions = {Eigen::Vector3f(0.3f, 0.8f, 0.5f).normalized()};
+    EglEngine engine(stand.scene(), "auto", 0, settings);
+    stand.run(engine);
+    const TransferSums sums = engine.sums();
+    double squared_error = 0, squared = 0;
+    std::vector<double> values(16);
+    for (std::size_t r = 0; r < 2; ++r) {
+      std::vector<double> expected(16, 0);
+      for (const Eigen::Vector3f& direction : stand.directions) {
+        basis.evaluate<double>(direction.cast<double>(), values);
+        const double cosine = stand.normals[r].cast<double>().dot(direction.cast<double>());
+        for (int i = 0; i < 16; ++i) expected[i] += std::max(0.0, cosine) * values[i];
+      }
+      for (int i = 0; i < 16; ++i) {
+        const double error = static_cast<double>(sums.plane(i)[r]) / fixed_point_one - expected[i];
+        squared_error += error * error;
+        squared += expected[i] * expected[i];
+      }
+    }
+    EXPECT_LT(std::sqrt(squared_error / squared), 1e-5) << count << " directions";
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Bake, ShadowOptions, testing::ValuesIn(options),
                          [](const auto& tested) { return tested.param.name; });
 
