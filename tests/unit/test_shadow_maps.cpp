@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <ostream>
 
 #include "bake/bake_settings.h"
 #include "bake/egl/egl_engine.h"
@@ -86,6 +87,9 @@ struct Tested {
   const char* name;
   ShadowMapSettings settings;
 };
+
+/// For the names of failed tests.
+void PrintTo(const Tested& tested, std::ostream* stream) { *stream << tested.name; }
 
 template <class Change>
 Tested option(const char* name, const Change& change) {
