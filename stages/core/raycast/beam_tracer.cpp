@@ -167,6 +167,30 @@ KILN_ANY_VECTOR_WIDTH std::uint32_t boxes_in(const Shaft& shaft, const BeamBoxes
   return mask_at_most(nearest, farthest * looser) & mask_at_most(cosine, load(boxes.cone_sine) + shaft.cone_sine);
 }
 
+/// Space sheared so that a direction becomes an axis, and a packet's origins in it. Mirrored where the ray goes down
+/// the axis, so that triangles that face it are always run around the same way.
+struct Sheared {
+  int x, y, z;  // z: the direction's longest component
+  float shear_x, shear_y, sign;
+  Floats origin_x, origin_y, origin_w;
+};
+
+KILN_INLINE Sheared shear_along(const float* direction, const BeamPacket& packet, const float* centre) {
+  Sheared s;
+  s.z = std::abs(direction[0]) > std::abs(direction[1]) ? 0 : 1;
+  if (std::abs(direction[2]) > std::abs(direction[s.z])) s.z = 2;
+  s.x = (s.z + 1) % 3;
+  s.y = (s.z + 2) % 3;
+  s.shear_x = direction[s.x] / direction[s.z];
+  s.shear_y = direction[s.y] / direction[s.z];
+  s.sign = direction[s.z] > 0 ? 1.f : -1.f;
+  const Floats origin_z = load(packet.origin[s.z]) - centre[s.z];
+  s.origin_x = ((load(packet.origin[s.x]) - centre[s.x]) - origin_z * s.shear_x) * s.sign;
+  s.origin_y = (load(packet.origin[s.y]) - centre[s.y]) - origin_z * s.shear_y;
+  s.origin_w = origin_z * s.sign;
+  return s;
+}
+
 /// Clears the weights of the receivers that a candidate hides from one direction; returns whether any triangle was
 /// near enough to be tested. `first` is the candidate to begin with, and becomes the one that hid the last receivers.
 KILN_ANY_VECTOR_WIDTH bool shade(const BeamPacket& packet, const float* centre, const float* half, float slack,
@@ -182,17 +206,7 @@ KILN_ANY_VECTOR_WIDTH bool shade(const BeamPacket& packet, const float* centre, 
   float inverses[3];
   for (int axis = 0; axis < 3; ++axis) inverses[axis] = inverse(along[axis]);
 
-  // The direction becomes an axis: its longest component z, and shears of x and y.
-  int z = std::abs(direction[0]) > std::abs(direction[1]) ? 0 : 1;
-  if (std::abs(direction[2]) > std::abs(direction[z])) z = 2;
-  const int x = (z + 1) % 3, y = (z + 2) % 3;
-  const float shear_x = direction[x] / direction[z], shear_y = direction[y] / direction[z];
-  const float sign = direction[z] > 0 ? 1.f : -1.f;
-  const Floats origin_z = load(packet.origin[z]) - centre[z];
-  // Mirrored where the ray goes down the axis, so that triangles that face it are always run around the same way.
-  const Floats origin_x = ((load(packet.origin[x]) - centre[x]) - origin_z * shear_x) * sign;
-  const Floats origin_y = (load(packet.origin[y]) - centre[y]) - origin_z * shear_y;
-  const Floats origin_w = origin_z * sign;
+  const auto [x, y, z, shear_x, shear_y, sign, origin_x, origin_y, origin_w] = shear_along(direction, packet, centre);
   const float beam_x = (half[x] + std::abs(shear_x) * half[z]) * looser + slack;
   const float beam_y = (half[y] + std::abs(shear_y) * half[z]) * looser + slack;
   const float beam_w = half[z] * looser + slack;
@@ -274,15 +288,7 @@ KILN_ANY_VECTOR_WIDTH bool shade(const BeamPacket& packet, const float* centre, 
 /// to doubt[r] where it meets an edge.
 KILN_ANY_VECTOR_WIDTH void wind(const BeamPacket& packet, const float* centre, const float* direction,
                                 const BeamScene::Cluster& cluster, float* winding, float* doubt) {
-  int z = std::abs(direction[0]) > std::abs(direction[1]) ? 0 : 1;
-  if (std::abs(direction[2]) > std::abs(direction[z])) z = 2;
-  const int x = (z + 1) % 3, y = (z + 2) % 3;
-  const float shear_x = direction[x] / direction[z], shear_y = direction[y] / direction[z];
-  const float sign = direction[z] > 0 ? 1.f : -1.f;
-  const Floats origin_z = load(packet.origin[z]) - centre[z];
-  const Floats origin_x = ((load(packet.origin[x]) - centre[x]) - origin_z * shear_x) * sign;
-  const Floats origin_y = (load(packet.origin[y]) - centre[y]) - origin_z * shear_y;
-  const Floats origin_w = origin_z * sign;
+  const auto [x, y, z, shear_x, shear_y, sign, origin_x, origin_y, origin_w] = shear_along(direction, packet, centre);
   const Floats one = Floats{} + 1.f;
   Floats sum = load(winding), doubtful = load(doubt);
   for (int i = 0; i < cluster.count; ++i) {
