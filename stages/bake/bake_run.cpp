@@ -27,7 +27,7 @@ void add_run_options(CommandLine& command, BakeRun& run) {
   command.app()
       .add_option("--checkpoint-seconds", run.checkpoint_seconds,
                   "Time between two checkpoints, in OUTPUT.checkpoint until the bake is done (default 60; 0 or more)")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
       ->type_name("")
       ->group("Run");
 }

@@ -89,12 +89,45 @@ TEST_P(Cuts, ShardsAddUpToTheSameBits) {
     return merge_shards(parts, content.receivers, content.occluders, settings, seed, 2);
   };
   EXPECT_EQ(merge(folders, content.settings, 7).transfer.values, whole().transfer.values);
+  BakeSettings by_error = content.settings;
+  by_error.max_error = "0.05";
+  std::vector<fs::path> by_error_folders;
+  for (int index : {1, 2}) {
+    by_error_folders.push_back(folder / ("by_error" + std::to_string(index)));
+    OutputSet outputs(by_error_folders.back());
+    bake_shard(outputs, {index, 2}, content.receivers, content.occluders, by_error, 7, 2);
+    outputs.commit();
+  }
+  const BakeResult merged = merge(by_error_folders, by_error, 7);
+  const BakeResult at_once = bake(content.receivers, content.occluders, by_error, 7, 2);
+  EXPECT_EQ(merged.directions, at_once.directions);
+  EXPECT_EQ(merged.transfer.values, at_once.transfer.values);
   EXPECT_THROW(merge({folders[0], folders[1]}, content.settings, 7), BadInput);
   EXPECT_THROW(merge({folders[0], folders[1], folders[1]}, content.settings, 7), BadInput);
   EXPECT_THROW(merge(folders, content.settings, 8), BadInput);
   BakeSettings other = content.settings;
   other.bands = 4;
   EXPECT_THROW(merge(folders, other, 7), BadInput);
+}
+
+TEST_P(Cuts, NothingToTestIsStillABake) {
+  // Points over a plane, looking up: all analytic.
+  Content open;
+  open.settings.backend = GetParam();
+  open.occluders = join_occluders({shapes::plane(4)});
+  for (std::size_t r = 0; r < open.receivers.positions.size(); ++r) {
+    open.receivers.positions[r] = {0, 1 + 0.001f * static_cast<float>(r), 0};
+    open.receivers.normals[r] = {0, 1, 0};
+  }
+  const BakeResult result = bake(open.receivers, open.occluders, open.settings, 7, 2);
+  EXPECT_EQ(result.unoccluded, open.receivers.texels.size());
+  EXPECT_NEAR(result.transfer.plane(0)[5], 0.28209479, 1e-7);
+  const fs::path shard = folder / "open";
+  OutputSet outputs(shard);
+  bake_shard(outputs, {1, 1}, open.receivers, open.occluders, open.settings, 7, 2);
+  outputs.commit();
+  EXPECT_EQ(merge_shards({shard}, open.receivers, open.occluders, open.settings, 7, 2).transfer.values,
+            result.transfer.values);
 }
 
 TEST_P(Cuts, AnInterruptedBakeGoesOnToTheSameBits) {

@@ -125,7 +125,10 @@ TransferEngine& Integration::engine() {
   return *engine_;
 }
 
-std::size_t Integration::slabs() const { return (tested_.size() + slab_receivers_ - 1) / slab_receivers_; }
+std::size_t Integration::slabs() const {
+  // One even where nothing is tested, so that a shard always has a file.
+  return std::max<std::size_t>(1, (tested_.size() + slab_receivers_ - 1) / slab_receivers_);
+}
 
 Integration::Slab Integration::gather(std::size_t slab) const {
   Slab gathered;
@@ -142,6 +145,7 @@ Integration::Slab Integration::gather(std::size_t slab) const {
 
 Json Integration::key(const Shard& shard, const std::string& renderer) const {
   BakeSettings settings = settings_;
+  settings.sampling = sampling_;
   Json relevant = bake_options(settings).to_json();
   for (const char* name : {"bits", "size", "directions", "max-error", "max-directions", "verify-directions",
                            "verify-texels", "backend", "gl-device"})
@@ -166,6 +170,11 @@ SumsFile Integration::sum(std::size_t slab, const Shard& shard, const Checkpoint
   file.first_receiver = own.first;
   file.blocks_all = blocks_of(directions.size());
   file.sums = TransferSums(own.positions.size(), coefficient_count(settings_.bands));
+  if (own.positions.empty()) {
+    file.blocks_done = file.blocks_all;
+    file.sums.directions = static_cast<std::int64_t>(directions.size());
+    return file;
+  }
   const fs::path path = checkpoints.folder / slab_name(slab);
 
   // Step 1: what an earlier run left.
