@@ -84,7 +84,7 @@ OptionSet bake_options(BakeSettings& settings) {
   add_shadow_options(options, settings);
   options
       .number("ray-offset", settings.ray_offset, 0, 1,
-              "Start of a ray off the surface as a fraction of the occluders' diagonal (embree)")
+              "Start of a ray off the surface as a fraction of the occluders' diagonal (rays)")
       .integer("verify-directions", settings.verify_directions, 0, 100'000'000,
                "Also measure the error against that many rays per texel, and against the other backend; 0 for no")
       .integer("verify-texels", settings.verify_texels, 1, 100'000'000,

@@ -1,6 +1,5 @@
 // However a bake is cut (slabs, shards, checkpoints), its bits are the same; and it takes as many directions as its
 // error needs.
-#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>

@@ -7,9 +7,9 @@ namespace kiln {
 
 /// Shadows by beams: the parallel rays of 16 neighbouring receivers through one search of the occluders' tree for a
 /// whole block of directions. Finds the exact visibility that EmbreeEngine finds, up to roundings of rays that pass an
-/// edge, in a third of the time or less: the fast way of a machine without a GPU. Kin of the patent's conservative
-/// regions (section 5), and of shaft culling (Haines and Wallace, "Shaft culling for efficient ray-cast radiosity",
-/// 1991).
+/// edge, in less than half the time from a thousand directions on: the fast way of a machine without a GPU. Kin of the
+/// patent's conservative regions (section 5), and of shaft culling (Haines and Wallace, "Shaft culling for efficient
+/// ray-cast radiosity", 1991).
 class BeamEngine : public TransferEngine {
  public:
   /// Rays start `ray_offset` off the receiver along its normal, a fraction of the occluders' bounding box diagonal.

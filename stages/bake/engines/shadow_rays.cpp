@@ -1,6 +1,5 @@
 #include "bake/engines/shadow_rays.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -29,9 +28,7 @@ class LazyScene {
 }  // namespace
 
 ShadowRays make_shadow_rays(const TransferScene& scene, double ray_offset) {
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& point : scene.hull) box.extend(point);
-  const float offset = static_cast<float>(ray_offset) * box.diagonal().norm();
+  const float offset = static_cast<float>(ray_offset) * diagonal_of(scene.hull);
   const auto lazy = std::make_shared<LazyScene>(scene);
   ShadowRays rays;
   rays.triangles_below = [lazy](const Receivers& receivers) {
