@@ -12,8 +12,13 @@ OptionSet light_options(LightSettings& settings) {
   options.text("ambient", settings.ambient, "Radiance from everywhere (a furnace): one number or R,G,B")
       .number("environment-rotation", settings.environment_rotation_degrees, -360, 360,
               "Turns the environment about +Y, degrees: what was at azimuth a comes to a + this")
-      .choice("window", settings.window, {{"hann", LightWindow::hann}, {"none", LightWindow::none}},
-              "Weights the bands of all lights, which tames ringing and blurs a little; ambient light stays as it is");
+      .choice("window", settings.window,
+              {{"hann", LightWindow::hann},
+               {"lanczos", LightWindow::lanczos},
+               {"dering", LightWindow::dering},
+               {"none", LightWindow::none}},
+              "Weights the bands of all lights, which tames ringing and blurs a little; ambient light stays as it is. "
+              "dering is the weakest that leaves no negative light");
   return options;
 }
 
@@ -49,7 +54,7 @@ LightCoefficients all_lights(const LightSettings& settings, int bands) {
   LightCoefficients light = light_coefficients(light_specs(settings), bands, LightWindow::none);
   if (!settings.environment.empty())
     light = add_lights(light, load_environment(settings.environment, bands, settings.environment_rotation_degrees));
-  if (settings.window == LightWindow::hann) apply_hann_window(light);
+  apply_window(light, settings.window);
   return light;
 }
 

@@ -7,51 +7,26 @@
 #include "sh/basis.h"
 #include "sh/directions.h"
 #include "sh/lights.h"
+#include "sh/quadrature.h"
 #include "sh/transfer.h"
+#include "sh/windows.h"
 
 namespace kiln {
 namespace {
 
-/// Nodes and weights of Gauss-Legendre quadrature on [-1, 1], by Newton's iteration on the Legendre polynomial.
-void gauss_legendre(int count, std::vector<double>& nodes, std::vector<double>& weights) {
-  for (int i = 0; i < count; ++i) {
-    double x = std::cos(std::numbers::pi * (i + 0.75) / (count + 0.5)), derivative = 1;
-    for (int step = 0; step < 100; ++step) {
-      double before = 1, p = x;
-      for (int l = 2; l <= count; ++l) {
-        const double next = ((2 * l - 1) * x * p - (l - 1) * before) / l;
-        before = p;
-        p = next;
-      }
-      derivative = count * (x * p - before) / (x * x - 1);
-      const double change = p / derivative;
-      x -= change;
-      if (std::abs(change) < 1e-15) break;
-    }
-    nodes.push_back(x);
-    weights.push_back(2 / ((1 - x * x) * derivative * derivative));
-  }
-}
-
-/// The Gram matrix of all basis functions by a product quadrature that is exact for their products: 4 pi worth of
-/// polynomials of degree 2 (bands - 1).
+/// The Gram matrix of all basis functions by a quadrature that is exact for their products.
 template <class Real>
 Eigen::MatrixXd gram_matrix(int bands) {
   const ShBasis basis(bands);
-  std::vector<double> nodes, weights;
-  gauss_legendre(bands + 1, nodes, weights);
-  const int azimuths = 2 * bands + 1;
+  const SphereQuadrature quadrature = exact_quadrature(2 * (bands - 1));
   Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(basis.size(), basis.size());
   std::vector<Real> values(basis.size());
-  for (std::size_t k = 0; k < nodes.size(); ++k)
-    for (int a = 0; a < azimuths; ++a) {
-      const double phi = 2 * std::numbers::pi * a / azimuths, radius = std::sqrt(1 - nodes[k] * nodes[k]);
-      const Eigen::Vector3d direction(radius * std::cos(phi), radius * std::sin(phi), nodes[k]);
-      basis.evaluate<Real>(direction.cast<Real>(), values);
-      const Eigen::VectorXd row =
-          Eigen::Map<Eigen::Matrix<Real, Eigen::Dynamic, 1>>(values.data(), basis.size()).template cast<double>();
-      gram.selfadjointView<Eigen::Lower>().rankUpdate(row, weights[k] * 2 * std::numbers::pi / azimuths);
-    }
+  for (std::size_t k = 0; k < quadrature.directions.size(); ++k) {
+    basis.evaluate<Real>(quadrature.directions[k].cast<Real>(), values);
+    const Eigen::VectorXd row =
+        Eigen::Map<Eigen::Matrix<Real, Eigen::Dynamic, 1>>(values.data(), basis.size()).template cast<double>();
+    gram.selfadjointView<Eigen::Lower>().rankUpdate(row, quadrature.weights[k]);
+  }
   gram.triangularView<Eigen::Upper>() = gram.transpose();
   return gram;
 }
@@ -95,15 +70,14 @@ TEST(ShBasis, HoldsInFloatUpTo64) {
 
 TEST(ShBasis, ClampedCosineMatchesQuadrature) {
   // A_l = 2 pi times the integral of P_l(z) z over z in [0, 1]; Gauss-Legendre of 40 nodes is exact for these
-  // polynomials.
-  std::vector<double> nodes, weights;
-  gauss_legendre(40, nodes, weights);
+  // polynomials, and the sphere's quadrature is that times azimuths.
+  const SphereQuadrature quadrature = exact_quadrature(79);
   const std::vector<double> factors = clamped_cosine_bands(24);
   for (int l = 0; l < 24; ++l) {
     double integral = 0;
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-      const double z = 0.5 * (nodes[k] + 1);
-      integral += 2 * std::numbers::pi * 0.5 * weights[k] * z * std::legendre(static_cast<unsigned>(l), z);
+    for (std::size_t k = 0; k < quadrature.weights.size(); ++k) {
+      const double z = 0.5 * (quadrature.directions[k].z() + 1);
+      integral += 0.5 * quadrature.weights[k] * z * std::legendre(static_cast<unsigned>(l), z);
     }
     EXPECT_NEAR(factors[l], integral, 1e-12) << "band " << l;
   }
@@ -312,7 +286,7 @@ TEST(Lights, HannWindowLeavesTheMeanAndTamesTheRest) {
   const float one[] = {1};
   LightCoefficients light = directional_light(4, Eigen::Vector3f(0, 0, 1), one);
   const LightCoefficients before = light;
-  apply_hann_window(light);
+  apply_window(light, LightWindow::hann);
   EXPECT_EQ(light.channels[0][0], before.channels[0][0]);
   EXPECT_NEAR(light.channels[0][coefficient_index(2, 0)], 0.5 * before.channels[0][coefficient_index(2, 0)], 1e-6);
 }

@@ -19,7 +19,10 @@ int main(int argc, char** argv) {
         .add_option(
             "--light", lights.lights,
             "A light, degrees: AZIMUTH,ELEVATION[,R,G,B] (0,0 is +Z; 90,0 is +X; a white surface that faces it "
-            "has radiance 1, or R,G,B), or ambient:RADIANCE; may be repeated (default 45,30 if there is no other)")
+            "has radiance 1, or R,G,B), cone:AZIMUTH,ELEVATION,HALF-ANGLE[,R,G,B], sphere:X,Y,Z,RADIUS[,R,G,B], "
+            "hemisphere:AZIMUTH,ELEVATION,R,G,B,R,G,B (above, below) or ambient:RADIANCE; may be repeated (default "
+            "45,30 "
+            "if there is no other)")
         ->expected(1)
         ->take_all()
         ->type_name("")

@@ -1,14 +1,14 @@
 #include "sh/light_spec.h"
 
 #include <algorithm>
-#include <cassert>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <sstream>
 
 #include "base/errors.h"
-#include "sh/basis.h"
 #include "sh/directions.h"
 
 namespace kiln {
@@ -60,52 +60,126 @@ std::array<float, 3> parse_colour(std::string_view name, std::string_view text, 
   return {number(0), number(1), number(2)};
 }
 
+namespace {
+
+/// How a kind of light is written: its name, and how many numbers come before the colour.
+struct Syntax {
+  LightSpec::Kind kind;
+  std::string_view name;
+  std::size_t numbers;
+  std::string_view form;
+};
+constexpr std::array<Syntax, 5> syntaxes = {
+    {{LightSpec::Kind::directional, "directional", 2, "AZIMUTH,ELEVATION[,R,G,B]"},
+     {LightSpec::Kind::cone, "cone", 3, "cone:AZIMUTH,ELEVATION,HALF-ANGLE[,R,G,B]"},
+     {LightSpec::Kind::sphere, "sphere", 4, "sphere:X,Y,Z,RADIUS[,R,G,B]"},
+     {LightSpec::Kind::hemisphere, "hemisphere", 2, "hemisphere:AZIMUTH,ELEVATION,R,G,B,R,G,B"},
+     {LightSpec::Kind::ambient, "ambient", 0, "ambient:RADIANCE or ambient:R,G,B"}}};
+
+const Syntax& syntax_of(LightSpec::Kind kind) {
+  return *std::find_if(syntaxes.begin(), syntaxes.end(), [&](const Syntax& syntax) { return syntax.kind == kind; });
+}
+
+/// The colour that starts at `first` of a list of numbers.
+std::array<float, 3> colour_at(std::string_view text, const std::vector<double>& values, std::size_t first) {
+  std::array<float, 3> colour;
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (values[first + c] < 0) fail("light", text, "a colour of no negative numbers");
+    colour[c] = static_cast<float>(values[first + c]);
+  }
+  return colour;
+}
+
+std::string to_text(const std::array<float, 3>& colour) {
+  return shortest(colour[0]) + "," + shortest(colour[1]) + "," + shortest(colour[2]);
+}
+
+}  // namespace
+
 LightSpec parse_light_spec(std::string_view text) {
-  constexpr std::string_view directional = "directional:", ambient = "ambient:";
+  // The kind stands before a colon; a directional light needs no name.
+  const std::size_t colon = text.find(':');
+  const std::string_view name = colon == text.npos ? "directional" : text.substr(0, colon);
+  const std::string_view numbers = colon == text.npos ? text : text.substr(colon + 1);
+  const auto syntax =
+      std::find_if(syntaxes.begin(), syntaxes.end(), [&](const Syntax& known) { return known.name == name; });
+  if (syntax == syntaxes.end()) {
+    std::string forms;
+    for (const Syntax& known : syntaxes) forms += (forms.empty() ? "" : "; ") + std::string(known.form);
+    fail("light", text, "one of " + forms);
+  }
   LightSpec spec;
-  if (text.starts_with(ambient)) {
-    spec.kind = LightSpec::Kind::ambient;
-    spec.colour = parse_colour("light", text.substr(ambient.size()), 0, brightest);
+  spec.kind = syntax->kind;
+  if (spec.kind == LightSpec::Kind::ambient) {
+    spec.colour = parse_colour("light", numbers, 0, brightest);
     return spec;
   }
-  const std::string_view numbers = text.starts_with(directional) ? text.substr(directional.size()) : text;
+
   const std::vector<double> values = parse_numbers("light", numbers, -brightest, brightest);
-  if (values.size() != 2 && values.size() != 5)
-    fail("light", text, "AZIMUTH,ELEVATION or AZIMUTH,ELEVATION,R,G,B or ambient:RADIANCE");
+  const std::size_t colours = spec.kind == LightSpec::Kind::hemisphere ? 2 : 1;
+  const bool has_colours = values.size() == syntax->numbers + 3 * colours;
+  if (!has_colours && (colours == 2 || values.size() != syntax->numbers))
+    fail("light", text, std::string(syntax->form));
+  if (has_colours) spec.colour = colour_at(text, values, syntax->numbers);
+  if (colours == 2) spec.ground = colour_at(text, values, syntax->numbers + 3);
+  if (spec.kind == LightSpec::Kind::sphere) {
+    spec.position = {values[0], values[1], values[2]};
+    spec.radius = values[3];
+    if (!(spec.radius > 0)) fail("light", text, "a radius above 0");
+    return spec;
+  }
   spec.azimuth_degrees = values[0];
   spec.elevation_degrees = values[1];
   if (std::abs(spec.azimuth_degrees) > 360) fail("light", text, "an azimuth of -360 to 360 degrees");
   if (std::abs(spec.elevation_degrees) > 90) fail("light", text, "an elevation of -90 to 90 degrees");
-  for (std::size_t c = 0; c + 2 < values.size(); ++c) {
-    if (values[c + 2] < 0) fail("light", text, "a colour of no negative numbers");
-    spec.colour[c] = static_cast<float>(values[c + 2]);
+  if (spec.kind == LightSpec::Kind::cone) {
+    spec.half_angle_degrees = values[2];
+    if (!(spec.half_angle_degrees >= 0 && spec.half_angle_degrees <= 180))
+      fail("light", text, "a half-angle of 0 to 180 degrees");
   }
   return spec;
 }
 
 std::string to_text(const LightSpec& spec) {
-  const std::string colour = shortest(spec.colour[0]) + "," + shortest(spec.colour[1]) + "," + shortest(spec.colour[2]);
-  if (spec.kind == LightSpec::Kind::ambient) return "ambient:" + colour;
-  return "directional:" + shortest(spec.azimuth_degrees) + "," + shortest(spec.elevation_degrees) + "," + colour;
+  const std::string name(syntax_of(spec.kind).name),
+      angles = shortest(spec.azimuth_degrees) + "," + shortest(spec.elevation_degrees);
+  switch (spec.kind) {
+    case LightSpec::Kind::directional:
+      return name + ":" + angles + "," + to_text(spec.colour);
+    case LightSpec::Kind::cone:
+      return name + ":" + angles + "," + shortest(spec.half_angle_degrees) + "," + to_text(spec.colour);
+    case LightSpec::Kind::sphere:
+      return name + ":" + shortest(spec.position[0]) + "," + shortest(spec.position[1]) + "," +
+             shortest(spec.position[2]) + "," + shortest(spec.radius) + "," + to_text(spec.colour);
+    case LightSpec::Kind::hemisphere:
+      return name + ":" + angles + "," + to_text(spec.colour) + "," + to_text(spec.ground);
+    case LightSpec::Kind::ambient:
+      break;
+  }
+  return name + ":" + to_text(spec.colour);
 }
 
 LightCoefficients light_coefficients(const LightSpec& spec, int bands) {
-  if (spec.kind == LightSpec::Kind::ambient) return constant_light(bands, spec.colour);
-  return directional_light(bands, direction_from_angles(spec.azimuth_degrees, spec.elevation_degrees), spec.colour);
-}
-
-LightCoefficients add_lights(const LightCoefficients& a, const LightCoefficients& b) {
-  assert(a.bands == b.bands && a.channels.size() == b.channels.size());
-  LightCoefficients sum = a;
-  for (std::size_t c = 0; c < sum.channels.size(); ++c)
-    for (std::size_t i = 0; i < sum.channels[c].size(); ++i) sum.channels[c][i] += b.channels[c][i];
-  return sum;
+  const Eigen::Vector3f direction = direction_from_angles(spec.azimuth_degrees, spec.elevation_degrees);
+  switch (spec.kind) {
+    case LightSpec::Kind::directional:
+      return directional_light(bands, direction, spec.colour);
+    case LightSpec::Kind::cone:
+      return cone_light(bands, direction, spec.half_angle_degrees * std::numbers::pi / 180, spec.colour);
+    case LightSpec::Kind::sphere:
+      return sphere_light(bands, Eigen::Vector3d(spec.position.data()).cast<float>(), spec.radius, spec.colour);
+    case LightSpec::Kind::hemisphere:
+      return hemisphere_light(bands, direction, spec.colour, spec.ground);
+    case LightSpec::Kind::ambient:
+      break;
+  }
+  return constant_light(bands, spec.colour);
 }
 
 LightCoefficients light_coefficients(std::span<const LightSpec> specs, int bands, LightWindow window) {
   LightCoefficients sum = constant_light(bands, std::array<float, 3>{0, 0, 0});
   for (const LightSpec& spec : specs) sum = add_lights(sum, light_coefficients(spec, bands));
-  if (window == LightWindow::hann) apply_hann_window(sum);
+  apply_window(sum, window);
   return sum;
 }
 

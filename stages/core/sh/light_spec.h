@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "sh/lights.h"
+#include "sh/windows.h"
 
 namespace kiln {
 
@@ -14,16 +15,28 @@ namespace kiln {
 struct LightSpec {
   enum class Kind {
     directional,  ///< distant, towards azimuth and elevation; a white surface that faces it gets the radiance `colour`
+    cone,         ///< the same from a cone of directions around it (cone_light)
+    sphere,       ///< a glowing ball at `position` (sphere_light)
+    hemisphere,   ///< `colour` from the side of azimuth and elevation, `ground` from the other (hemisphere_light)
     ambient,      ///< the radiance `colour` from everywhere (a furnace)
   };
   Kind kind = Kind::directional;
-  double azimuth_degrees = 45;    ///< 0 is +Z, 90 is +X
-  double elevation_degrees = 30;  ///< 90 is +Y
+  double azimuth_degrees = 45;                 ///< 0 is +Z, 90 is +X
+  double elevation_degrees = 30;               ///< 90 is +Y
+  double half_angle_degrees = 10;              ///< of a cone
+  std::array<double, 3> position = {0, 0, 0};  ///< of a ball, object units
+  double radius = 1;                           ///< of a ball, object units
   std::array<float, 3> colour = {1, 1, 1};
+  std::array<float, 3> ground = {0, 0, 0};
 };
 
-/// Reads "AZIMUTH,ELEVATION[,R,G,B]" (degrees; also with "directional:" before it), or "ambient:RADIANCE" or
-/// "ambient:R,G,B". Azimuths of -360 to 360, elevations of -90 to 90, colours of 0 to 1e6. Throws WrongUsage.
+/// Reads, angles in degrees and the colour white where it is left out,
+///   [directional:]AZIMUTH,ELEVATION[,R,G,B]
+///   cone:AZIMUTH,ELEVATION,HALF-ANGLE[,R,G,B]
+///   sphere:X,Y,Z,RADIUS[,R,G,B]
+///   hemisphere:AZIMUTH,ELEVATION,R,G,B,R,G,B   the second colour is the ground's
+///   ambient:RADIANCE or ambient:R,G,B
+/// Azimuths of -360 to 360, elevations of -90 to 90, half-angles of 0 to 180, colours of 0 to 1e6. Throws WrongUsage.
 LightSpec parse_light_spec(std::string_view text);
 
 /// A text that parse_light_spec reads as the same light.
@@ -38,15 +51,6 @@ std::array<float, 3> parse_colour(std::string_view name, std::string_view text, 
 
 /// The light in spherical harmonics, three channels (R, G, B), without a window.
 LightCoefficients light_coefficients(const LightSpec& spec, int bands);
-
-/// The sum of two lights of the same number of bands and channels.
-LightCoefficients add_lights(const LightCoefficients& a, const LightCoefficients& b);
-
-/// How the bands of a light are weighted.
-enum class LightWindow {
-  none,
-  hann,  ///< apply_hann_window: leaves band 0, and with it ambient light, as it is
-};
 
 /// The sum of the lights, three channels, `window` applied.
 LightCoefficients light_coefficients(std::span<const LightSpec> specs, int bands, LightWindow window);
