@@ -16,6 +16,7 @@ namespace {
 constexpr GLuint planes_unit = 0, weights_binding = 0;
 constexpr GLuint position_location = 0, uv_location = 1;
 constexpr GLint clip_from_object_location = 0;
+constexpr std::size_t planes_per_layer = 4;
 
 // Pictures are drawn in tiles of at most so many samples a side, so that memory does not grow with supersampling.
 constexpr int tile_samples = 2048;
@@ -28,21 +29,35 @@ void require_at_most(GLenum limit, int wanted, const char* what) {
                        std::to_string(wanted) + " are needed; ask for less, or try --gl-device software");
 }
 
-/// The coefficient planes as layers of a texture that is normalised to 0..1, looked up bilinearly, clamped at its
-/// edges.
+int layer_count(const PrtAsset& asset) {
+  return static_cast<int>((asset.planes.size() + planes_per_layer - 1) / planes_per_layer);
+}
+
+/// Four planes as the channels of one picture; channels without a plane are 0.
+template <class Value>
+std::vector<Value> interleaved(const std::vector<Image<Value>>& planes, std::size_t first) {
+  std::vector<Value> texels(planes_per_layer * planes[first].values().size(), Value{0});
+  for (std::size_t k = first; k < std::min(planes.size(), first + planes_per_layer); ++k)
+    for (std::size_t i = 0; i < planes[k].values().size(); ++i)
+      texels[planes_per_layer * i + k - first] = planes[k].values()[i];
+  return texels;
+}
+
+/// The coefficient planes, four to a layer, of a texture that is normalised to 0..1, looked up bilinearly, clamped at
+/// its edges.
 GlTexture upload_planes(const PrtAsset& asset) {
   require_at_most(GL_MAX_TEXTURE_SIZE, std::max(asset.width, asset.height), "textures with a side");
-  require_at_most(GL_MAX_ARRAY_TEXTURE_LAYERS, static_cast<int>(asset.planes.size()), "texture arrays with layers");
+  require_at_most(GL_MAX_ARRAY_TEXTURE_LAYERS, layer_count(asset), "texture arrays with layers");
   GlTexture texture = make_texture(GL_TEXTURE_2D_ARRAY);
   const bool deep = asset.bits == 16;
-  glTextureStorage3D(texture.name(), 1, deep ? GL_R16 : GL_R8, asset.width, asset.height,
-                     static_cast<GLsizei>(asset.planes.size()));
+  glTextureStorage3D(texture.name(), 1, deep ? GL_RGBA16 : GL_RGBA8, asset.width, asset.height, layer_count(asset));
   check_gl("making room for the coefficient planes");
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   const auto upload = [&](const auto& pictures) {
-    for (std::size_t k = 0; k < pictures.size(); ++k)
-      glTextureSubImage3D(texture.name(), 0, 0, 0, static_cast<GLint>(k), asset.width, asset.height, 1, GL_RED,
-                          deep ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE, pictures[k].values().data());
+    for (int layer = 0; layer < layer_count(asset); ++layer)
+      glTextureSubImage3D(texture.name(), 0, 0, 0, layer, asset.width, asset.height, 1, GL_RGBA,
+                          deep ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE,
+                          interleaved(pictures, planes_per_layer * static_cast<std::size_t>(layer)).data());
   };
   std::visit(upload, asset.pictures);
   glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
@@ -60,12 +75,16 @@ void add_attribute(GLuint vertices, GLuint location, const GlBuffer& buffer, int
   glEnableVertexArrayAttrib(vertices, location);
 }
 
-/// The buffer of common_prt.glsl: the constant, then a scale per plane, each padded to four floats.
+/// The buffer of common_prt.glsl: the constant, then for each layer what its planes add to red, green and blue.
 GlBuffer upload_weights(const PlaneWeights& weights) {
-  std::vector<float> values;
-  const auto add = [&](const Eigen::Vector3f& rgb) { values.insert(values.end(), {rgb.x(), rgb.y(), rgb.z(), 0.f}); };
-  add(weights.constant);
-  for (const Eigen::Vector3f& scale : weights.scales) add(scale);
+  const std::size_t layers = (weights.scales.size() + planes_per_layer - 1) / planes_per_layer;
+  std::vector<float> values(4 + 3 * planes_per_layer * layers, 0.f);
+  for (int colour = 0; colour < 3; ++colour) {
+    values[static_cast<std::size_t>(colour)] = weights.constant[colour];
+    for (std::size_t plane = 0; plane < weights.scales.size(); ++plane)
+      values[4 + planes_per_layer * (3 * (plane / planes_per_layer) + static_cast<std::size_t>(colour)) +
+             plane % planes_per_layer] = weights.scales[plane][colour];
+  }
   return make_buffer(std::span<const float>(values));
 }
 
