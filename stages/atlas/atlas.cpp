@@ -2,49 +2,83 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
 
 #include "atlas/chart_bitmap.h"
 #include "atlas/charts.h"
+#include "atlas/choose.h"
+#include "atlas/density.h"
 #include "atlas/pack.h"
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "mesh/draco_file.h"
+#include "raycast/surface_transfer.h"
 
 namespace kiln {
 
 namespace {
 
-constexpr int most_bits = 24;  // a float has no more
+constexpr int most_bits = 24;       // a float has no more
+constexpr int most_texels = 16384;  // a side
 
-ChartSettings chart_settings(const AtlasSettings& settings) {
+ChartSettings chart_settings(const AtlasSettings& settings, double area) {
   ChartSettings charts;
   charts.largest_l2 = settings.max_stretch;
   charts.largest_linf = settings.max_stretch_linf;
   charts.crease_degrees = settings.crease;
+  constexpr double usual_share = 0.68;  // of the atlas that is covered
+  const double texels_per_unit = settings.texels_per_unit > 0
+                                     ? settings.texels_per_unit
+                                     : std::sqrt(usual_share * settings.size.width * settings.size.height / area);
+  charts.clearance = (settings.gutter + 1) / texels_per_unit;
   return charts;
 }
 
 PackSettings pack_settings(const AtlasSettings& settings) {
   PackSettings pack;
-  pack.width = pack.height = settings.size;
+  const Extent size = settings.texels_per_unit > 0 ? Extent(0) : settings.size;
+  pack.width = size.width;
+  pack.height = size.height;
+  pack.texels_per_unit = settings.texels_per_unit;
   pack.gutter = settings.gutter;
   pack.rotations = settings.rotations;
+  pack.thorough = settings.quality == AtlasQuality::best;
   pack.seed = static_cast<std::uint64_t>(settings.seed);
-  // A step of a 16-bit uv, and of the rasteriser.
-  pack.slack = settings.size / 65535.0 + 1.0 / 1024;
   return pack;
 }
 
+/// `texels` of a given density, over the whole surface, cannot be had: says which density can.
+[[noreturn]] void refuse_density(double texels_per_unit, double side_texels) {
+  throw WrongUsage(
+      fmt::format("an atlas of {:g} texels per unit of length would be about {:.0f} texels a side; at most {} "
+                  "are possible, with --texels-per-unit {:.3g} or less",
+                  texels_per_unit, side_texels, most_texels, 0.98 * texels_per_unit * most_texels / side_texels));
+}
+
+Packing pack(const std::vector<Chart>& charts, double area, const AtlasSettings& settings,
+             const ProgressFunction& progress) {
+  // What cannot fit even when packed well is told at once.
+  constexpr double dense = 0.8;
+  const double least_side = settings.texels_per_unit * std::sqrt(area / dense);
+  if (least_side > most_texels) refuse_density(settings.texels_per_unit, least_side);
+  const Packing packing = pack_charts(charts, pack_settings(settings), progress);
+  const int side = std::max(packing.width, packing.height);
+  if (side > most_texels) refuse_density(settings.texels_per_unit, side);
+  return packing;
+}
+
 /// The mesh with vertices split at seams, triangles in their old order.
-TriangleMesh assemble(const TriangleMesh& low, const std::vector<Chart>& charts, const Packing& packing,
-                      const AtlasSettings& settings) {
+TriangleMesh assemble(const TriangleMesh& low, const std::vector<Chart>& charts, const Packing& packing) {
   TriangleMesh atlas;
   atlas.triangles.assign(low.triangles.size(), Triangle{no_index, no_index, no_index});
   std::vector<std::uint32_t> some_copy(low.positions.size(), no_index);
+  const Eigen::Vector2d size(packing.width, packing.height);
   const auto add_vertex = [&](std::uint32_t vertex, const Eigen::Vector2f& uv) {
     atlas.positions.push_back(low.positions[vertex]);
     atlas.normals.push_back(low.normals[vertex]);
     atlas.uvs.push_back(uv);
+    if (!low.colors.empty()) atlas.colors.push_back(low.colors[vertex]);
     return static_cast<std::uint32_t>(atlas.positions.size() - 1);
   };
 
@@ -54,7 +88,7 @@ TriangleMesh assemble(const TriangleMesh& low, const std::vector<Chart>& charts,
       const Eigen::Vector2d texel = turned(charts[c].uvs[v], packing.placements[c].angle) * packing.texels_per_unit +
                                     packing.placements[c].offset;
       some_copy[charts[c].vertices[v]] =
-          add_vertex(charts[c].vertices[v], (texel / settings.size).cast<float>().cwiseMax(0.0f).cwiseMin(1.0f));
+          add_vertex(charts[c].vertices[v], texel.cwiseQuotient(size).cast<float>().cwiseMax(0.0f).cwiseMin(1.0f));
     }
     for (std::size_t i = 0; i < charts[c].faces.size(); ++i)
       for (int k = 0; k < 3; ++k) atlas.triangles[charts[c].faces[i]][k] = first + charts[c].triangles[i][k];
@@ -85,7 +119,7 @@ int count_spoilt(const TriangleMesh& mesh) {
 }  // namespace
 
 AtlasResult make_atlas(const TriangleMesh& low, const AtlasSettings& settings, const std::string& name,
-                       const ProgressFunction& progress) {
+                       const ProgressFunction& progress, const TriangleMesh* high) {
   const Stopwatch watch;
   TriangleMesh with_normals;
   const TriangleMesh* mesh = &low;
@@ -96,20 +130,32 @@ AtlasResult make_atlas(const TriangleMesh& low, const AtlasSettings& settings, c
   }
 
   // Step 1: charts, each flat.
-  const Surface surface = analyse_surface(*mesh);
+  Surface surface = analyse_surface(*mesh);
   if (!(surface.area > 0)) throw BadInput(name, "has no triangle with an area", "a surface", "check how it was made");
-  const ChartSet cut =
-      cut_into_charts(surface, chart_settings(settings), [&](double fraction) { progress(0.6 * fraction); });
+  weigh_seams(surface, surface_openness(*mesh, {mesh->positions, mesh->normals}));
+  const ChartSettings how_to_cut = chart_settings(settings, surface.area);
+  const auto cutting = [&](double fraction) { progress(0.6 * fraction); };
+  ChartSet cut = settings.quality == AtlasQuality::best
+                     ? choose_charts(surface, how_to_cut, pack_settings(settings), cutting)
+                     : cut_into_charts(surface, how_to_cut, cutting);
   const double chart_seconds = watch.seconds();
 
-  // Step 2: a place for each.
-  const Packing packing =
-      pack_charts(cut.charts, pack_settings(settings), [&](double fraction) { progress(0.6 + 0.4 * fraction); });
-
-  // Step 3: the mesh with uvs.
+  // Step 2: their scales.
   AtlasResult result;
-  result.mesh = assemble(*mesh, cut.charts, packing, settings);
-  result.size = settings.size;
+  if (settings.density == AtlasDensity::transfer) {
+    const ChartDensities densities = densities_by_transfer(surface, cut.charts, high);
+    scale_charts(cut.charts, densities.scales);
+    result.density_order = densities.order;
+  }
+  const double scaled_seconds = watch.seconds();
+
+  // Step 3: a place for each.
+  const Packing packing =
+      pack(cut.charts, surface.area, settings, [&](double fraction) { progress(0.6 + 0.4 * fraction); });
+
+  // Step 4: the mesh with uvs.
+  result.mesh = assemble(*mesh, cut.charts, packing);
+  result.size = {packing.width, packing.height};
   result.gutter = settings.gutter;
   result.split_charts = cut.split_charts;
   for (const Chart& chart : cut.charts) {
@@ -121,7 +167,8 @@ AtlasResult make_atlas(const TriangleMesh& low, const AtlasSettings& settings, c
   result.degenerate_triangles = static_cast<int>(std::count(surface.degenerate.begin(), surface.degenerate.end(), 1));
   result.chart_seconds = chart_seconds;
   result.seconds = watch.seconds();
-  result.pack_seconds = result.seconds - chart_seconds;
+  result.density_seconds = scaled_seconds - chart_seconds;
+  result.pack_seconds = result.seconds - scaled_seconds;
   return result;
 }
 
@@ -132,9 +179,10 @@ WrittenAtlas write_atlas(const std::filesystem::path& file, const AtlasResult& a
   for (;;) {
     save_draco(file, atlas.mesh, quantisation);
     written.mesh = load_draco(file);
-    written.measures = measure_atlas(written.mesh, atlas.size, atlas.size);
+    written.measures = measure_atlas(written.mesh, atlas.size.width, atlas.size.height);
     const bool newly_spoilt = count_spoilt(written.mesh) > spoilt;
-    const bool turned_over = written.measures.flipped_triangles > 0 || written.measures.overlapping_texels > 0;
+    const bool turned_over = written.measures.flipped_triangles > 0 || written.measures.overlapping_texels > 0 ||
+                             written.measures.smallest_gap_texels < atlas.gutter;
     const bool finer_positions = newly_spoilt && quantisation.position_bits < most_bits;
     const bool finer_uvs = turned_over && quantisation.uv_bits < most_bits;
     if (!finer_positions && !finer_uvs) break;
@@ -153,7 +201,8 @@ WrittenAtlas write_atlas(const std::filesystem::path& file, const AtlasResult& a
 }
 
 Json AtlasResult::to_json() const {
-  return {{"size", size},
+  return {{"width", size.width},
+          {"height", size.height},
           {"gutter", gutter},
           {"unfolded_charts", unfolded_charts},
           {"lscm_charts", lscm_charts},
@@ -161,7 +210,10 @@ Json AtlasResult::to_json() const {
           {"mean_value_charts", mean_value_charts},
           {"split_charts", split_charts},
           {"degenerate_triangles", degenerate_triangles},
+          {"kept", kept},
+          {"density_order", density_order},
           {"chart_seconds", chart_seconds},
+          {"density_seconds", density_seconds},
           {"pack_seconds", pack_seconds}};
 }
 

@@ -8,32 +8,6 @@ namespace kiln {
 
 namespace {
 
-struct Segment {
-  std::uint32_t from, to;
-};
-
-/// Edges with a triangle on one side only.
-std::vector<Segment> border_segments(const Chart& chart) {
-  std::vector<std::pair<std::uint64_t, Segment>> edges;
-  edges.reserve(3 * chart.triangles.size());
-  for (const Triangle& t : chart.triangles)
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t from = t[k], to = t[(k + 1) % 3];
-      edges.push_back({(std::uint64_t{std::min(from, to)} << 32) | std::max(from, to), {from, to}});
-    }
-  std::sort(edges.begin(), edges.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.first, a.second.from) < std::tie(b.first, b.second.from);
-  });
-  std::vector<Segment> result;
-  for (std::size_t i = 0; i < edges.size();) {
-    std::size_t end = i + 1;
-    while (end < edges.size() && edges[end].first == edges[i].first) ++end;
-    if (end - i == 1) result.push_back(edges[i].second);
-    i = end;
-  }
-  return result;
-}
-
 bool within_box(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return p.x() >= std::min(a.x(), b.x()) && p.x() <= std::max(a.x(), b.x()) && p.y() >= std::min(a.y(), b.y()) &&
          p.y() <= std::max(a.y(), b.y());
@@ -50,6 +24,27 @@ bool segments_meet(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eig
 
 }  // namespace
 
+std::vector<BorderEdge> border_edges(const Chart& chart) {
+  std::vector<std::pair<std::uint64_t, BorderEdge>> edges;
+  edges.reserve(3 * chart.triangles.size());
+  for (const Triangle& t : chart.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t from = t[k], to = t[(k + 1) % 3];
+      edges.push_back({(std::uint64_t{std::min(from, to)} << 32) | std::max(from, to), {from, to}});
+    }
+  std::sort(edges.begin(), edges.end(), [](const auto& a, const auto& b) {
+    return std::tie(a.first, a.second.from) < std::tie(b.first, b.second.from);
+  });
+  std::vector<BorderEdge> result;
+  for (std::size_t i = 0; i < edges.size();) {
+    std::size_t end = i + 1;
+    while (end < edges.size() && edges[end].first == edges[i].first) ++end;
+    if (end - i == 1) result.push_back(edges[i].second);
+    i = end;
+  }
+  return result;
+}
+
 bool is_flip_free(const Chart& chart) {
   for (const Eigen::Vector2d& uv : chart.uvs)
     if (!uv.allFinite()) return false;
@@ -58,13 +53,13 @@ bool is_flip_free(const Chart& chart) {
 }
 
 bool has_simple_border(const Chart& chart) {
-  const std::vector<Segment> border = border_segments(chart);
+  const std::vector<BorderEdge> border = border_edges(chart);
   if (border.empty()) return false;
 
   // A grid of cells about as large as a border segment; only segments that share a cell are compared.
   Eigen::Vector2d lowest = chart.uvs[border[0].from], highest = lowest;
   double length = 0;
-  for (const Segment& s : border) {
+  for (const BorderEdge& s : border) {
     lowest = lowest.cwiseMin(chart.uvs[s.from]);
     highest = highest.cwiseMax(chart.uvs[s.from]);
     length += (chart.uvs[s.to] - chart.uvs[s.from]).norm();
@@ -83,13 +78,51 @@ bool has_simple_border(const Chart& chart) {
         std::vector<std::uint32_t>& neighbours =
             cells[(std::uint64_t(static_cast<std::uint32_t>(y)) << 32) | static_cast<std::uint32_t>(x)];
         for (const std::uint32_t other : neighbours) {
-          const Segment &s = border[index], &o = border[other];
+          const BorderEdge &s = border[index], &o = border[other];
           if (s.from == o.from || s.to == o.to) return false;  // the border passes through a vertex twice
           if (s.from == o.to || s.to == o.from) continue;
           if (segments_meet(chart.uvs[s.from], chart.uvs[s.to], chart.uvs[o.from], chart.uvs[o.to])) return false;
         }
         neighbours.push_back(index);
       }
+  }
+  return true;
+}
+
+bool keeps_clear(const Surface& surface, const Chart& chart, double distance) {
+  if (!(distance > 0)) return true;
+  struct Sample {
+    Eigen::Vector2d uv;
+    Eigen::Vector3d position;
+  };
+  std::vector<Sample> samples;
+  for (const auto& [from, to] : border_edges(chart)) {
+    const Eigen::Vector3d a = surface.mesh->positions[chart.vertices[from]].cast<double>();
+    const Eigen::Vector3d b = surface.mesh->positions[chart.vertices[to]].cast<double>();
+    const double length = (chart.uvs[to] - chart.uvs[from]).norm();
+    const int steps = 1 + static_cast<int>(std::min(2 * length / distance, 1e4));
+    for (int i = 0; i < steps; ++i) {
+      const double t = (i + 0.5) / steps;
+      samples.push_back({chart.uvs[from] + t * (chart.uvs[to] - chart.uvs[from]), a + t * (b - a)});
+    }
+  }
+  std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells;
+  const auto key = [](std::int64_t x, std::int64_t y) {
+    return (static_cast<std::uint64_t>(y) << 32) ^ (static_cast<std::uint64_t>(x) & 0xffffffffu);
+  };
+  for (std::uint32_t i = 0; i < samples.size(); ++i) {
+    const auto x = static_cast<std::int64_t>(std::floor(samples[i].uv.x() / distance));
+    const auto y = static_cast<std::int64_t>(std::floor(samples[i].uv.y() / distance));
+    for (std::int64_t dy = -1; dy <= 1; ++dy)
+      for (std::int64_t dx = -1; dx <= 1; ++dx) {
+        const auto cell = cells.find(key(x + dx, y + dy));
+        if (cell == cells.end()) continue;
+        for (const std::uint32_t other : cell->second)
+          if ((samples[i].uv - samples[other].uv).squaredNorm() < distance * distance &&
+              (samples[i].position - samples[other].position).squaredNorm() > 9 * distance * distance)
+            return false;
+      }
+    cells[key(x, y)].push_back(i);
   }
   return true;
 }

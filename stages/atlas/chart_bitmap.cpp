@@ -45,48 +45,81 @@ class Bits {
   std::vector<std::uint64_t> words_;
 };
 
-/// Sets, row by row, the texels whose centre c satisfies e(c) >= -slack for the three edges of the triangle, slack
-/// being `along * length + across * (|dx| + |dy|)` of the edge; 1/2 across is a texel's extent.
-void fill_triangle(const std::array<Eigen::Vector2d, 3>& p, double along, double across, Bits& bits, int width) {
-  const double reach = along + across;
-  const auto [lowest_y, highest_y] = std::minmax({p[0].y(), p[1].y(), p[2].y()});
-  const auto [lowest_x, highest_x] = std::minmax({p[0].x(), p[1].x(), p[2].x()});
-  const int first_row = std::max(0, static_cast<int>(std::ceil(lowest_y - 0.5 - reach)));
-  const int last_row = std::min(bits.height() - 1, static_cast<int>(std::floor(highest_y - 0.5 + reach)));
+/// Sets, row by row, the texels whose centre lies within `across` (in the maximum norm; 1/2 is a texel's extent) of the
+/// segment drawn `margin` wide to all sides, with square ends.
+void fill_segment(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double margin, double across, Bits& bits,
+                  int width) {
+  const Eigen::Vector2d difference = b - a;
+  const double length = difference.norm();
+  const Eigen::Vector2d along = length > 0 ? Eigen::Vector2d(difference / length) : Eigen::Vector2d(1, 0);
+  const Eigen::Vector2d middle = 0.5 * (a + b);
+  // |along . (c - middle)| <= half_length and |normal . (c - middle)| <= half_width, the box of a texel added to each.
+  const double spread = across * (std::abs(along.x()) + std::abs(along.y()));
+  const double half_length = 0.5 * length + margin + spread, half_width = margin + spread;
+  const Eigen::Vector2d reach(
+      std::abs(along.x()) * 0.5 * length + margin * (std::abs(along.x()) + std::abs(along.y())) + across,
+      std::abs(along.y()) * 0.5 * length + margin * (std::abs(along.x()) + std::abs(along.y())) + across);
+  const int first_row = std::max(0, static_cast<int>(std::ceil(middle.y() - reach.y() - 0.5)));
+  const int last_row = std::min(bits.height() - 1, static_cast<int>(std::floor(middle.y() + reach.y() - 0.5)));
   for (int row = first_row; row <= last_row; ++row) {
-    const double y = row + 0.5;
-    double low = lowest_x - reach, high = highest_x + reach;
-    for (int k = 0; k < 3; ++k) {
-      const Eigen::Vector2d &a = p[k], &b = p[(k + 1) % 3];
-      const double dx = b.x() - a.x(), dy = b.y() - a.y();
-      const double slack = along * std::hypot(dx, dy) + across * (std::abs(dx) + std::abs(dy));
-      // dx (y - a.y) - dy (x - a.x) >= -slack, solved for x
-      const double constant = dx * (y - a.y()) + slack;
-      if (dy > 0)
-        high = std::min(high, a.x() + constant / dy);
-      else if (dy < 0)
-        low = std::max(low, a.x() + constant / dy);
-      else if (constant < 0)
+    const double y = row + 0.5 - middle.y();
+    double low = -reach.x(), high = reach.x();
+    const auto clip = [&](double slope, double constant, double half) {  // |slope * x + constant| <= half
+      if (slope < 0) {
+        slope = -slope;
+        constant = -constant;
+      }
+      if (slope > 1e-12) {
+        low = std::max(low, (-half - constant) / slope);
+        high = std::min(high, (half - constant) / slope);
+      } else if (std::abs(constant) > half) {
         high = low - 1;
-    }
-    const int first = std::max(0, static_cast<int>(std::ceil(std::max(low, -1.0) - 0.5)));
-    const int last = std::min(width - 1, static_cast<int>(std::floor(std::min(high, width + 1.0) - 0.5)));
+      }
+    };
+    clip(along.x(), along.y() * y, half_length);
+    clip(-along.y(), along.x() * y, half_width);
+    if (low > high) continue;
+    const int first = std::max(0, static_cast<int>(std::ceil(middle.x() + low - 0.5)));
+    const int last = std::min(width - 1, static_cast<int>(std::floor(middle.x() + high - 0.5)));
     if (first <= last) bits.set(row, first, last);
   }
 }
 
-void append_runs(const Bits& bits, int row, int width, std::vector<TexelRun>& runs) {
-  const std::uint64_t* words = bits.row_words(row);
-  int start = -1;
-  for (int i = 0; i < width; ++i) {
-    const bool on = (words[i / 64] >> (i % 64)) & 1;
-    if (on && start < 0) start = i;
-    if (!on && start >= 0) {
-      runs.push_back({start, i - 1});
-      start = -1;
+/// Sets the texels whose centre is inside: where a row crosses the outline an odd number of times to the left.
+void fill_inside(const ChartOutline& outline, Bits& bits, int width) {
+  std::vector<std::vector<double>> crossings(bits.height());
+  for (const auto& [a, b] : outline) {
+    const auto [low, high] = std::minmax(a.y(), b.y());
+    const int first_row = std::max(0, static_cast<int>(std::ceil(low - 0.5)));
+    for (int row = first_row; row < bits.height() && row + 0.5 < high; ++row)
+      crossings[row].push_back(a.x() + (row + 0.5 - a.y()) / (b.y() - a.y()) * (b.x() - a.x()));
+  }
+  for (int row = 0; row < bits.height(); ++row) {
+    std::vector<double>& x = crossings[row];
+    std::sort(x.begin(), x.end());
+    for (std::size_t i = 0; i + 1 < x.size(); i += 2) {
+      const int first = std::max(0, static_cast<int>(std::ceil(x[i] - 0.5)));
+      const int last = std::min(width - 1, static_cast<int>(std::floor(x[i + 1] - 0.5)));
+      if (first <= last) bits.set(row, first, last);
     }
   }
-  if (start >= 0) runs.push_back({start, width - 1});
+}
+
+void append_runs(const Bits& bits, int row, std::vector<TexelRun>& runs) {
+  const std::uint64_t* words = bits.row_words(row);
+  for (int word = 0; word < bits.words_per_row(); ++word) {
+    std::uint64_t left = words[word];
+    while (left != 0) {
+      const int first = __builtin_ctzll(left);
+      const std::uint64_t clear_after = ~left & (~std::uint64_t{0} << first);
+      const int last = clear_after != 0 ? __builtin_ctzll(clear_after) - 1 : 63;
+      if (!runs.empty() && runs.back().last + 1 == word * 64 + first)
+        runs.back().last = word * 64 + last;
+      else
+        runs.push_back({word * 64 + first, word * 64 + last});
+      left &= last < 63 ? ~std::uint64_t{0} << (last + 1) : 0;
+    }
+  }
 }
 
 }  // namespace
@@ -96,41 +129,57 @@ Eigen::Vector2d turned(const Eigen::Vector2d& uv, double angle) {
   return {c * uv.x() - s * uv.y(), s * uv.x() + c * uv.y()};
 }
 
-ChartBitmap rasterise_chart(const Chart& chart, const BitmapSettings& settings) {
-  std::vector<Eigen::Vector2d> points;
-  points.reserve(chart.uvs.size());
-  for (const Eigen::Vector2d& uv : chart.uvs) points.push_back(turned(uv, settings.angle) * settings.texels_per_unit);
-  Eigen::Vector2d lowest = points[0], highest = points[0];
-  for (const Eigen::Vector2d& point : points) {
-    lowest = lowest.cwiseMin(point);
-    highest = highest.cwiseMax(point);
+ChartOutline chart_outline(const Chart& chart) {
+  ChartOutline outline;
+  for (const auto& [from, to] : border_edges(chart)) outline.emplace_back(chart.uvs[from], chart.uvs[to]);
+  return outline;
+}
+
+ChartBitmap rasterise_chart(const ChartOutline& outline, const BitmapSettings& settings) {
+  ChartOutline turned_outline;
+  turned_outline.reserve(outline.size());
+  Eigen::Matrix2d turn;
+  turn << std::cos(settings.angle), -std::sin(settings.angle), std::sin(settings.angle), std::cos(settings.angle);
+  turn *= settings.texels_per_unit;
+  for (const auto& [a, b] : outline) turned_outline.emplace_back(turn * a, turn * b);
+  Eigen::Vector2d lowest = turned_outline[0].first, highest = lowest;
+  for (const auto& [a, b] : turned_outline) {
+    lowest = lowest.cwiseMin(a);
+    highest = highest.cwiseMax(a);
   }
   ChartBitmap bitmap;
   bitmap.angle = settings.angle;
   bitmap.origin = lowest - Eigen::Vector2d::Constant(settings.margin);
   const int width = static_cast<int>(std::ceil(highest.x() - bitmap.origin.x() + settings.margin)) + 1;
   const int height = static_cast<int>(std::ceil(highest.y() - bitmap.origin.y() + settings.margin)) + 1;
-
-  Bits needed(width, height), touched(width, height);
-  for (const Triangle& t : chart.triangles) {
-    const std::array<Eigen::Vector2d, 3> p{points[t[0]] - bitmap.origin, points[t[1]] - bitmap.origin,
-                                           points[t[2]] - bitmap.origin};
-    fill_triangle(p, settings.margin, 0, needed, width);
-    fill_triangle(p, settings.margin, 0.5, touched, width);
+  for (auto& [a, b] : turned_outline) {
+    a -= bitmap.origin;
+    b -= bitmap.origin;
   }
+
   Bits result(width, height);
-  for (int row = 0; row < height; ++row)
-    for (int word = 0; word < needed.words_per_row(); ++word) {
-      const std::uint64_t stray =
-          touched.row_words(row)[word] & (settings.every_touched ? ~std::uint64_t{0} : ~needed.grown(row, word));
-      result.row_words(row)[word] = needed.row_words(row)[word] | stray;
-    }
+  fill_inside(turned_outline, result, width);
+  for (const auto& [a, b] : turned_outline) fill_segment(a, b, settings.margin, 0, result, width);
+  if (settings.every_touched) {
+    for (const auto& [a, b] : turned_outline) fill_segment(a, b, settings.margin, 0.5, result, width);
+  } else if (settings.slivers) {
+    // What is touched and not needed is touched by the border.
+    Bits touched(width, height), strays(width, height);
+    for (const auto& [a, b] : turned_outline) fill_segment(a, b, settings.margin, 0.5, touched, width);
+    for (int row = 0; row < height; ++row)
+      for (int word = 0; word < result.words_per_row(); ++word)
+        if (const std::uint64_t bits = touched.row_words(row)[word]; bits != 0)
+          strays.row_words(row)[word] = bits & ~result.grown(row, word);
+    for (int row = 0; row < height; ++row)
+      for (int word = 0; word < result.words_per_row(); ++word)
+        result.row_words(row)[word] |= strays.row_words(row)[word];
+  }
 
   // Crop the empty rows and columns.
   bitmap.rows.resize(height);
   int left = width, right = -1, bottom = height, top = -1;
   for (int row = 0; row < height; ++row) {
-    append_runs(result, row, width, bitmap.rows[row]);
+    append_runs(result, row, bitmap.rows[row]);
     if (bitmap.rows[row].empty()) continue;
     left = std::min(left, bitmap.rows[row].front().first);
     right = std::max(right, bitmap.rows[row].back().last);
@@ -139,12 +188,19 @@ ChartBitmap rasterise_chart(const Chart& chart, const BitmapSettings& settings) 
   }
   bitmap.rows.erase(bitmap.rows.begin() + top + 1, bitmap.rows.end());
   bitmap.rows.erase(bitmap.rows.begin(), bitmap.rows.begin() + bottom);
-  for (std::vector<TexelRun>& row : bitmap.rows)
-    for (TexelRun& run : row) {
+  for (int row = 0; row < static_cast<int>(bitmap.rows.size()); ++row)
+    for (TexelRun& run : bitmap.rows[row]) {
       run.first -= left;
       run.last -= left;
-      bitmap.texels += run.last - run.first + 1;
+      const int length = run.last - run.first + 1;
+      bitmap.texels += length;
+      bitmap.middle_row += (row + 0.5) * length;
+      if (length > bitmap.widest_run) {
+        bitmap.widest_run = length;
+        bitmap.widest_row = row;
+      }
     }
+  bitmap.middle_row /= static_cast<double>(bitmap.texels);
   bitmap.width = right - left + 1;
   bitmap.height = top - bottom + 1;
   bitmap.origin += Eigen::Vector2d(left, bottom);

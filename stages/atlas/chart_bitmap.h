@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "atlas/chart.h"
@@ -21,7 +22,10 @@ struct ChartBitmap {
   int height = 0;
   std::vector<std::vector<TexelRun>> rows;
   std::int64_t texels = 0;
-  double angle = 0;  ///< radians, counter-clockwise
+  int widest_row = 0;     ///< one that has the longest run
+  int widest_run = 0;     ///< its length
+  double middle_row = 0;  ///< mean of the texels' centres
+  double angle = 0;       ///< radians, counter-clockwise
   Eigen::Vector2d origin = Eigen::Vector2d::Zero();
 };
 
@@ -30,12 +34,19 @@ struct BitmapSettings {
   double angle = 0;
   double margin = 0.02;        ///< texels by which the chart may come out larger than given, through rounding
   bool every_touched = false;  ///< also texels that are touched outside their centre
+  bool slivers = true;         ///< also what slivers touch, as told below
 };
+
+/// The border of a chart's uvs, segment by segment: all that a bitmap needs to know of a chart.
+using ChartOutline = std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>>;
+
+ChartOutline chart_outline(const Chart& chart);
 
 /// A texel is needed where its centre lies in the chart or within the margin of it. Slivers between centres need the
 /// texels they touch too, where no needed texel is next to those: two charts with two texels between them then never
-/// overlap. With `every_touched`, all touched texels are needed and no distance is.
-ChartBitmap rasterise_chart(const Chart& chart, const BitmapSettings& settings);
+/// overlap. With `every_touched`, all touched texels are needed and no distance is. Where the margin is so large that
+/// nothing is a sliver, `slivers` may be false.
+ChartBitmap rasterise_chart(const ChartOutline& outline, const BitmapSettings& settings);
 
 /// Rotates a uv as the bitmap's chart is.
 Eigen::Vector2d turned(const Eigen::Vector2d& uv, double angle);

@@ -66,8 +66,12 @@ ChartSet cut_into_charts(const Surface& surface, const ChartSettings& settings, 
   for (const std::uint32_t id : disks.ids()) result.charts.push_back(std::move(charts[id]));
   // The last word: each chart by the best of several ways, its merged uvs among them.
   std::vector<std::uint8_t> flat(result.charts.size());
-  tbb::parallel_for(std::size_t{0}, flat.size(),
-                    [&](std::size_t i) { flat[i] = parameterise(surface, result.charts[i]); });
+  tbb::parallel_for(std::size_t{0}, flat.size(), [&](std::size_t i) {
+    Chart best = result.charts[i];
+    flat[i] = parameterise(surface, best);
+    const auto clear = [&](const Chart& c) { return keeps_clear(surface, c, settings.clearance); };
+    if (clear(best) || !clear(result.charts[i])) result.charts[i] = std::move(best);
+  });
   if (std::find(flat.begin(), flat.end(), 0) != flat.end()) throw std::runtime_error("a chart lost its valid map");
   return result;
 }

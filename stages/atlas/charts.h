@@ -11,8 +11,10 @@ struct ChartSettings {
   double largest_l2 = 1.005;    ///< stretch of one chart (stretch.h)
   double largest_linf = 2;      ///< of any triangle
   double crease_degrees = 75;   ///< a border that bends more on average stays a seam
-  double largest_extent = 0.8;  ///< of a merged chart, over the square root of the surface's area: longer ones pack
+  double largest_extent = 0.6;  ///< of a merged chart, over the square root of the surface's area: longer ones pack
                                 ///< badly, unless they are compact or rectangles
+  double clearance = 0;         ///< object units; a merged chart's border does not come nearer to itself in the plane,
+                                ///< but where it does so on the surface, too: at corners and along slits
 };
 
 struct ChartSet {

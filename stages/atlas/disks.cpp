@@ -69,11 +69,12 @@ Disks::Run Disks::run_through(std::uint32_t h) const {
     last = previous_[last];
   }
 
-  Run run{first, last, 0, 0};
+  Run run{first, last, 0, 0, 0};
   for (std::uint32_t edge = first;; edge = next_[edge]) {
     const double length = surface_.edge_lengths[edge];
     const double cosine = surface_.face_normals[edge / 3].dot(surface_.face_normals[twins[edge] / 3]);
     run.length += length;
+    run.cost += surface_.seam_costs[edge];
     run.bend += length * std::acos(std::clamp(cosine, -1.0, 1.0));
     if (edge == last) break;
   }

@@ -22,6 +22,7 @@ class Disks {
     std::uint32_t first = no_index;
     std::uint32_t last = no_index;
     double length = 0;
+    double cost = 0;  ///< of leaving it a seam: Surface::seam_costs
     double bend = 0;  ///< mean angle between the faces' normals, weighted by length, radians
     bool possible() const { return first != no_index; }
   };

@@ -27,12 +27,12 @@ Colour chart_colour(std::uint32_t chart) {
 }
 
 /// Distance in pixels from a point of a triangle to its nearest side.
-double side_distance(const TriangleMesh& atlas, const TexelSource& source, double pixels) {
+double side_distance(const TriangleMesh& atlas, const TexelSource& source, const Eigen::Vector2d& pixels) {
   const Triangle& t = atlas.triangles[source.triangle];
   const double weights[3] = {1.0 - source.u - source.v, source.u, source.v};
-  const auto point = [&](int k) { return Eigen::Vector2d(atlas.uvs[t[k]].cast<double>() * pixels); };
+  const auto point = [&](int k) { return Eigen::Vector2d(atlas.uvs[t[k]].cast<double>().cwiseProduct(pixels)); };
   const double twice_area = std::abs(cross(point(0), point(1), point(2)));
-  double least = pixels;
+  double least = pixels.maxCoeff();
   for (int k = 0; k < 3; ++k) {
     const double side = (point((k + 2) % 3) - point((k + 1) % 3)).norm();
     if (side > 0) least = std::min(least, weights[k] * twice_area / side);
@@ -42,11 +42,11 @@ double side_distance(const TriangleMesh& atlas, const TexelSource& source, doubl
 
 /// Whether something is covered within `reach` pixels, per pixel: a square window, first along rows, then columns.
 std::vector<std::uint8_t> near_covered(const UvRaster& raster, int reach) {
-  const int size = raster.width;
   std::vector<std::uint8_t> along(raster.texels.size()), result(raster.texels.size());
   for (const bool columns : {false, true}) {
-    const std::size_t stride = columns ? size : 1, line_stride = columns ? 1 : size;
-    for (int line = 0; line < size; ++line) {
+    const int size = columns ? raster.height : raster.width, lines = columns ? raster.width : raster.height;
+    const std::size_t stride = columns ? raster.width : 1, line_stride = columns ? 1 : raster.width;
+    for (int line = 0; line < lines; ++line) {
       int last = -size - reach;
       const auto index = [&](int i) { return line * line_stride + i * stride; };
       const auto on = [&](int i) { return columns ? along[index(i)] != 0 : raster.texels[index(i)].covered(); };
@@ -62,24 +62,26 @@ std::vector<std::uint8_t> near_covered(const UvRaster& raster, int reach) {
 
 }  // namespace
 
-Image<std::uint8_t> draw_atlas(const TriangleMesh& atlas, int size, int gutter_texels) {
-  const int zoom = (1024 + size - 1) / size;
-  const int pixels = size * std::max(1, zoom);
-  const UvRaster raster = rasterise_uvs(atlas, pixels, pixels);
+Image<std::uint8_t> draw_atlas(const TriangleMesh& atlas, const Extent& size, int gutter_texels) {
+  const int longer = std::max(size.width, size.height);
+  const int zoom = std::max(1, (1024 + longer - 1) / longer);
+  const Extent pixels(size.width * zoom, size.height * zoom);
+  const UvRaster raster = rasterise_uvs(atlas, pixels.width, pixels.height);
   const std::vector<std::uint32_t> chart_of = charts_of_triangles(atlas);
   const std::vector<std::uint8_t> gutter = near_covered(raster, gutter_texels * zoom);
 
-  Image<std::uint8_t> picture(pixels, pixels, 3);
-  for (int j = 0; j < pixels; ++j)
-    for (int i = 0; i < pixels; ++i) {
+  Image<std::uint8_t> picture(pixels.width, pixels.height, 3);
+  for (int j = 0; j < pixels.height; ++j)
+    for (int i = 0; i < pixels.width; ++i) {
       const TexelSource& source = raster.at(i, j);
       Colour colour{30, 30, 34};
       if (source.covered()) {
         colour = chart_colour(chart_of[source.triangle]);
         // An edge is a line one pixel wide on each side.
-        const double edge = std::clamp(1.5 - side_distance(atlas, source, pixels), 0.0, 1.0);
+        const double edge =
+            std::clamp(1.5 - side_distance(atlas, source, Eigen::Vector2d(pixels.width, pixels.height)), 0.0, 1.0);
         for (double& channel : colour) channel *= 1 - 0.6 * edge;
-      } else if (gutter[static_cast<std::size_t>(j) * pixels + i]) {
+      } else if (gutter[static_cast<std::size_t>(j) * pixels.width + i]) {
         colour = {82, 82, 88};
       }
       for (int channel = 0; channel < 3; ++channel)

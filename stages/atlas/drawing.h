@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "base/options.h"
 #include "image/image.h"
 #include "mesh/triangle_mesh.h"
 
@@ -9,7 +10,7 @@ namespace kiln {
 
 /// A picture of an atlas: each chart in a colour of its own with its triangles' edges, what lies within `gutter_texels`
 /// of a chart in grey, free room dark. As large as the atlas, or the smallest whole multiple of it that is at least
-/// 1024 wide.
-Image<std::uint8_t> draw_atlas(const TriangleMesh& atlas, int size, int gutter_texels);
+/// 1024 along its longer side.
+Image<std::uint8_t> draw_atlas(const TriangleMesh& atlas, const Extent& size, int gutter_texels);
 
 }  // namespace kiln

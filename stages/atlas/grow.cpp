@@ -81,7 +81,8 @@ class Grower {
       return;  // a ribbon too long to be packed well
     const double added = together - bending(a.area, a.area_normal) - bending(b.area, b.area_normal);
     // Between flat disks roundness alone decides, small ones first.
-    const double cost = (std::max(added, 0.0) + 1e-3 * area) * roundness;
+    const double visibility = run.length > 0 ? run.cost / run.length : 1;
+    const double cost = (std::max(added, 0.0) + 1e-3 * area) * roundness / std::clamp(visibility, 0.25, 4.0);
     queue_.push({cost, run.first, a.version, b.version});
   }
 

@@ -1,33 +1,49 @@
 #include "atlas/atlas.h"
 #include "atlas/drawing.h"
+#include "atlas/keep_uv.h"
 #include "base/command_line.h"
+#include "base/errors.h"
 #include "image/image_file.h"
 #include "mesh/draco_file.h"
+#include "mesh/mesh_file.h"
+#include "mesh/uv_mesh_file.h"
 
 int main(int argc, char** argv) {
   using namespace kiln;
   return run_program("kiln-atlas", [&] {
     // Parse.
-    CommandLine command("kiln-atlas",
-                        "Cuts a mesh into charts, flattens them and packs them into a square texture atlas.");
-    std::filesystem::path low_file, atlas_file;
+    CommandLine command("kiln-atlas", "Cuts a mesh into charts, flattens them and packs them into a texture atlas.");
+    std::filesystem::path low_file, high_file, atlas_file;
     AtlasSettings settings;
-    command.input("LOW", low_file, "The mesh, a Draco file (low.drc of kiln-simplify)");
+    command.input("LOW", low_file, "The mesh (low.drc of kiln-simplify, or OBJ, PLY, STL, OFF)");
     command.output(atlas_file, "The mesh with uvs, a Draco file; atlas.png and atlas.json are written beside it");
+    command.input_option("high", high_file, "The high mesh, whose transfer --density transfer then follows");
     command.options("Atlas", atlas_options(settings));
     command.parse(argc, argv);
     settings.seed = command.seed();
 
+    if (settings.texels_per_unit > 0 && command.app().count("--size") > 0)
+      throw WrongUsage("texels-per-unit: found --size as well; expected one of them");
+    if (settings.texels_per_unit > 0 && settings.keep_uv)
+      throw WrongUsage("texels-per-unit: found --keep-uv; expected --size, which those uvs are checked at");
+
     // Load.
-    const TriangleMesh low = load_draco(low_file);
+    const TriangleMesh low = settings.keep_uv                 ? load_uv_mesh(low_file)
+                             : low_file.extension() == ".drc" ? load_draco(low_file)
+                                                              : load_mesh(low_file);
+    TriangleMesh high;
+    if (!high_file.empty()) high = load_mesh(high_file);
     OutputSet outputs(folder_of(atlas_file));
 
     // Run.
-    const AtlasResult result = make_atlas(low, settings, low_file.string(), command.progress("atlas"));
+    const AtlasResult result = settings.keep_uv
+                                   ? keep_uvs(low, settings, low_file.string())
+                                   : make_atlas(low, settings, low_file.string(), command.progress("atlas"),
+                                                high_file.empty() ? nullptr : &high);
 
     // Save, and measure what was saved.
     const WrittenAtlas written = write_atlas(outputs.add(atlas_file.filename().string()), result);
-    write_png(outputs.add("atlas.png"), draw_atlas(written.mesh, settings.size, settings.gutter));
+    write_png(outputs.add("atlas.png"), draw_atlas(written.mesh, result.size, settings.gutter));
     Json metrics = written.to_json();
     metrics.update(result.to_json());
     command.finish(outputs, command.result(result.seconds, metrics));

@@ -2,11 +2,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
 #include "atlas/surface.h"
-#include "mesh/uv_raster.h"
+#include "raycast/surface_transfer.h"
 
 namespace kiln {
 
@@ -16,83 +17,148 @@ double uv_area(const TriangleMesh& atlas, const Triangle& t) {
   return 0.5 * cross(atlas.uvs[t[0]].cast<double>(), atlas.uvs[t[1]].cast<double>(), atlas.uvs[t[2]].cast<double>());
 }
 
-/// For each vertex, the first one at the very same place.
-std::vector<std::uint32_t> welded(const std::vector<Eigen::Vector3f>& positions) {
-  std::vector<std::uint32_t> order(positions.size()), result(positions.size());
+/// For each vertex, the first one with the very same key.
+template <class Key>
+std::vector<std::uint32_t> first_of_equals(std::size_t count, const Key& key) {
+  std::vector<std::uint32_t> order(count), result(count);
   std::iota(order.begin(), order.end(), 0u);
-  const auto key = [&](std::uint32_t v) {
-    return std::make_tuple(positions[v].x(), positions[v].y(), positions[v].z());
-  };
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
   for (std::size_t i = 0; i < order.size(); ++i)
     result[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? result[order[i - 1]] : order[i];
   return result;
 }
 
-double measure_seams(const TriangleMesh& atlas) {
-  const std::vector<std::uint32_t> weld = welded(atlas.positions);
+std::vector<std::uint32_t> welded_by_place(const TriangleMesh& atlas) {
+  return first_of_equals(atlas.positions.size(), [&](std::uint32_t v) {
+    return std::make_tuple(atlas.positions[v].x(), atlas.positions[v].y(), atlas.positions[v].z());
+  });
+}
+
+std::vector<std::uint32_t> welded_by_place_and_uv(const TriangleMesh& atlas) {
+  return first_of_equals(atlas.positions.size(), [&](std::uint32_t v) {
+    return std::make_tuple(atlas.positions[v].x(), atlas.positions[v].y(), atlas.positions[v].z(), atlas.uvs[v].x(),
+                           atlas.uvs[v].y());
+  });
+}
+
+/// An edge of the surface that is none of the atlas.
+struct SeamEdge {
+  std::uint32_t from, to;  ///< vertices of the atlas, on one side of it
+  double length = 0;
+};
+
+std::vector<SeamEdge> seam_edges(const TriangleMesh& atlas) {
+  const std::vector<std::uint32_t> place = welded_by_place(atlas), vertex = welded_by_place_and_uv(atlas);
   struct Edge {
-    std::uint32_t low, high;                // welded vertices
+    std::uint32_t low, high;                // places
     std::uint32_t low_vertex, high_vertex;  // of the atlas
   };
   std::vector<Edge> edges;
   for (const Triangle& t : atlas.triangles) {
     if (uv_area(atlas, t) == 0) continue;
     for (int k = 0; k < 3; ++k) {
-      std::uint32_t a = t[k], b = t[(k + 1) % 3];
-      if (weld[a] > weld[b]) std::swap(a, b);
-      edges.push_back({weld[a], weld[b], a, b});
+      std::uint32_t a = vertex[t[k]], b = vertex[t[(k + 1) % 3]];
+      if (place[a] > place[b]) std::swap(a, b);
+      edges.push_back({place[a], place[b], a, b});
     }
   }
   const auto key = [](const Edge& e) { return std::tie(e.low, e.high, e.low_vertex, e.high_vertex); };
   std::sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) { return key(a) < key(b); });
-  double length = 0;
+  std::vector<SeamEdge> seams;
   for (std::size_t i = 1; i < edges.size(); ++i) {
     const Edge &a = edges[i - 1], &b = edges[i];
     if (a.low != b.low || a.high != b.high || key(a) == key(b)) continue;
-    length += static_cast<double>((atlas.positions[a.low_vertex] - atlas.positions[a.high_vertex]).norm());
+    const double length = (atlas.positions[a.low_vertex] - atlas.positions[a.high_vertex]).cast<double>().norm();
+    seams.push_back({a.low_vertex, a.high_vertex, length});
   }
+  return seams;
+}
+
+/// Seams weighted by how much of the sky their ends see.
+double visible_length(const TriangleMesh& atlas, const std::vector<SeamEdge>& seams) {
+  std::vector<std::uint32_t> index(atlas.positions.size(), no_index);
+  std::vector<Eigen::Vector3f> positions, normals;
+  for (const SeamEdge& edge : seams)
+    for (const std::uint32_t vertex : {edge.from, edge.to}) {
+      if (index[vertex] != no_index) continue;
+      index[vertex] = static_cast<std::uint32_t>(positions.size());
+      positions.push_back(atlas.positions[vertex]);
+      normals.push_back(atlas.normals[vertex]);
+    }
+  if (positions.empty()) return 0;
+  const std::vector<float> openness = surface_openness(atlas, {positions, normals});
+  double length = 0;
+  for (const SeamEdge& edge : seams)
+    length += edge.length * 0.5 *
+              (static_cast<double>(openness[index[edge.from]]) + static_cast<double>(openness[index[edge.to]]));
   return length;
 }
 
-/// Looks around every covered texel that has an uncovered neighbour, in growing windows, until something is met.
-int smallest_gap(const UvRaster& raster, const std::vector<std::uint32_t>& chart_of) {
-  const int width = raster.width, height = raster.height;
-  const auto chart_at = [&](int i, int j) {
-    const TexelSource& texel = raster.at(i, j);
-    return texel.covered() ? chart_of[texel.triangle] : no_index;
+/// Sums of each chart, and what they say of the whole.
+void measure_scales(const TriangleMesh& atlas, const std::vector<std::uint32_t>& chart_of, int width, int height,
+                    AtlasMeasures& measures) {
+  const Eigen::Vector2d size(width, height);
+  std::vector<double> areas(static_cast<std::size_t>(measures.charts)), texels(areas.size());
+  const auto corners_of = [&](const Triangle& t) {
+    std::array<Eigen::Vector3d, 3> corners;
+    for (int k = 0; k < 3; ++k) corners[k] = atlas.positions[t[k]].cast<double>();
+    return corners;
   };
-  int gap = std::max(width, height);
-  for (int j = 0; j < height; ++j)
-    for (int i = 0; i < width; ++i)
-      if (raster.at(i, j).covered()) gap = std::min({gap, i, j, width - 1 - i, height - 1 - j});
-
-  for (int reach = 8;; reach *= 2) {
-    const int window = std::min(reach, gap);  // a chart at Chebyshev distance d leaves a gap of d - 1
-    int least = gap;
-    for (int j = 0; j < height; ++j)
-      for (int i = 0; i < width; ++i) {
-        const std::uint32_t chart = chart_at(i, j);
-        if (chart == no_index) continue;
-        const bool inside = i > 0 && i + 1 < width && j > 0 && j + 1 < height && chart_at(i - 1, j) == chart &&
-                            chart_at(i + 1, j) == chart && chart_at(i, j - 1) == chart && chart_at(i, j + 1) == chart;
-        if (inside) continue;
-        // Half the window is enough: the other texel looks back.
-        for (int y = j; y <= std::min(height - 1, j + window); ++y)
-          for (int x = std::max(0, i - window); x <= std::min(width - 1, i + window); ++x) {
-            const std::uint32_t other = chart_at(x, y);
-            if (other != no_index && other != chart) least = std::min(least, std::max(std::abs(x - i), y - j) - 1);
-          }
-      }
-    if (least < gap || window == gap) return least;
+  for (std::size_t i = 0; i < atlas.triangles.size(); ++i) {
+    if (chart_of[i] == no_index) continue;
+    const auto [a, b, c] = corners_of(atlas.triangles[i]);
+    areas[chart_of[i]] += 0.5 * (b - a).cross(c - a).norm();
+    texels[chart_of[i]] += std::abs(uv_area(atlas, atlas.triangles[i])) * size.prod();
   }
+
+  StretchSum stretch;
+  for (std::size_t i = 0; i < atlas.triangles.size(); ++i) {
+    if (chart_of[i] == no_index || !(areas[chart_of[i]] > 0)) continue;
+    const double scale = std::sqrt(areas[chart_of[i]] / texels[chart_of[i]]);  // object units per texel
+    std::array<Eigen::Vector2d, 3> uvs;
+    for (int k = 0; k < 3; ++k) uvs[k] = atlas.uvs[atlas.triangles[i][k]].cast<double>().cwiseProduct(size) * scale;
+    stretch.add(corners_of(atlas.triangles[i]), uvs);
+  }
+  measures.stretch = stretch.result();
+
+  for (std::size_t chart = 0; chart < areas.size(); ++chart) {
+    if (!(areas[chart] > 0)) continue;
+    const double density = std::sqrt(texels[chart] / areas[chart]);
+    measures.density_max = std::max(measures.density_max, density);
+    measures.density_min = measures.density_min == 0 ? density : std::min(measures.density_min, density);
+  }
+  const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
+  if (!(area > 0)) return;
+  measures.texels_per_unit = std::sqrt(std::accumulate(texels.begin(), texels.end(), 0.0) / area);
+  const std::vector<SeamEdge> seams = seam_edges(atlas);
+  for (const SeamEdge& edge : seams) measures.seam_length += edge.length;
+  measures.seam_length_relative = measures.seam_length / std::sqrt(area);
+  measures.visible_seam_length_relative = visible_length(atlas, seams) / std::sqrt(area);
+}
+
+/// Which triangles and charts have no texel.
+void measure_coverage(const TriangleMesh& atlas, const std::vector<std::uint32_t>& chart_of, const UvRaster& raster,
+                      AtlasMeasures& measures) {
+  constexpr std::size_t most_listed = 100;
+  std::vector<std::uint8_t> covers(atlas.triangles.size()), chart_covers(static_cast<std::size_t>(measures.charts));
+  for (const TexelSource& texel : raster.texels)
+    if (texel.covered()) covers[texel.triangle] = 1;
+  for (std::size_t i = 0; i < atlas.triangles.size(); ++i) {
+    if (covers[i] != 0) {
+      chart_covers[chart_of[i]] = 1;
+      continue;
+    }
+    ++measures.uncovered_triangles;
+    if (measures.uncovered.size() < most_listed)
+      measures.uncovered.push_back({static_cast<std::uint32_t>(i), chart_of[i] == no_index});
+  }
+  measures.uncovered_charts = static_cast<int>(std::count(chart_covers.begin(), chart_covers.end(), 0));
 }
 
 }  // namespace
 
 std::vector<std::uint32_t> charts_of_triangles(const TriangleMesh& atlas) {
-  std::vector<std::uint32_t> parent(atlas.positions.size());
-  std::iota(parent.begin(), parent.end(), 0u);
+  std::vector<std::uint32_t> parent = welded_by_place_and_uv(atlas);
   const auto find = [&](std::uint32_t v) {
     while (parent[v] != v) v = parent[v] = parent[parent[v]];
     return v;
@@ -115,6 +181,39 @@ std::vector<std::uint32_t> charts_of_triangles(const TriangleMesh& atlas) {
   return result;
 }
 
+int smallest_gap(const UvRaster& raster, const std::vector<std::uint32_t>& chart_of) {
+  const int width = raster.width, height = raster.height;
+  const auto chart_at = [&](int i, int j) {
+    const TexelSource& texel = raster.at(i, j);
+    return texel.covered() ? chart_of[texel.triangle] : no_index;
+  };
+  int gap = std::max(width, height);
+  for (int j = 0; j < height; ++j)
+    for (int i = 0; i < width; ++i)
+      if (raster.at(i, j).covered()) gap = std::min({gap, i, j, width - 1 - i, height - 1 - j});
+
+  // Look around every texel on a chart's outline, in growing windows, until something is met.
+  for (int reach = 8;; reach *= 2) {
+    const int window = std::min(reach, gap);  // a chart at Chebyshev distance d leaves a gap of d - 1
+    int least = gap;
+    for (int j = 0; j < height; ++j)
+      for (int i = 0; i < width; ++i) {
+        const std::uint32_t chart = chart_at(i, j);
+        if (chart == no_index) continue;
+        const bool inside = i > 0 && i + 1 < width && j > 0 && j + 1 < height && chart_at(i - 1, j) == chart &&
+                            chart_at(i + 1, j) == chart && chart_at(i, j - 1) == chart && chart_at(i, j + 1) == chart;
+        if (inside) continue;
+        // Half the window is enough: the other texel looks back.
+        for (int y = j; y <= std::min(height - 1, j + window); ++y)
+          for (int x = std::max(0, i - window); x <= std::min(width - 1, i + window); ++x) {
+            const std::uint32_t other = chart_at(x, y);
+            if (other != no_index && other != chart) least = std::min(least, std::max(std::abs(x - i), y - j) - 1);
+          }
+      }
+    if (least < gap || window == gap) return least;
+  }
+}
+
 AtlasMeasures measure_atlas(const TriangleMesh& atlas, int width, int height) {
   AtlasMeasures measures;
   const std::vector<std::uint32_t> chart_of = charts_of_triangles(atlas);
@@ -129,27 +228,17 @@ AtlasMeasures measure_atlas(const TriangleMesh& atlas, int width, int height) {
   measures.utilisation = static_cast<double>(raster.covered_texels) / (static_cast<double>(width) * height);
   measures.smallest_gap_texels = smallest_gap(raster, chart_of);
 
-  TriangleMesh texels = atlas;  // with uvs in texels: stretch and scale need square ones
-  double uv_sum = 0, area = 0;
-  for (Eigen::Vector2f& uv : texels.uvs)
-    uv = uv.cwiseProduct(Eigen::Vector2f(static_cast<float>(width), static_cast<float>(height)));
-  for (const Triangle& t : texels.triangles) {
-    const double triangle_area = uv_area(texels, t);
-    if (triangle_area == 0) continue;
-    if (triangle_area < 0) ++measures.flipped_triangles;
-    uv_sum += triangle_area;
-    const Eigen::Vector3d a = atlas.positions[t[0]].cast<double>(), b = atlas.positions[t[1]].cast<double>(),
-                          c = atlas.positions[t[2]].cast<double>();
-    area += 0.5 * (b - a).cross(c - a).norm();
-  }
-  measures.stretch = measure_stretch(texels);
-  measures.texels_per_unit = area > 0 ? std::sqrt(uv_sum / area) : 0;
-  measures.seam_length = measure_seams(atlas);
-  measures.seam_length_relative = area > 0 ? measures.seam_length / std::sqrt(area) : 0;
+  for (const Triangle& t : atlas.triangles) measures.flipped_triangles += uv_area(atlas, t) < 0;
+  measure_coverage(atlas, chart_of, raster, measures);
+  measure_scales(atlas, chart_of, width, height, measures);
   return measures;
 }
 
 Json AtlasMeasures::to_json() const {
+  Json listed = Json::array();
+  for (const Uncovered& entry : uncovered)
+    listed.push_back(
+        {{"triangle", entry.triangle}, {"why", entry.without_area ? "no area" : "smaller or thinner than a texel"}});
   return {{"charts", charts},
           {"triangles", triangles},
           {"vertices", vertices},
@@ -158,11 +247,17 @@ Json AtlasMeasures::to_json() const {
           {"stretch_l2", stretch.l2},
           {"stretch_linf", stretch.linf},
           {"texels_per_unit", texels_per_unit},
+          {"density_min", density_min},
+          {"density_max", density_max},
           {"seam_length", seam_length},
           {"seam_length_relative", seam_length_relative},
+          {"visible_seam_length_relative", visible_seam_length_relative},
           {"overlapping_texels", overlapping_texels},
           {"flipped_triangles", flipped_triangles},
-          {"smallest_gap_texels", smallest_gap_texels}};
+          {"smallest_gap_texels", smallest_gap_texels},
+          {"uncovered_triangles", uncovered_triangles},
+          {"uncovered_charts", uncovered_charts},
+          {"uncovered", listed}};
 }
 
 }  // namespace kiln

@@ -81,8 +81,9 @@ std::vector<Eigen::Vector2d> aligned_uvs(const Chart& here, const Chart& there, 
   return result;
 }
 
-/// Keeps one vertex of each class, with the mean of their uvs, and sorts the faces.
-Chart compact(Chart chart, UnionFind& classes) {
+/// Keeps one vertex of each class, with the mean of their uvs, and sorts the faces. The vertices `tracked` are told
+/// their new numbers.
+Chart compact(Chart chart, UnionFind& classes, std::vector<std::uint32_t>* tracked = nullptr) {
   std::vector<std::uint32_t> new_index(chart.vertices.size(), no_index);
   Chart result;
   std::vector<double> members;
@@ -109,11 +110,19 @@ Chart compact(Chart chart, UnionFind& classes) {
     for (std::uint32_t& corner : t) corner = new_index[classes.find(corner)];
     result.triangles.push_back(t);
   }
+  if (tracked != nullptr)
+    for (std::uint32_t& v : *tracked) v = new_index[classes.find(v)];
   return result;
 }
 
+/// A chart and those of its vertices that lie on what was its parts' common border.
+struct GluedChart {
+  Chart chart;
+  std::vector<std::uint32_t> seam;
+};
+
 /// The chart that gluing along a run gives, started from the uvs of its parts.
-Chart glued_chart(const Disks& disks, const Disks::Run& run, const Chart& here, const Chart& there) {
+GluedChart glued_chart(const Disks& disks, const Disks::Run& run, const Chart& here, const Chart& there) {
   const Pairs pairs = vertex_pairs(disks, run, here, there);
   Chart both = here;
   std::uint32_t offset = 0;
@@ -129,8 +138,15 @@ Chart glued_chart(const Disks& disks, const Disks::Run& run, const Chart& here, 
     }
   }
   UnionFind classes(both.vertices.size());
-  for (const auto& [a, b] : pairs) classes.join(a, b + offset);
-  return compact(std::move(both), classes);
+  GluedChart result;
+  for (const auto& [a, b] : pairs) {
+    classes.join(a, b + offset);
+    result.seam.push_back(a);
+  }
+  result.chart = compact(std::move(both), classes, &result.seam);
+  std::sort(result.seam.begin(), result.seam.end());
+  result.seam.erase(std::unique(result.seam.begin(), result.seam.end()), result.seam.end());
+  return result;
 }
 
 double chart_area(const Surface& surface, const Chart& chart) {
@@ -182,16 +198,36 @@ bool packs_well(const Surface& surface, const Chart& chart, double largest_exten
   return small || compact_shape || rectangle;
 }
 
-/// The relaxed chart, if it is valid and within the bounds.
-std::optional<Chart> flattened(const Surface& surface, Chart chart, const ChartSettings& settings) {
-  if (!is_flip_free(chart) && !unflip(surface, chart)) return {};
-  relax(surface, chart, {8, 1e-2});
-  if (!has_simple_border(chart)) return {};
-  equalise_area(surface, chart);
+bool within_bounds(const Surface& surface, const Chart& chart, const ChartSettings& settings, double excess = 1) {
   const Stretch stretch = measure_stretch(surface, chart);
-  if (!(stretch.l2 <= settings.largest_l2 && stretch.linf <= settings.largest_linf)) return {};
-  if (!packs_well(surface, chart, settings.largest_extent)) return {};
-  return chart;
+  return stretch.l2 - 1 <= excess * (settings.largest_l2 - 1) &&
+         stretch.linf - 1 <= excess * (settings.largest_linf - 1);
+}
+
+/// The relaxed chart, if it is valid and within the bounds.
+std::optional<Chart> flattened(const Surface& surface, GluedChart glued, const ChartSettings& settings) {
+  constexpr std::size_t largest_relaxed_whole = 4000;  // faces
+  Chart& chart = glued.chart;
+  if (chart.faces.size() <= largest_relaxed_whole) {
+    if (!is_flip_free(chart) && !unflip(surface, chart)) return {};
+    relax(surface, chart, {8, 1e-2});
+    equalise_area(surface, chart);
+  } else {
+    // Only the surroundings of the seam have something to gain, at first.
+    const std::size_t most_faces = std::max(largest_relaxed_whole, 16 * glued.seam.size());
+    if (!relax_around(surface, chart, glued.seam, most_faces, {8, 1e-2})) return {};
+    equalise_area(surface, chart);
+    if (!within_bounds(surface, chart, settings)) {
+      if (!within_bounds(surface, chart, settings, 1.5) || !is_flip_free(chart)) return {};
+      relax(surface, chart, {3, 1e-2});
+      equalise_area(surface, chart);
+    }
+  }
+  if (!within_bounds(surface, chart, settings) || !is_flip_free(chart)) return {};
+  if (!has_simple_border(chart) || !keeps_clear(surface, chart, settings.clearance) ||
+      !packs_well(surface, chart, settings.largest_extent))
+    return {};
+  return std::move(chart);
 }
 
 struct Candidate {
@@ -266,16 +302,23 @@ class Merger {
   /// The best run to each neighbour, and every slit's end.
   void push_runs(std::uint32_t id, bool to_all) {
     std::uint32_t start = no_index;
-    for (const std::uint32_t face : disks_.disk(id).faces)
+    for (const std::uint32_t face : disks_.disk(id).faces) {
       for (std::uint32_t k = 0; k < 3 && start == no_index; ++k)
         if (disks_.on_border(3 * face + k)) start = 3 * face + k;
+      if (start != no_index) break;
+    }
+    // From a run's first edge on, run by run.
+    if (disks_.run_through(start).possible()) start = disks_.run_through(start).first;
     std::vector<std::pair<std::uint32_t, Candidate>> best;
     std::uint32_t h = start;
     do {
       const std::uint32_t twin = disks_.surface().twins[h];
       if (twin != no_index) {
         const Disks::Run run = disks_.run_through(h);
-        if (run.possible() && run.first == h) consider(id, disks_.disk_of(twin), run, best);
+        if (run.possible()) {
+          consider(id, disks_.disk_of(twin), run, best);
+          while (h != run.last && disks_.next(h) != start) h = disks_.next(h);
+        }
       }
       h = disks_.next(h);
     } while (h != start);
@@ -287,9 +330,10 @@ class Merger {
                 std::vector<std::pair<std::uint32_t, Candidate>>& best) const {
     if (run.bend > settings_.crease_degrees * std::numbers::pi / 180) return;
     const Disks::Disk &a = disks_.disk(here), &b = disks_.disk(there);
-    // The share of a chart's border that would no longer be a seam.
-    const double score = run.length / std::min(a.perimeter, b.perimeter);
-    if (score < 0.1 && here != there) return;
+    // The share of a chart's border that would no longer be a seam, weighed by how visible it is.
+    const double share = run.length / std::min(a.perimeter, b.perimeter);
+    if (share < 0.1 && here != there) return;
+    const double score = run.cost / std::min(a.perimeter, b.perimeter);
     const Candidate candidate{score, run.first, a.version, b.version};
     const auto known = std::find_if(best.begin(), best.end(), [&](const auto& entry) { return entry.first == there; });
     if (known == best.end())

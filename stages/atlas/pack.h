@@ -8,13 +8,17 @@
 
 namespace kiln {
 
+/// Either the scale is free and the atlas's width and height are given, or `texels_per_unit` is given and the atlas is
+/// as small as it can be found: the least height for a given width, or the smallest square where neither is given.
 struct PackSettings {
-  int width = 512;  ///< of the atlas, texels
-  int height = 512;
-  int gutter = 4;       ///< free texels between the covered ones of two charts, and at the border
-  int rotations = 16;   ///< angles tried per chart, evenly spread from that of its smallest rectangle
-  int rounds = 10;      ///< of attempts at a larger scale, each with several orders of the charts
-  double slack = 0.02;  ///< texels that uvs may still move, through rounding
+  int width = 512;   ///< of the atlas, texels; with `texels_per_unit`, 0 asks for a square, `height` being 0 too
+  int height = 512;  ///< with `texels_per_unit`, 0 asks for the least height
+  double texels_per_unit = 0;  ///< 0: the largest scale that is found to fit
+  int size_multiple = 4;       ///< what a width or height that was asked for is a multiple of
+  int gutter = 4;              ///< free texels between the covered ones of two charts, and at the border
+  int rotations = 16;          ///< angles tried per chart, evenly spread from that of its smallest rectangle
+  bool thorough = false;       ///< search some ten times as long
+  double slack = 0;            ///< texels that uvs may still move; 0: as rounding them to 16 bits moves them
   std::uint64_t seed = 1;
 };
 
@@ -25,13 +29,16 @@ struct Placement {
 };
 
 struct Packing {
+  int width = 0;  ///< of the atlas, texels
+  int height = 0;
   double texels_per_unit = 0;
   std::vector<Placement> placements;  ///< per chart
 };
 
-/// Packs charts, all at the same scale, into the atlas at texel resolution: largest first, each turned and put as far
-/// down as it goes, in the gaps of others where it fits; the scale is the largest found. Independent of the number of
-/// threads. Throws WrongUsage where the atlas is too small for so many charts and such a gutter.
+/// Packs charts, all at the same scale, into the atlas at texel resolution: one after the other, each turned and put as
+/// far down as it goes, in the gaps of others where it fits, in the order that annealing finds; the scale is the
+/// largest found, or that given. Independent of the number of threads. Throws WrongUsage where the atlas is too small
+/// for so many charts and such a gutter.
 Packing pack_charts(const std::vector<Chart>& charts, const PackSettings& settings,
                     const ProgressFunction& progress = no_progress);
 

@@ -59,7 +59,8 @@ bool parameterise_quickly(const Surface& surface, Chart& chart) {
 }
 
 bool parameterise(const Surface& surface, Chart& chart) {
-  constexpr RelaxSettings thoroughly{40, 1e-3};
+  // A large chart comes from steps that left little to gain, and each costs seconds.
+  const RelaxSettings thoroughly = chart.faces.size() < 20000 ? RelaxSettings{40, 1e-3} : RelaxSettings{8, 2e-2};
   bool found = false;
   double least_stretch = std::numeric_limits<double>::infinity();
   Chart best;
@@ -78,6 +79,12 @@ bool parameterise(const Surface& surface, Chart& chart) {
     found = true;
   };
 
+  // Relaxed, every valid start comes to about the same map; the chart's own is nearest to it.
+  if (!chart.uvs.empty() && is_flip_free(chart)) consider(chart);
+  if (found) {
+    chart = std::move(best);
+    return true;
+  }
   for (const Parameteriser parameteriser : {Parameteriser::arap, Parameteriser::lscm, Parameteriser::mean_value}) {
     if (parameteriser == Parameteriser::mean_value && found) break;
     Chart trial = chart;
@@ -85,7 +92,6 @@ bool parameterise(const Surface& surface, Chart& chart) {
     trial.uvs = cgal_parameterise(surface, trial, parameteriser);
     if (usable_start(surface, trial)) consider(std::move(trial));
   }
-  if (!chart.uvs.empty() && is_flip_free(chart)) consider(chart);
   if (found) chart = std::move(best);
   return found;
 }

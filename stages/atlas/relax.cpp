@@ -69,7 +69,12 @@ double largest_step(const Chart& chart, const Uvs& uvs, const Uvs& move) {
 
 class Relaxation {
  public:
-  Relaxation(const Surface& surface, Chart& chart) : surface_(surface), chart_(chart) { build_pattern(); }
+  /// Vertices that are `pinned`, where any are given, stay where they are.
+  Relaxation(const Surface& surface, Chart& chart, std::vector<std::uint8_t> pinned = {})
+      : surface_(surface), chart_(chart), pinned_(std::move(pinned)) {
+    pinned_.resize(chart.uvs.size(), 0);
+    build_pattern();
+  }
 
   double energy(const Uvs& uvs) const {
     double sum = 0, area = 0;
@@ -94,7 +99,7 @@ class Relaxation {
       const Eigen::VectorXd solution = factorisation_.solve(right_side_);
       if (!solution.allFinite()) return false;
       for (std::size_t v = 0; v < chart_.uvs.size(); ++v)
-        chart_.uvs[v] = solution.segment<2>(2 * static_cast<Eigen::Index>(v));
+        if (!pinned_[v]) chart_.uvs[v] = solution.segment<2>(2 * static_cast<Eigen::Index>(v));
       if (is_flip_free(chart_)) return true;
     }
     return false;
@@ -108,7 +113,8 @@ class Relaxation {
     if (!solution.allFinite()) return old_energy;
     Uvs move(chart_.uvs.size());
     for (std::size_t v = 0; v < move.size(); ++v)
-      move[v] = solution.segment<2>(2 * static_cast<Eigen::Index>(v)) - chart_.uvs[v];
+      move[v] = pinned_[v] ? Eigen::Vector2d(0, 0)
+                           : Eigen::Vector2d(solution.segment<2>(2 * static_cast<Eigen::Index>(v)) - chart_.uvs[v]);
 
     double length = std::min(1.0, 0.8 * largest_step(chart_, chart_.uvs, move));
     Uvs trial(move.size());
@@ -159,11 +165,12 @@ class Relaxation {
 
   /// The quadratic proxy around the present uvs; `rigid` weighs all directions alike.
   void assemble(bool rigid) {
-    constexpr double proximal = 1e-5;  // fixes the translation
+    const auto proximal = [&](std::size_t v) { return pinned_[v] ? 1e9 : 1e-5; };  // the latter fixes the translation
     std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
-    for (Eigen::Index i = 0; i < matrix_.rows(); ++i) matrix_.valuePtr()[matrix_.outerIndexPtr()[i]] = proximal;
+    for (Eigen::Index i = 0; i < matrix_.rows(); ++i)
+      matrix_.valuePtr()[matrix_.outerIndexPtr()[i]] = proximal(static_cast<std::size_t>(i / 2));
     for (std::size_t v = 0; v < chart_.uvs.size(); ++v)
-      right_side_.segment<2>(2 * static_cast<Eigen::Index>(v)) = proximal * chart_.uvs[v];
+      right_side_.segment<2>(2 * static_cast<Eigen::Index>(v)) = proximal(v) * chart_.uvs[v];
 
     for (std::size_t i = 0; i < chart_.triangles.size(); ++i) {
       const Triangle& t = chart_.triangles[i];
@@ -186,18 +193,63 @@ class Relaxation {
 
   const Surface& surface_;
   Chart& chart_;
+  std::vector<std::uint8_t> pinned_;
   Eigen::SparseMatrix<double> matrix_;  // lower triangle; the first entry of a column is its diagonal
   Eigen::VectorXd right_side_;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factorisation_;
   std::vector<std::array<Eigen::Index, 21>> slots_;
 };
 
-}  // namespace
+/// A part of a chart, with its own copy of the uvs.
+struct Region {
+  Chart chart;
+  std::vector<std::uint32_t> vertices;  ///< per vertex of the part, that of the whole
+  std::vector<std::uint8_t> pinned;     ///< per vertex of the part: has triangles outside it
+};
 
-bool unflip(const Surface& surface, Chart& chart) { return Relaxation(surface, chart).unflip(6); }
+/// The triangles next to the seeds, and next to those, until there are enough.
+Region region_around(const Chart& whole, const std::vector<std::uint32_t>& seeds, std::size_t most_faces) {
+  const std::size_t vertex_count = whole.uvs.size();
+  std::vector<std::uint32_t> offsets(vertex_count + 1, 0);
+  for (const Triangle& t : whole.triangles)
+    for (const std::uint32_t corner : t) ++offsets[corner + 1];
+  for (std::size_t v = 0; v < vertex_count; ++v) offsets[v + 1] += offsets[v];
+  std::vector<std::uint32_t> triangles_at(offsets.back()), filled(offsets.begin(), offsets.end() - 1);
+  for (std::uint32_t i = 0; i < whole.triangles.size(); ++i)
+    for (const std::uint32_t corner : whole.triangles[i]) triangles_at[filled[corner]++] = i;
 
-double relax(const Surface& surface, Chart& chart, const RelaxSettings& settings) {
-  Relaxation relaxation(surface, chart);
+  std::vector<std::uint8_t> taken(whole.triangles.size(), 0);
+  std::vector<std::uint32_t> index(vertex_count, no_index);
+  Region region;
+  const auto add_vertex = [&](std::uint32_t v) {
+    if (index[v] != no_index) return;
+    index[v] = static_cast<std::uint32_t>(region.vertices.size());
+    region.vertices.push_back(v);
+  };
+  for (const std::uint32_t seed : seeds) add_vertex(seed);
+  for (std::size_t front = 0; front < region.vertices.size() && region.chart.faces.size() < most_faces; ++front) {
+    const std::uint32_t v = region.vertices[front];
+    for (std::uint32_t i = offsets[v]; i < offsets[v + 1]; ++i) {
+      const std::uint32_t triangle = triangles_at[i];
+      if (taken[triangle]) continue;
+      taken[triangle] = 1;
+      region.chart.faces.push_back(whole.faces[triangle]);
+      for (const std::uint32_t corner : whole.triangles[triangle]) add_vertex(corner);
+      Triangle local = whole.triangles[triangle];
+      for (std::uint32_t& corner : local) corner = index[corner];
+      region.chart.triangles.push_back(local);
+    }
+  }
+  for (const std::uint32_t v : region.vertices) {
+    region.chart.vertices.push_back(whole.vertices[v]);
+    region.chart.uvs.push_back(whole.uvs[v]);
+    const auto first = triangles_at.begin() + offsets[v], last = triangles_at.begin() + offsets[v + 1];
+    region.pinned.push_back(std::any_of(first, last, [&](std::uint32_t triangle) { return !taken[triangle]; }));
+  }
+  return region;
+}
+
+double run(Relaxation& relaxation, const Chart& chart, const RelaxSettings& settings) {
   constexpr double isometry = 4;
   double energy = relaxation.energy(chart.uvs);
   for (int i = 0; i < settings.iterations; ++i) {
@@ -206,6 +258,25 @@ double relax(const Surface& surface, Chart& chart, const RelaxSettings& settings
     if (old_energy - energy <= settings.tolerance * (old_energy - isometry) || energy - isometry < 1e-9) break;
   }
   return energy;
+}
+
+}  // namespace
+
+bool unflip(const Surface& surface, Chart& chart) { return Relaxation(surface, chart).unflip(6); }
+
+double relax(const Surface& surface, Chart& chart, const RelaxSettings& settings) {
+  Relaxation relaxation(surface, chart);
+  return run(relaxation, chart, settings);
+}
+
+bool relax_around(const Surface& surface, Chart& chart, const std::vector<std::uint32_t>& seeds, std::size_t most_faces,
+                  const RelaxSettings& settings) {
+  Region region = region_around(chart, seeds, most_faces);
+  Relaxation relaxation(surface, region.chart, region.pinned);
+  if (!is_flip_free(region.chart) && !relaxation.unflip(6)) return false;
+  run(relaxation, region.chart, settings);
+  for (std::size_t v = 0; v < region.vertices.size(); ++v) chart.uvs[region.vertices[v]] = region.chart.uvs[v];
+  return true;
 }
 
 }  // namespace kiln

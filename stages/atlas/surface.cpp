@@ -76,7 +76,22 @@ Surface analyse_surface(const TriangleMesh& mesh) {
     }
     begin = end;
   }
+  surface.seam_costs = surface.edge_lengths;
   return surface;
+}
+
+void weigh_seams(Surface& surface, const std::vector<float>& openness) {
+  constexpr double floor = 0.1;  // a seam in the dark still costs something
+  double costs = 0, lengths = 0;
+  for (std::uint32_t h = 0; h < surface.half_edge_count(); ++h) {
+    const double open =
+        0.5 * (static_cast<double>(openness[surface.origin(h)]) + static_cast<double>(openness[surface.target(h)]));
+    surface.seam_costs[h] = surface.edge_lengths[h] * (floor + std::clamp(open, 0.0, 1.0));
+    costs += surface.seam_costs[h];
+    lengths += surface.edge_lengths[h];
+  }
+  if (!(costs > 0)) return;
+  for (double& cost : surface.seam_costs) cost *= lengths / costs;
 }
 
 }  // namespace kiln

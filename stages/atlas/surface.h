@@ -23,6 +23,7 @@ struct Surface {
   const TriangleMesh* mesh = nullptr;
   std::vector<std::uint32_t> twins;  ///< per half-edge; no_index at borders, non-manifold edges and degenerate faces
   std::vector<double> edge_lengths;  ///< per half-edge, object units
+  std::vector<double> seam_costs;    ///< per half-edge: its length, or that weighed by how visible it is
   std::vector<RestTriangle> rest;    ///< per face
   std::vector<Eigen::Vector3d> face_normals;
   std::vector<std::uint8_t> degenerate;  ///< per face: has no usable area, and no place in any chart
@@ -37,5 +38,9 @@ struct Surface {
 /// `mesh` must outlive the surface. A face is degenerate where a corner repeats or its height is below a millionth of
 /// its longest side. Neighbouring faces of opposite orientation do not become twins.
 Surface analyse_surface(const TriangleMesh& mesh);
+
+/// Makes seams dear where they are seen, hence cut in occluded places: `openness` is the share of open sky, 0 to 1, at
+/// each vertex. On average costs stay lengths.
+void weigh_seams(Surface& surface, const std::vector<float>& openness);
 
 }  // namespace kiln

@@ -10,6 +10,7 @@ class TexelGrid {
  public:
   TexelGrid(int width, int height) : width_(width), height_(height), words_per_row_((width + 63) / 64) {
     words_.assign(static_cast<std::size_t>(words_per_row_) * height, 0);
+    longest_free_.assign(height, width);
   }
 
   int width() const { return width_; }
@@ -17,6 +18,12 @@ class TexelGrid {
 
   /// Takes columns `first` to `last` of a row; what lies outside is left out.
   void take(int row, int first, int last);
+
+  /// The most columns in a row that are free.
+  int longest_free(int row) const {
+    if (longest_free_[row] < 0) longest_free_[row] = find_longest_free(row);
+    return longest_free_[row];
+  }
 
   /// The last taken column from `first` to `last`, both inside the grid; -1 if none is.
   int last_taken(int row, int first, int last) const {
@@ -32,14 +39,18 @@ class TexelGrid {
   }
 
  private:
+  int find_longest_free(int row) const;
+
   int width_, height_, words_per_row_;
   std::vector<std::uint64_t> words_;
+  mutable std::vector<int> longest_free_;  ///< per row; -1: not known
 };
 
 inline void TexelGrid::take(int row, int first, int last) {
   if (row < 0 || row >= height_) return;
   if (first < 0) first = 0;
   if (last >= width_) last = width_ - 1;
+  longest_free_[row] = -1;
   std::uint64_t* words = words_.data() + static_cast<std::size_t>(row) * words_per_row_;
   for (int word = first / 64; first <= last && word <= last / 64; ++word) {
     std::uint64_t mask = ~std::uint64_t{0};
@@ -47,6 +58,24 @@ inline void TexelGrid::take(int row, int first, int last) {
     if (word == last / 64) mask &= ~std::uint64_t{0} >> (63 - last % 64);
     words[word] |= mask;
   }
+}
+
+inline int TexelGrid::find_longest_free(int row) const {
+  const std::uint64_t* words = words_.data() + static_cast<std::size_t>(row) * words_per_row_;
+  int longest = 0, start = 0;  // of the free columns before the one looked at
+  for (int word = 0; word < words_per_row_; ++word) {
+    std::uint64_t bits = words[word];
+    while (bits != 0) {
+      const int taken = word * 64 + __builtin_ctzll(bits);
+      if (taken - start > longest) longest = taken - start;
+      const std::uint64_t after = ~bits >> (taken % 64);  // skips the taken ones that follow
+      const int length = after != 0 ? __builtin_ctzll(after) : 64 - taken % 64;
+      start = taken + length;
+      const int next = start - word * 64;
+      bits &= next < 64 ? ~std::uint64_t{0} << next : 0;
+    }
+  }
+  return width_ - start > longest ? width_ - start : longest;
 }
 
 }  // namespace kiln

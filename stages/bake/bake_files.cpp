@@ -20,14 +20,15 @@ namespace {
 constexpr int default_size_texels = 512;
 
 /// The size that kiln-atlas packed for, from the record beside the atlas.
-int packed_size(const fs::path& atlas) {
+Extent packed_size(const fs::path& atlas) {
   const AssetHints hints = read_asset_hints(folder_of(atlas));
-  return hints.size > 0 ? hints.size : default_size_texels;
+  return hints.width > 0 ? Extent(hints.width, hints.height) : Extent(default_size_texels);
 }
 
 std::vector<TriangleMesh> load_occluders(const BakePaths& paths) {
   std::vector<TriangleMesh> meshes;
-  for (const fs::path& occluder : paths.occluders) meshes.push_back(load_mesh(occluder));
+  const MeshRepairSettings repair{.fill_hole_edges = read_asset_hints(folder_of(paths.atlas)).fill_hole_edges};
+  for (const fs::path& occluder : paths.occluders) meshes.push_back(load_mesh(occluder, nullptr, repair));
   if (meshes.empty()) meshes.push_back(load_mesh(paths.atlas));
   return meshes;
 }
@@ -37,7 +38,7 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
     throw WrongUsage(
         "per-vertex: found --detail; expected none, which is for texels; --receiver high takes the first "
         "--occluder as the high mesh");
-  if (settings.size != 0) throw WrongUsage("per-vertex: found --size; expected none, which is for texels");
+  if (settings.size.width != 0) throw WrongUsage("per-vertex: found --size; expected none, which is for texels");
   BakeScene scene;
   scene.vertex_mesh = load_vertex_mesh(paths.atlas);
   const std::vector<TriangleMesh> occluders = load_occluders(paths);
@@ -53,7 +54,8 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
   return scene;
 }
 
-void write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeResult& result,
+/// Gives what came of the seams, for bake.json.
+Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeResult& result,
                     const BakeSettings& settings) {
   AssetFiles files{"atlas.drc", ""};
   fs::copy_file(paths.atlas, outputs.add(files.mesh), fs::copy_options::overwrite_existing);
@@ -63,8 +65,16 @@ void write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene&
   } else {
     outputs.remove_stale("normal.png");
   }
-  write_planes(outputs, {result.transfer}, scene.receivers, settings.bits, files);
+  const Seams seams(scene.atlas, scene.receivers.width, scene.receivers.height);
+  const PlaneSeams done =
+      write_planes(outputs, {result.transfer}, scene.receivers, settings.bits, files, seams, settings.seams);
   outputs.remove_stale(vertex_mesh_name);
+  return {{"edges", seams.edges().size()},
+          {"seam_mismatch_mean_before", done.before.mean},
+          {"seam_mismatch_max_before", done.before.largest},
+          {"seam_mismatch_mean", done.after.mean},
+          {"seam_mismatch_max", done.after.largest},
+          {"change", done.change}};
 }
 
 }  // namespace
@@ -75,17 +85,19 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
   if (settings.per_vertex) return load_vertex_scene(paths, settings);
   if (settings.receiver == BakeReceiver::high && paths.detail.empty())
     throw WrongUsage("receiver high: found no --detail FOLDER; expected the output of kiln-normals, or --receiver low");
-  const TriangleMesh atlas = load_atlas(paths.atlas);
+  BakeScene scene;
+  scene.atlas = load_atlas(paths.atlas);
+  const TriangleMesh& atlas = scene.atlas;
   std::optional<DetailMaps> detail;
   if (!paths.detail.empty()) detail = load_detail_maps(paths.detail, atlas);
 
-  BakeScene scene;
   if (settings.receiver == BakeReceiver::high) {
     scene.receivers = receivers_on_high(*detail);
   } else {
-    const int size = settings.size > 0 ? settings.size : packed_size(paths.atlas);
-    scene.receivers = receivers_on_low(atlas, detail ? detail->width : size, detail ? detail->height : size,
-                                       detail ? &*detail : nullptr);
+    const Extent size = detail                    ? Extent(detail->width, detail->height)
+                        : settings.size.width > 0 ? settings.size
+                                                  : packed_size(paths.atlas);
+    scene.receivers = receivers_on_low(atlas, size.width, size.height, detail ? &*detail : nullptr);
   }
   if (scene.receivers.texels.empty())
     throw BadInput(paths.atlas.string(), "covers no texel", "an atlas packed for this size", "bake at a larger size");
@@ -135,9 +147,9 @@ Json save_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scen
     places = {{"vertices", sources.size()}};
     places.update(scene.vertex_metrics);
   } else {
-    write_textured(outputs, paths, scene, result, settings);
+    const Json seams = write_textured(outputs, paths, scene, result, settings);
     stored = read_planes(outputs.staging(), scene.receivers).front();
-    places = {{"width", scene.receivers.width}, {"height", scene.receivers.height}};
+    places = {{"width", scene.receivers.width}, {"height", scene.receivers.height}, {"seams", seams}};
   }
 
   Json metrics = describe_bake(scene, result);

@@ -16,6 +16,7 @@ struct BakePaths {
 };
 
 struct BakeScene {
+  TriangleMesh atlas;  ///< empty in a bake per vertex
   TexelReceivers receivers;
   Occluders occluders;
 

@@ -78,8 +78,10 @@ OptionSet bake_options(BakeSettings& settings) {
           "of the first --occluder), or the low mesh's")
       .toggle("per-vertex", settings.per_vertex, "Bake into the vertices of any mesh: no atlas, no --detail, no --size")
       .integer("bits", settings.bits, 8, 16, "Bits of a stored coefficient, 8 or 16")
-      .integer("size", settings.size, 0, 16384,
-               "Width and height in texels where no --detail says it; 0 for what kiln-atlas packed for")
+      .choice("seams", settings.seams, {{"equalise", SeamChoice::equalise}, {"keep", SeamChoice::keep}},
+              "Changes texels near the atlas' seams so that lookups on both sides agree, or keeps them")
+      .extent("size", settings.size, 0, 16384,
+              "Width and height in texels where no --detail says it; 0 for what kiln-atlas packed for")
       .text("gl-device", settings.gl_device, "EGL device: auto, software, or its number");
   add_shadow_options(options, settings);
   options

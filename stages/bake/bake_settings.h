@@ -4,6 +4,7 @@
 
 #include "bake/egl/shadow_settings.h"
 #include "base/options.h"
+#include "detail/seam_choice.h"
 #include "sh/directions.h"
 
 namespace kiln {
@@ -29,10 +30,11 @@ struct BakeSettings {
   int max_directions = 65536;      ///< that max_error may take
   Sampling sampling = Sampling::fibonacci;
   int bits = 8;  ///< of a stored coefficient
+  SeamChoice seams = SeamChoice::equalise;
   BakeBackend backend = BakeBackend::automatic;
   BakeReceiver receiver = BakeReceiver::high;
   bool per_vertex = false;  ///< vertices receive light, not texels
-  int size = 0;             ///< texels, where there is no detail folder to say so; 0: what the atlas was packed for
+  Extent size;              ///< texels, where there is no detail folder to say so; 0: what the atlas was packed for
   std::string gl_device = "auto";
   int shadow_size = 1024;     ///< texels; 0: the smallest whose error is under that of storing
   ShadowMapSettings shadows;  ///< but for the size

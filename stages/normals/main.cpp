@@ -13,23 +13,24 @@ int main(int argc, char** argv) {
     NormalsSettings settings;
     command.input("HIGH", high_file, "The high mesh: OBJ, PLY, STL, OFF or DRC");
     command.input("ATLAS", atlas_file, "The low mesh with its atlas, a Draco file of kiln-atlas");
-    command.output(folder, "The folder for normal.png, position.exr, coverage.png and normals.json");
+    command.output(folder, "The folder for normal.png, position.exr, coverage.png, match.png and normals.json");
     command.options("Normals", normals_options(settings));
     command.parse(argc, argv);
 
     // Load.
-    const TriangleMesh high = load_mesh(high_file);
+    const AssetHints hints = read_asset_hints(folder_of(atlas_file));
+    const TriangleMesh high = load_mesh(high_file, nullptr, {.fill_hole_edges = hints.fill_hole_edges});
     const TriangleMesh atlas = load_atlas(atlas_file);
     OutputSet outputs(folder);
 
     // Run.
-    const NormalsResult result =
-        make_normals(high, atlas, settings, read_asset_hints(folder_of(atlas_file)), command.progress("normals"));
+    const NormalsResult result = make_normals(high, atlas, settings, hints, command.progress("normals"));
 
     // Save.
     write_png(outputs.add("normal.png"), result.normal);
     write_exr(outputs.add("position.exr"), result.position);
     write_png(outputs.add("coverage.png"), result.coverage);
+    write_png(outputs.add("match.png"), result.match);
     command.finish(outputs, command.result(result.seconds, result.to_json()));
   });
 }

@@ -13,7 +13,7 @@
 #include "base/errors.h"
 #include "image/gutter.h"
 #include "mesh/uv_raster.h"
-#include "normals/surface_match.h"
+#include "normals/texel_match.h"
 #include "raycast/ray_scene.h"
 
 namespace kiln {
@@ -31,7 +31,6 @@ constexpr double smallest_cage = 1e-4;
 /// Fraction of the diagonal below which two surfaces are the same one: positions are quantised to 16 bits.
 constexpr double surface_tolerance = 1e-5;
 
-using Pixel = Eigen::Map<Eigen::Vector3f>;
 using ConstPixel = Eigen::Map<const Eigen::Vector3f>;
 
 double degrees_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -63,32 +62,69 @@ double measure_distance(const TriangleMesh& high, const RayScene& high_scene, co
   return std::max(from_low, from_high);
 }
 
-/// What one texel row adds to the metrics; rows are added up in order, so that sums do not depend on threads.
-struct RowSums {
-  std::array<std::int64_t, 3> found{};  ///< by MatchWay
-  std::int64_t disagreeing = 0;
-  double distance = 0, largest_distance = 0;
+/// Makes both sides of seams agree. Lookups are normalised, texels are unit vectors: what normalising undoes, the next
+/// round mends. Points where more is left than elsewhere weigh more from round to round.
+void equalise(Image<float>& map, const Seams& seams, const std::vector<std::uint8_t>& covered, NormalSpace space) {
+  constexpr int rounds = 6;
+  constexpr double usual_degrees = 0.2;
+  SeamSolver solver(seams, covered, space);
+  std::vector<double> factors(solver.points().size(), 1);
+  for (int round = 0; round < rounds; ++round) {
+    if (round > 0) {
+      const std::vector<double> degrees = seams.degrees_at(solver.points(), map, space);
+      for (std::size_t k = 0; k < factors.size(); ++k)
+        factors[k] = SeamSolver::raised(factors[k], degrees[k] / usual_degrees);
+      solver.weigh(factors);
+    }
+    solver.equalise(map);
+    normalise(map, space);
+  }
+}
+
+/// The largest and the root mean square angle between two maps over the covered texels that differ.
+struct Angles {
+  double largest = 0, rms = 0;
 };
 
-/// What is written, decoded, against both meshes.
-void measure_normals(const Image<float>& exact, const TriangleMesh& atlas, const UvRaster& raster,
-                     NormalsResult& result) {
-  const Image<float> decoded = decode_normals(result.normal, result.space, atlas, raster);
+Angles angles_between(const Image<float>& a, const Image<float>& b, const UvRaster& raster) {
+  Angles angles;
+  std::int64_t count = 0;
+  for (int j = 0; j < raster.height; ++j)
+    for (int i = 0; i < raster.width; ++i) {
+      if (!raster.at(i, j).covered()) continue;
+      const double degrees = degrees_between(ConstPixel(a.pixel(i, j).data()).cast<double>(),
+                                             ConstPixel(b.pixel(i, j).data()).cast<double>());
+      if (degrees == 0) continue;
+      angles.largest = std::max(angles.largest, degrees);
+      angles.rms += degrees * degrees;
+      ++count;
+    }
+  angles.rms = count > 0 ? std::sqrt(angles.rms / static_cast<double>(count)) : 0;
+  return angles;
+}
+
+/// Between the low mesh's normals and those that are shown.
+void measure_deviation(const Image<float>& shown_object, const TriangleMesh& atlas, const UvRaster& raster,
+                       NormalsResult& result) {
   double sum = 0;
   for (int j = 0; j < raster.height; ++j)
     for (int i = 0; i < raster.width; ++i) {
       const TexelSource& source = raster.at(i, j);
       if (!source.covered()) continue;
-      const Eigen::Vector3d normal = ConstPixel(decoded.pixel(i, j).data()).cast<double>();
-      const Eigen::Vector3d low_normal = interpolate(atlas, atlas.normals, source).cast<double>();
-      const double deviation = degrees_between(normal, low_normal);
+      const double deviation = degrees_between(ConstPixel(shown_object.pixel(i, j).data()).cast<double>(),
+                                               interpolate(atlas, atlas.normals, source).cast<double>());
       sum += deviation;
       result.normal_deviation_degrees_largest = std::max(result.normal_deviation_degrees_largest, deviation);
-      const Eigen::Vector3d wanted = ConstPixel(exact.pixel(i, j).data()).cast<double>();
-      result.quantisation_degrees_largest =
-          std::max(result.quantisation_degrees_largest, degrees_between(normal, wanted));
     }
   result.normal_deviation_degrees_mean = sum / static_cast<double>(raster.covered_texels);
+}
+
+Image<std::uint8_t> picture_of(const Image<std::uint8_t>& ways) {
+  Image<std::uint8_t> picture(ways.width(), ways.height(), 3);
+  for (int j = 0; j < ways.height(); ++j)
+    for (int i = 0; i < ways.width(); ++i)
+      std::copy_n(texel_way_colours[ways.at(i, j)].colour.begin(), 3, picture.pixel(i, j).begin());
+  return picture;
 }
 
 }  // namespace
@@ -102,10 +138,12 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
     throw std::invalid_argument("make_normals: an atlas mesh with normals and uvs is needed");
 
   // Texels.
-  const int size = settings.size > 0 ? settings.size : hints.size > 0 ? hints.size : default_size;
-  const UvRaster raster = rasterise_uvs(atlas, size, size);
+  const Extent size = settings.size.width > 0 ? settings.size
+                      : hints.width > 0       ? Extent(hints.width, hints.height)
+                                              : Extent(default_size);
+  const UvRaster raster = rasterise_uvs(atlas, size.width, size.height);
   if (raster.covered_texels == 0)
-    throw WrongUsage("the atlas covers no texel at --size " + std::to_string(size) + "; give a larger one");
+    throw WrongUsage("the atlas covers no texel at --size " + size.text() + "; give a larger one");
 
   // How far to look.
   NormalsResult result;
@@ -121,69 +159,57 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   }
   const MatchLimits limits{static_cast<float>(distance), static_cast<float>(surface_tolerance * diagonal)};
 
-  // A high point for each texel, in bands of rows so that progress can be told.
-  Image<float> normal_object(size, size, 3);
-  result.position = Image<float>(size, size, 3);
-  std::vector<RowSums> rows(static_cast<std::size_t>(size));
-  const auto match_row = [&](int j) {
-    RowSums& sums = rows[static_cast<std::size_t>(j)];
-    for (int i = 0; i < size; ++i) {
-      const TexelSource& source = raster.at(i, j);
-      if (!source.covered()) continue;
-      const Eigen::Vector3f low_point = interpolate(atlas, atlas.positions, source);
-      const Eigen::Vector3f low_normal = interpolate(atlas, atlas.normals, source).normalized();
-      const SurfaceMatch match = match_surface(high, scene, low_point, low_normal, limits);
-      const Eigen::Vector3f high_point = position_at(high, match.point);
-      Pixel(result.position.pixel(i, j).data()) = high_point;
-      Pixel(normal_object.pixel(i, j).data()) = normal_at(high, match.point);
-      ++sums.found[static_cast<std::size_t>(match.way)];
-      sums.disagreeing += match.agrees ? 0 : 1;
-      const double apart = (high_point - low_point).cast<double>().norm() / diagonal;
-      sums.distance += apart;
-      sums.largest_distance = std::max(sums.largest_distance, apart);
-    }
-  };
-  constexpr int band_rows = 32;
-  for (int begin = 0; begin < size; begin += band_rows) {
-    const int end = std::min(begin + band_rows, size);
-    tbb::parallel_for(begin, end, match_row);
-    progress(static_cast<double>(end) / size);
-  }
-
-  // Maps.
+  // A high point and normal for each texel.
+  const TexelMatches matches = match_texels(high, scene, atlas, raster, limits, settings.samples,
+                                            [&](double fraction) { progress(0.9 * fraction); });
   const std::vector<std::uint8_t> covered = coverage_of(raster);
+  result.position = matches.position;
   fill_gutters(result.position, covered);
+
+  // The map, and its seams.
   result.space = settings.space;
-  result.normal = encode_normals(normal_object, settings.space, atlas, raster);
-  result.coverage = Image<std::uint8_t>(size, size, 1);
+  Image<float> map = normal_map(matches.normal_object, settings.space, atlas, matches.known);
+  const Image<float> kept = map;
+  const Seams seams(atlas, size.width, size.height);
+  if (settings.seams == SeamChoice::equalise && !seams.edges().empty()) equalise(map, seams, covered, settings.space);
+  result.normal = quantise_normals(map);
+  result.coverage = Image<std::uint8_t>(size.width, size.height, 1);
   std::transform(covered.begin(), covered.end(), result.coverage.values().begin(),
                  [](std::uint8_t c) { return static_cast<std::uint8_t>(c != 0 ? 255 : 0); });
-
-  // Metrics.
-  RowSums total;
-  for (const RowSums& row : rows) {
-    for (std::size_t way = 0; way < total.found.size(); ++way) total.found[way] += row.found[way];
-    total.disagreeing += row.disagreeing;
-    total.distance += row.distance;
-    total.largest_distance = std::max(total.largest_distance, row.largest_distance);
-  }
-  result.covered_texels = raster.covered_texels;
-  const double texels = static_cast<double>(raster.covered_texels);
-  result.found_by_ray_outwards = static_cast<double>(total.found[static_cast<int>(MatchWay::ray_outwards)]) / texels;
-  result.found_by_ray_inwards = static_cast<double>(total.found[static_cast<int>(MatchWay::ray_inwards)]) / texels;
-  result.found_by_nearest_point = static_cast<double>(total.found[static_cast<int>(MatchWay::nearest_point)]) / texels;
-  result.disagreeing = static_cast<double>(total.disagreeing) / texels;
-  result.cage_distance = distance;
-  result.mean_distance = total.distance / texels;
-  result.largest_distance = total.largest_distance;
-  measure_normals(normal_object, atlas, raster, result);
+  result.match = picture_of(matches.way);
   result.seconds = stopwatch.seconds();
+  progress(1);
+
+  // Metrics, of what is written.
+  std::array<std::int64_t, texel_way_colours.size()> found{};
+  for (const std::uint8_t way : matches.way.values()) ++found[way];
+  result.covered_texels = raster.covered_texels;
+  const auto share = [&](TexelWay way) {
+    return static_cast<double>(found[static_cast<std::size_t>(way)]) / static_cast<double>(raster.covered_texels);
+  };
+  result.found_by_ray_outwards = share(TexelWay::ray_outwards);
+  result.found_by_ray_inwards = share(TexelWay::ray_inwards);
+  result.disagreeing = share(TexelWay::disagreeing);
+  result.found_by_nearest_point = share(TexelWay::nearest_point) + result.disagreeing;
+  result.cage_distance = distance;
+  result.mean_distance = matches.mean_distance / diagonal;
+  result.largest_distance = matches.largest_distance / diagonal;
+  const Image<float> shown = dequantise_normals(result.normal);
+  measure_deviation(decode_normals(result.normal, result.space, atlas, raster), atlas, raster, result);
+  result.quantisation_degrees_largest = angles_between(map, shown, raster).largest;
+  result.seam_edges = seams.edges().size();
+  result.seam_before = seams.mismatch_degrees(dequantise_normals(quantise_normals(kept)), settings.space);
+  result.seam_after = seams.mismatch_degrees(shown, settings.space);
+  result.seam_change_degrees_rms = angles_between(kept, map, raster).rms;
+  result.map_error = measure_map_error(high, atlas, shown, settings.space);
+  result.measuring_seconds = stopwatch.seconds() - result.seconds;
   return result;
 }
 
 Json NormalsResult::to_json() const {
   return {{"space", space == NormalSpace::object ? "object" : "tangent"},
-          {"size", normal.width()},
+          {"width", normal.width()},
+          {"height", normal.height()},
           {"covered_texels", covered_texels},
           {"found_by_ray_outwards", found_by_ray_outwards},
           {"found_by_ray_inwards", found_by_ray_inwards},
@@ -195,7 +221,17 @@ Json NormalsResult::to_json() const {
           {"largest_distance", largest_distance},
           {"normal_deviation_degrees_mean", normal_deviation_degrees_mean},
           {"normal_deviation_degrees_largest", normal_deviation_degrees_largest},
-          {"quantisation_degrees_largest", quantisation_degrees_largest}};
+          {"quantisation_degrees_largest", quantisation_degrees_largest},
+          {"map_error_degrees_mean", map_error.mean_degrees},
+          {"map_error_degrees_p95", map_error.percentile_95_degrees},
+          {"map_error_degrees_max", map_error.largest_degrees},
+          {"seam_edges", seam_edges},
+          {"seam_mismatch_degrees_mean_before", seam_before.mean},
+          {"seam_mismatch_degrees_max_before", seam_before.largest},
+          {"seam_mismatch_degrees_mean", seam_after.mean},
+          {"seam_mismatch_degrees_max", seam_after.largest},
+          {"seam_change_degrees_rms", seam_change_degrees_rms},
+          {"measuring_seconds", measuring_seconds}};
 }
 
 }  // namespace kiln

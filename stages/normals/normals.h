@@ -8,8 +8,10 @@
 #include "base/progress.h"
 #include "detail/asset_hints.h"
 #include "detail/detail_maps.h"
+#include "detail/seams.h"
 #include "image/image.h"
 #include "mesh/triangle_mesh.h"
+#include "normals/map_error.h"
 #include "normals/normals_settings.h"
 
 namespace kiln {
@@ -18,6 +20,7 @@ struct NormalsResult {
   Image<std::uint16_t> normal;   ///< as normal.png holds it: 3 channels, n * 0.5 + 0.5, gutters filled
   Image<float> position;         ///< object-space point of the high mesh, 3 channels, gutters filled
   Image<std::uint8_t> coverage;  ///< 255 where covered, else 0
+  Image<std::uint8_t> match;     ///< 3 channels: how each texel's point was found, a colour of texel_way_colours
 
   NormalSpace space = NormalSpace::object;
   std::int64_t covered_texels = 0;
@@ -31,16 +34,22 @@ struct NormalsResult {
   double largest_distance = 0;
   double normal_deviation_degrees_mean = 0;  ///< between the low mesh's normal and the map's
   double normal_deviation_degrees_largest = 0;
-  double quantisation_degrees_largest = 0;  ///< between the high mesh's normal and the map's, read back
+  double quantisation_degrees_largest = 0;  ///< between the map's normals and those read back
+  std::size_t seam_edges = 0;
+  double seam_change_degrees_rms = 0;  ///< by which equalising turned the covered texels that seams see
+  SeamMismatch seam_before;            ///< degrees; as kept
+  SeamMismatch seam_after;             ///< degrees; of what is written
+  MapError map_error;                  ///< over the high mesh, of what is written
   double seconds = 0;
+  double measuring_seconds = 0;  ///< for the metrics
 
   Json to_json() const;
 };
 
 /// For every texel of the atlas the point of the high mesh that it stands for (match_surface), and the high mesh's
 /// normal there. `high` has normals; `atlas` is atlas.drc decoded, with normals and uvs (throws std::invalid_argument
-/// otherwise). `hints` replace settings that are left automatic. Throws WrongUsage where the texture is too small for
-/// the atlas to cover a texel.
+/// otherwise). Progress is 1 when the maps are made, before they are measured. `hints` replace settings that are left
+/// automatic. Throws WrongUsage where the texture is too small for the atlas to cover a texel.
 NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, const NormalsSettings& settings,
                            const AssetHints& hints = {}, const ProgressFunction& progress = no_progress);
 

@@ -7,9 +7,13 @@ OptionSet normals_options(NormalsSettings& settings) {
   options.choice<NormalSpace>("space", settings.space,
                               {{"object", NormalSpace::object}, {"tangent", NormalSpace::tangent}},
                               "Space of normal.png; tangent is MikkTSpace's, green along +v");
-  options.integer(
+  options.extent(
       "size", settings.size, 0, 16384,
-      "Texels along each side of the maps; 0 is the size in atlas.json beside the atlas, or 512 without it");
+      "Width and height of the maps in texels; 0 is the size in atlas.json beside the atlas, or 512 without it");
+  options.choice<int>("samples", settings.samples, {{"1", 1}, {"4", 4}, {"16", 16}, {"64", 64}},
+                      "Points per texel that normals are averaged over");
+  options.choice<SeamChoice>("seams", settings.seams, {{"equalise", SeamChoice::equalise}, {"keep", SeamChoice::keep}},
+                             "Changes texels near seams so that lookups on both sides agree, or keeps them");
   options.number(
       "cage", settings.cage, 0, 1,
       "How far rays look for the high mesh, outwards and inwards, as a fraction of its bounding box's diagonal; "

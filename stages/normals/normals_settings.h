@@ -2,12 +2,15 @@
 
 #include "base/options.h"
 #include "detail/normal_space.h"
+#include "detail/seam_choice.h"
 
 namespace kiln {
 
 struct NormalsSettings {
   NormalSpace space = NormalSpace::object;  ///< of normal.png
-  int size = 0;                             ///< texels along each side of the maps; 0: the atlas stage's, or 512
+  Extent size;                              ///< of the maps, texels; 0: the atlas stage's, or 512
+  int samples = 1;                          ///< per texel: 1, 4, 16 or 64
+  SeamChoice seams = SeamChoice::equalise;
   double cage = 0;  ///< how far rays go each way, as a fraction of the high mesh's bounding box diagonal; 0: automatic
 };
 

@@ -133,7 +133,9 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
 
   // The high mesh, by rays from the same camera: that of the asset's own box.
   const Stopwatch reference_watch;
-  const TriangleMesh high = load_mesh(high_file);
+  MeshRepairSettings repair;  // as in the stages before
+  repair.fill_hole_edges = asset.record("simplify").value("settings", Json::object()).value("fill-holes", 0);
+  const TriangleMesh high = load_mesh(high_file, nullptr, repair);
   CameraSettings camera;
   camera.azimuth_degrees = settings.camera_azimuth_degrees;
   camera.elevation_degrees = settings.camera_elevation_degrees;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "detail/texel_way.h"
 #include "report/labels.h"
 #include "report/page_style.h"
 #include "report/page_tables.h"
@@ -157,6 +158,18 @@ std::string relit_section(const AssetFolder& asset, const Report& report, const 
   return html + "</section>\n";
 }
 
+/// Which texels found their point of the high mesh in which way, and which colour stands for it.
+std::string match_figure(const fs::path& file, const fs::path& scratch) {
+  std::string legend;
+  for (std::size_t way = 1; way < texel_way_colours.size(); ++way) {
+    const auto& [name, colour] = texel_way_colours[way];
+    legend += fmt::format("<span class=key><i style='background:rgb({},{},{})'></i>{}</span>", colour[0], colour[1],
+                          colour[2], name);
+  }
+  return figure(image(thumbnail(file, 8, texture_pixels), "How texels found their point", scratch),
+                "<b>Match</b> · how texels found their point of the high mesh: " + legend);
+}
+
 std::string textures_section(const AssetFolder& asset, const fs::path& scratch) {
   const Json& normals = asset.record("normals");
   const auto value = [](const Json& record, const char* key) {
@@ -173,6 +186,8 @@ std::string textures_section(const AssetFolder& asset, const fs::path& scratch) 
           "<b>Normal map</b> · {} space, gutters filled; {} found by rays outwards, {} inwards, {} by nearest point",
           value(normals, "space"), value(normals, "found_by_ray_outwards"), value(normals, "found_by_ray_inwards"),
           value(normals, "found_by_nearest_point")));
+  if (const fs::path match = asset.folder / "normals" / "match.png"; fs::exists(match))
+    html += match_figure(match, scratch);
   return html + "</div></section>\n";
 }
 

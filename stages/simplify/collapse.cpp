@@ -1,374 +1,443 @@
 #include "simplify/collapse.h"
 
-// clang-format off: CGAL's policies use names that the adapter's headers must have declared first.
-#include "mesh/openmesh_adapter.h"
-// clang-format on
-#include <CGAL/Surface_mesh_simplification/Edge_collapse_visitor_base.h>
-#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/GarlandHeckbert_plane_policies.h>
-#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/GarlandHeckbert_probabilistic_triangle_policies.h>
-#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/LindstromTurk.h>
-#include <CGAL/Surface_mesh_simplification/edge_collapse.h>
-#include <CGAL/property_map.h>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <boost/container/small_vector.hpp>
 #include <cmath>
-#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <tbb/parallel_for.h>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "mesh/nearest_surface.h"
+#include "simplify/collapsing_mesh.h"
+#include "simplify/lindstrom_turk.h"
+#include "simplify/quick_collapse.h"
+#include "simplify/triangle_shape.h"
 
 namespace kiln {
 
 namespace {
 
-namespace SMS = CGAL::Surface_mesh_simplification;
-using Point = HalfedgeKernel::Point_3;
-using Vector = HalfedgeKernel::Vector_3;
-using Vertex = HalfedgeMesh::VertexHandle;
-using Profile = SMS::Edge_profile<HalfedgeMesh, HalfedgePositions, HalfedgeKernel>;
-using Placement = boost::optional<Point>;
+using Vector = Eigen::Vector3d;
+template <class T>
+using Few = boost::container::small_vector<T, 32>;
 
-/// Collapses are computed in a frame where the bounding box is centred on the origin with a diagonal of 1: quadrics of
-/// far away or tiny objects lose their digits, and tolerances get a meaning.
-struct Frame {
-  Eigen::Vector3d centre;
-  double diagonal;
-
-  explicit Frame(const TriangleMesh& mesh) {
-    const BoundingBox box = bounding_box(mesh);
-    centre = box.centre().cast<double>();
-    diagonal = (box.highest - box.lowest).cast<double>().norm();
-  }
-  Eigen::Vector3d to_object(const Point& p) const { return centre + diagonal * Eigen::Vector3d(p.x(), p.y(), p.z()); }
-  HalfedgeMesh::Point from_object(const HalfedgeMesh::Point& p) const {
-    return (p - HalfedgeMesh::Point(centre.x(), centre.y(), centre.z())) / diagonal;
-  }
-};
-
-/// How far from the surface that it stands for a triangle may be, and how slender. Neither cost forbids a few needles
-/// that cut through the surface; refusing them makes the largest error half as large, at the same mean. Where the
-/// limits leave nothing to collapse, the next pass has wider ones.
+/// How far from the surface that it stands for a triangle may be, and how slender. The cost does not forbid a few
+/// needles that cut through the surface; refusing them makes the largest error half as large, at the same mean. Where
+/// the limits leave nothing to collapse, the next pass has wider ones.
 struct Limits {
   double distance;     ///< from a triangle's middle to the input's surface, in edges of a triangle of mean area
   double slenderness;  ///< height over the longest edge; a triangle that was worse may stay as bad
-  double border;       ///< farthest that a vertex of the input's border may be from it, in the same edges
-  double facing;       ///< smallest cosine between a triangle's normal and that of the input where it is nearest
+  double line;    ///< farthest that a vertex of the input's borders and creases may be from them, in the same edges
+  double facing;  ///< smallest cosine between a triangle's normal and that of the input where it is nearest
 };
 constexpr double unlimited = 1e30;
 constexpr Limits passes[] = {{0.15, 0.05, 0.05, 0.1}, {0.15, 0.05, 0.15, 0.1},      {0.3, 0.02, 0.3, 0.1},
                              {0.6, 0, 0.6, 0},        {unlimited, 0, unlimited, 0}, {unlimited, 0, unlimited, -1}};
 
-/// A collapse may turn a triangle by 78 degrees at most: far from folding it over, and what it takes to cut a corner.
-constexpr double smallest_turn_cosine = 0.2;
+/// What triangles are compared with has no more than these, or those where the comparison begins: a hierarchy of a
+/// large input would take longer than the collapses.
+constexpr int most_compared_faces = 60'000;
 
-/// Positions in the file are rounded by half of 1/65,535 of the box's longest side in each axis, in the worst case
-/// sqrt(3) / 2 of that in one direction. A triangle whose heights are this many steps keeps its winding whatever is
-/// rounded.
-constexpr double smallest_height_steps = 4;
-constexpr double smallest_height = smallest_height_steps / 65535;  // of the diagonal, which is longer than any side
-
-/// What is noted and known while CGAL collapses; its policies are copied, so they refer to it.
-struct State {
-  std::vector<Collapse>& collapses;
-  const Frame& frame;
-  const NearestSurface& input;
-  const ProgressFunction& progress;
-  double area;  ///< of the input, in the frame
-  int start_faces;
-  int target_faces;
-  int faces;
-  std::vector<std::vector<Point>> border_points;  ///< by vertex on the border: those of the border that became it
-  Limits limits = passes[0];
-  int events = 0;
-
-  /// Collecting the edges takes about a fifth of the time.
-  void report(double fraction) {
-    if (++events % 1024 == 0) progress(fraction);
-  }
-  /// The edge of an equilateral triangle of mean area, in the frame.
-  double mean_edge() const { return std::sqrt(area / faces * 4 / std::sqrt(3.0)); }
-};
-
-Vector normal_of(const Point& a, const Point& b, const Point& c) { return CGAL::cross_product(b - a, c - a); }
-
-double longest_squared_edge(const Point& a, const Point& b, const Point& c) {
-  return std::max({CGAL::squared_distance(a, b), CGAL::squared_distance(b, c), CGAL::squared_distance(c, a)});
+std::vector<VertexWeight> to_vertex_weights(const TriangleMesh& mesh, std::span<const double> weights) {
+  if (weights.empty()) return {};
+  if (weights.size() != mesh.positions.size())
+    throw std::invalid_argument("collapse_edges: as many weights as vertices expected");
+  std::vector<VertexWeight> result(weights.size());
+  for (std::size_t i = 0; i < weights.size(); ++i) result[i].sum = weights[i];
+  return result;
 }
 
-/// Refuses a collapse where one of the triangles that it moves would fold over, or exceed the limits.
-struct KeepsTriangles {
-  const State* state;
+double squared_distance_to_segment(const Vector& p, const Vector& a, const Vector& b) {
+  const Vector along = b - a;
+  const double squared = along.squaredNorm();
+  const double at = squared > 0 ? std::clamp((p - a).dot(along) / squared, 0.0, 1.0) : 0;
+  return (p - a - at * along).squaredNorm();
+}
 
-  Placement operator()(const Profile& profile, const Placement& placement) const {
-    if (!placement || !is_close(*placement) || !keeps_border(profile, *placement)) return {};
-    const auto& triangles = profile.triangles();
-    const std::size_t vanishing = std::size_t{profile.left_face_exists()} + std::size_t{profile.right_face_exists()};
-    for (std::size_t i = vanishing; i < triangles.size(); ++i) {
-      const auto point = [&](Vertex vertex) { return get(profile.vertex_point_map(), vertex); };
-      // The second corner is the one that moves.
-      const Point a = point(triangles[i].v0), b = point(triangles[i].v1), c = point(triangles[i].v2);
-      if (!keeps_shape(a, b, *placement, c) || !keeps_place(a, *placement, c)) return {};
-    }
-    return placement;
+class Collapser {
+ public:
+  Collapser(CollapseSequence& sequence, std::span<const VertexPair> lines, std::vector<VertexWeight> weights,
+            const CollapseSettings& settings, const TriangleMesh& compared, const ProgressFunction& progress)
+      : sequence_(sequence),
+        settings_(settings),
+        progress_(progress),
+        frame_(sequence.start),
+        mesh_(sequence.start, lines),
+        weights_(std::move(weights)),
+        compared_(compared),
+        area_(surface_area(sequence.start) / (frame_.diagonal * frame_.diagonal)),
+        start_faces_(mesh_.faces()) {
+    const std::size_t vertices = sequence.start.positions.size();
+    positions_.resize(vertices);
+    planes_.resize(mesh_.triangles().size());
+    tbb::parallel_for(std::size_t{0}, vertices,
+                      [&](std::size_t i) { positions_[i] = frame_.from_object(sequence.start.positions[i]); });
+    tbb::parallel_for(std::size_t{0}, planes_.size(),
+                      [&](std::size_t i) { update_plane(static_cast<std::uint32_t>(i)); });
+    versions_.resize(vertices, 0);
+    if (!lines.empty()) line_points_.resize(vertices);
+    hints_.resize(vertices, 0);
   }
 
- private:
-  /// Triangle a, b, c against a, moved, c.
-  bool keeps_shape(const Point& a, const Point& b, const Point& moved, const Point& c) const {
-    const Vector before = normal_of(a, b, c), after = normal_of(a, moved, c);
-    const double before_squared = before.squared_length(), after_squared = after.squared_length();
-    const double cosine_part = before * after;
-    const double smallest = smallest_turn_cosine * smallest_turn_cosine * before_squared * after_squared;
-    if (!(cosine_part > 0) || cosine_part * cosine_part < smallest) return false;
-
-    // A scan's triangles may be thinner from the start; then it is enough not to get worse.
-    const double before_edge = longest_squared_edge(a, b, c), after_edge = longest_squared_edge(a, moved, c);
-    const double before_height = before_squared / before_edge, after_height = after_squared / after_edge;
-    if (after_height < std::min(smallest_height * smallest_height, before_height)) return false;
-    const double slenderness = state->limits.slenderness;
-    return after_height / after_edge >= std::min(slenderness * slenderness, before_height / before_edge);
-  }
-
-  /// Whether the vertices that the border once had stay close to it, from the edge before the one that is collapsed to
-  /// the edge after it.
-  bool keeps_border(const Profile& profile, const Point& placement) const {
-    if (!profile.is_v0_v1_a_border() && !profile.is_v1_v0_a_border()) return true;
-    const HalfedgeMesh& mesh = profile.surface_mesh();
-    const HalfedgeMesh::HalfedgeHandle edge = profile.is_v0_v1_a_border() ? profile.v0_v1() : profile.v1_v0();
-    const HalfedgeMesh::HalfedgeHandle before = mesh.prev_halfedge_handle(edge),
-                                       after = mesh.next_halfedge_handle(edge);
-    const std::array<Vertex, 4> corners = {mesh.from_vertex_handle(before), mesh.from_vertex_handle(edge),
-                                           mesh.to_vertex_handle(edge), mesh.to_vertex_handle(after)};
-    const auto point = [&](Vertex vertex) { return get(profile.vertex_point_map(), vertex); };
-    const std::array<Point, 5> now = {point(mesh.from_vertex_handle(mesh.prev_halfedge_handle(before))),
-                                      point(corners[0]), placement, point(corners[3]),
-                                      point(mesh.to_vertex_handle(mesh.next_halfedge_handle(after)))};
-    const double limit = std::pow(state->limits.border * state->mean_edge(), 2);
-    const auto is_kept = [&](const Point& once) {
-      for (std::size_t i = 0; i + 1 < now.size(); ++i)
-        if (CGAL::squared_distance(once, HalfedgeKernel::Segment_3(now[i], now[i + 1])) <= limit) return true;
-      return false;
-    };
-    if (!is_kept(profile.p0()) || !is_kept(profile.p1())) return false;
-    return std::all_of(corners.begin(), corners.end(), [&](Vertex corner) {
-      const std::vector<Point>& points = state->border_points[corner.idx()];
-      return std::all_of(points.begin(), points.end(), is_kept);
-    });
-  }
-
-  /// Triangle a, b, c against the input.
-  bool keeps_place(const Point& a, const Point& b, const Point& c) const {
-    const Point middle = CGAL::centroid(a, b, c);
-    const NearestSurface::Hit hit = state->input.nearest(state->frame.to_object(middle));
-    const Vector normal = normal_of(a, b, c);
-    const double cosine =
-        state->input.normal(hit).dot(Eigen::Vector3d(normal.x(), normal.y(), normal.z()).normalized());
-    if (cosine < state->limits.facing) return false;
-    return is_close(middle, hit);
-  }
-
-  bool is_close(const Point& point) const {
-    return is_close(point, state->input.nearest(state->frame.to_object(point)));
-  }
-  bool is_close(const Point& point, const NearestSurface::Hit& hit) const {
-    const double distance = (state->frame.to_object(point) - hit.point).norm() / state->frame.diagonal;
-    return distance <= state->limits.distance * state->mean_edge();
-  }
-};
-
-/// Placement by `Policy`, except that borders stay where they are and that wild solutions of ill-conditioned systems
-/// are replaced by the best point of the edge.
-template <class GetPlacement, class GetCost>
-struct TamePlacement {
-  GetPlacement get_placement;
-  GetCost get_cost;
-
-  Placement operator()(const Profile& profile) const {
-    const HalfedgeMesh& mesh = profile.surface_mesh();
-    const bool on_border = profile.is_v0_v1_a_border() || profile.is_v1_v0_a_border();
-    if (!on_border && !profile.border_edges().empty()) {
-      // An edge that leads from the border inwards: its end on the border stays.
-      if (mesh.is_boundary(profile.v0())) return profile.p0();
-      if (mesh.is_boundary(profile.v1())) return profile.p1();
-    }
-    const Placement placement = get_placement(profile);
-    if (placement && is_near(profile, *placement)) return placement;
-    return best_on_edge(profile);
-  }
-
- private:
-  /// Within twice the radius of the neighbourhood; a NaN is near nothing.
-  static bool is_near(const Profile& profile, const Point& placement) {
-    const Point middle = CGAL::midpoint(profile.p0(), profile.p1());
-    double radius_squared = 0;
-    for (Vertex vertex : profile.link())
-      radius_squared =
-          std::max(radius_squared, CGAL::squared_distance(middle, get(profile.vertex_point_map(), vertex)));
-    return CGAL::squared_distance(middle, placement) < 4 * radius_squared;
-  }
-
-  Placement best_on_edge(const Profile& profile) const {
-    Placement best;
-    double best_cost = std::numeric_limits<double>::infinity();
-    for (const Point& candidate : {profile.p0(), profile.p1(), CGAL::midpoint(profile.p0(), profile.p1())}) {
-      const boost::optional<double> cost = get_cost(profile, Placement(candidate));
-      if (cost && *cost < best_cost) {
-        best = candidate;
-        best_cost = *cost;
+  void run() {
+    for (const Limits& limits : passes) {
+      limits_ = limits;
+      // Edges that were refused get another chance as long as the others went far.
+      for (int before = 0; mesh_.faces() > settings_.faces;) {
+        before = mesh_.faces();
+        run_pass();
+        if (before - mesh_.faces() <= before / 100) break;
       }
+    }
+  }
+
+ private:
+  struct Candidate {
+    double cost;
+    std::uint32_t a, b;
+    std::uint32_t version;  ///< of both ends together
+
+    bool operator<(const Candidate& other) const {  // the heap has the greatest first
+      return std::tie(cost, a, b) > std::tie(other.cost, other.a, other.b);
+    }
+  };
+  struct Evaluation {
+    double cost = std::numeric_limits<double>::infinity();
+    Vector position = Vector::Zero();
+  };
+
+  void update_plane(std::uint32_t triangle) {
+    const Triangle& t = mesh_.triangles()[triangle];
+    planes_[triangle] = TrianglePlane(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
+  }
+
+  /// The edge of an equilateral triangle of mean area, in the frame.
+  double mean_edge() const { return std::sqrt(area_ / mesh_.faces() * 4 / std::sqrt(3.0)); }
+
+  bool is_line(std::uint32_t a, std::uint32_t b) const {
+    for (std::uint32_t triangle : mesh_.triangles_of(a)) {
+      const Triangle& t = mesh_.triangles()[triangle];
+      for (int k = 0; k < 3; ++k)
+        if (mesh_.is_line(triangle, k) && std::minmax(t[k], t[(k + 1) % 3]) == std::minmax(a, b)) return true;
+    }
+    return false;
+  }
+
+  /// Calls visit(triangle, corners) for those at either end but not on the edge; the ends are 'a' there.
+  template <class Visit>
+  void for_each_moved(std::uint32_t a, std::uint32_t b, const Visit& visit) const {
+    for (const auto& [end, other] : {std::pair(a, b), std::pair(b, a)})
+      for (std::uint32_t triangle : mesh_.triangles_of(end)) {
+        const Triangle& t = mesh_.triangles()[triangle];
+        if (t[0] != other && t[1] != other && t[2] != other) visit(triangle, t, end);
+      }
+  }
+
+  // Where the edge's vertex would go, and the cost of it.
+
+  Evaluation evaluate(std::uint32_t a, std::uint32_t b) const {
+    const int lines_a = mesh_.lines_at(a), lines_b = mesh_.lines_at(b);
+    const bool line = lines_a > 0 && lines_b > 0;
+    if (line && ((lines_a != 2 && lines_b != 2) || !is_line(a, b))) return {};
+
+    Few<TrianglePlane> planes;
+    for (std::uint32_t triangle : mesh_.triangles_of(a)) planes.push_back(planes_[triangle]);
+    for (std::uint32_t triangle : mesh_.triangles_of(b)) {
+      const Triangle& t = mesh_.triangles()[triangle];
+      if (t[0] != a && t[1] != a && t[2] != a) planes.push_back(planes_[triangle]);
+    }
+    Few<LineEdge> lines;
+    if (line) collect_lines(a, b, lines);
+    const Vector &pa = positions_[a], &pb = positions_[b];
+    const EdgeSurroundings surroundings{
+        {planes.data(), planes.size()}, {lines.data(), lines.size()}, (pb - pa).squaredNorm()};
+    const double weight = weights_.empty() ? 1 : 0.5 * (weights_[a].mean() + weights_[b].mean());
+    const auto at = [&](const Vector& position) {
+      return Evaluation{weight * lindstrom_turk_cost(surroundings, position), position};
+    };
+    // Lines' ends and branches stay, and what leads from a line to elsewhere ends on the line.
+    if (lines_a > 0 && (lines_b == 0 || lines_a != 2)) return at(pa);
+    if (lines_b > 0 && (lines_a == 0 || lines_b != 2)) return at(pb);
+
+    const std::optional<Vector> placement =
+        lindstrom_turk_placement(surroundings, [&] { return middle_of_link(a, b); });
+    if (placement && is_near(a, b, *placement, surroundings.squared_length)) return at(*placement);
+    // A wild solution of an ill-conditioned system.
+    Evaluation best;
+    for (const Vector& position : {pa, pb, Vector((pa + pb) / 2)}) {
+      const Evaluation evaluation = at(position);
+      if (evaluation.cost < best.cost) best = evaluation;
     }
     return best;
   }
-};
 
-struct EnoughCollapsed {
-  State* state;
-  template <class... Ignored>
-  bool operator()(const Ignored&...) const {
-    return state->faces <= state->target_faces;
-  }
-};
-
-struct LoggingVisitor : SMS::Edge_collapse_visitor_base<HalfedgeMesh, HalfedgePositions, HalfedgeKernel> {
-  using Profile = kiln::Profile;
-  State* state;
-  explicit LoggingVisitor(State* noted) : state(noted) {}
-
-  template <class Cost>
-  void OnCollected(const Profile&, const Cost&) const {
-    state->report(0.2 * std::min(1.0, state->events / (1.5 * state->start_faces)));
-  }
-  template <class Cost, class Size>
-  void OnSelected(const Profile&, const Cost&, Size, Size) const {
-    state->report(0.2 +
-                  0.8 * (state->start_faces - state->faces) / std::max(1, state->start_faces - state->target_faces));
-  }
-  void OnCollapsed(const Profile& profile, Vertex kept) const {
-    note_border(profile, kept);
-    state->faces -= int{profile.left_face_exists()} + int{profile.right_face_exists()};
-    const Vertex removed = kept == profile.v0() ? profile.v1() : profile.v0();
-    state->collapses.push_back({static_cast<std::uint32_t>(removed.idx()), static_cast<std::uint32_t>(kept.idx()),
-                                state->faces,
-                                state->frame.to_object(get(profile.vertex_point_map(), kept)).cast<float>()});
-  }
-
- private:
-  void note_border(const Profile& profile, Vertex kept) const {
-    std::vector<Point>& points = state->border_points[kept.idx()];
-    std::vector<Point>& removed = state->border_points[(kept == profile.v0() ? profile.v1() : profile.v0()).idx()];
-    points.insert(points.end(), removed.begin(), removed.end());
-    removed.clear();
-    if (profile.is_v0_v1_a_border() || profile.is_v1_v0_a_border()) {
-      points.push_back(profile.p0());
-      points.push_back(profile.p1());
+  void collect_lines(std::uint32_t a, std::uint32_t b, Few<LineEdge>& lines) const {
+    std::vector<std::uint32_t> neighbours;
+    lines.push_back({positions_[a], positions_[b]});
+    for (const auto& [end, other] : {std::pair(a, b), std::pair(b, a)}) {
+      mesh_.line_neighbours(end, neighbours);
+      // Along the line, whichever end comes first; what matters is that the directions agree.
+      for (std::uint32_t next : neighbours)
+        if (next != other)
+          lines.push_back(end == a ? LineEdge{positions_[next], positions_[a]}
+                                   : LineEdge{positions_[b], positions_[next]});
     }
   }
-};
 
-template <class GetCost, class GetPlacement>
-void run(HalfedgeMesh& mesh, State& state, const GetCost& get_cost, const GetPlacement& get_placement) {
-  SMS::edge_collapse(mesh, EnoughCollapsed{&state},
-                     CGAL::parameters::vertex_point_map(HalfedgePositions{&mesh})
-                         .geom_traits(HalfedgeKernel())
-                         .get_cost(get_cost)
-                         .get_placement(TamePlacement<GetPlacement, GetCost>{get_placement, get_cost})
-                         .filter(KeepsTriangles{&state})
-                         .visitor(LoggingVisitor(&state)));
-}
+  Vector middle_of_link(std::uint32_t a, std::uint32_t b) const {
+    Few<std::uint32_t> link;
+    for (const std::uint32_t end : {a, b})
+      for (std::uint32_t triangle : mesh_.triangles_of(end))
+        for (std::uint32_t vertex : mesh_.triangles()[triangle])
+          if (vertex != a && vertex != b && std::find(link.begin(), link.end(), vertex) == link.end())
+            link.push_back(vertex);
+    Vector sum = Vector::Zero();
+    for (std::uint32_t vertex : link) sum += positions_[vertex];
+    return sum / static_cast<double>(link.size());
+  }
 
-struct MeanSizes {
-  double edge = 0;
-  double squared_double_area = 0;
-};
+  /// Within twice the radius of the neighbourhood; a NaN is near nothing.
+  bool is_near(std::uint32_t a, std::uint32_t b, const Vector& position, double squared_length) const {
+    const Vector middle = (positions_[a] + positions_[b]) / 2;
+    const double squared = (position - middle).squaredNorm();
+    if (squared < squared_length) return true;
+    double radius_squared = 0;
+    for_each_moved(a, b, [&](std::uint32_t, const Triangle& t, std::uint32_t) {
+      for (std::uint32_t vertex : t)
+        radius_squared = std::max(radius_squared, (positions_[vertex] - middle).squaredNorm());
+    });
+    return squared < 4 * radius_squared;
+  }
 
-MeanSizes mean_sizes(const HalfedgeMesh& mesh) {
-  MeanSizes mean;
-  for (const auto edge : mesh.edges()) mean.edge += mesh.calc_edge_length(edge);
-  for (const auto face : mesh.faces()) mean.squared_double_area += 4 * std::pow(mesh.calc_face_area(face), 2);
-  mean.edge /= static_cast<double>(mesh.n_edges());
-  mean.squared_double_area /= static_cast<double>(mesh.n_faces());
-  return mean;
-}
+  // Whether a collapse may be.
 
-void run(HalfedgeMesh& mesh, State& state, CollapseCost cost) {
-  using LindstromTurkCost = SMS::LindstromTurk_cost<HalfedgeMesh>;
-  using LindstromTurkPlacement = SMS::LindstromTurk_placement<HalfedgeMesh>;
-  using PlanePolicies = SMS::GarlandHeckbert_plane_policies<HalfedgeMesh, HalfedgeKernel>;
-  using TrianglePolicies = SMS::GarlandHeckbert_probabilistic_triangle_policies<HalfedgeMesh, HalfedgeKernel>;
-  constexpr double border_weight = 100;  // CGAL's: of a border edge's plane against a face's
-  switch (cost) {
-    case CollapseCost::lindstrom_turk:
-      return run(mesh, state, LindstromTurkCost(), LindstromTurkPlacement());
-    case CollapseCost::plane: {
-      const PlanePolicies policies(mesh, border_weight);
-      return run(mesh, state, policies.get_cost(), policies.get_placement());
+  bool is_allowed(std::uint32_t a, std::uint32_t b, const Vector& position) {
+    bool kept = true;
+    for_each_moved(a, b, [&](std::uint32_t, const Triangle& t, std::uint32_t moving) {
+      if (!kept) return;
+      std::array<Vector, 3> before, after;
+      for (int k = 0; k < 3; ++k) {
+        before[k] = positions_[t[k]];
+        after[k] = t[k] == moving ? position : before[k];
+      }
+      kept = keeps_shape({before[0], before[1], before[2]}, {after[0], after[1], after[2]}, limits_.slenderness);
+    });
+    if (!kept) return false;
+    const CollapsingMesh::Edge edge = mesh_.edge(a, b);
+    if (!edge.keeps_topology) return false;
+    if (edge.line && !keeps_line(a, b, position)) return false;
+    if (!surface_ || limits_.facing < 0) return true;
+    if (!is_close(position, a)) return false;
+    for_each_moved(a, b, [&](std::uint32_t, const Triangle& t, std::uint32_t moving) {
+      if (!kept) return;
+      std::array<Vector, 3> after;
+      for (int k = 0; k < 3; ++k) after[k] = t[k] == moving ? position : positions_[t[k]];
+      kept = keeps_place(after, moving);
+    });
+    return kept;
+  }
+
+  /// Whether the vertices that the line once had stay close to it, from the edge before the one that is collapsed to
+  /// the edge after it.
+  bool keeps_line(std::uint32_t a, std::uint32_t b, const Vector& position) const {
+    std::vector<std::uint32_t> neighbours;
+    const auto next_of = [&](std::uint32_t vertex, std::uint32_t from) {
+      if (mesh_.lines_at(vertex) != 2) return vertex;
+      mesh_.line_neighbours(vertex, neighbours);
+      for (std::uint32_t next : neighbours)
+        if (next != from) return next;
+      return vertex;
+    };
+    const std::uint32_t before = next_of(a, b), after = next_of(b, a);
+    const std::array<Vector, 5> now = {positions_[next_of(before, a)], positions_[before], position, positions_[after],
+                                       positions_[next_of(after, b)]};
+    const double limit = std::pow(limits_.line * mean_edge(), 2);
+    const auto is_kept = [&](const Vector& once) {
+      for (std::size_t i = 0; i + 1 < now.size(); ++i)
+        if (squared_distance_to_segment(once, now[i], now[i + 1]) <= limit) return true;
+      return false;
+    };
+    for (std::uint32_t vertex : {before, a, b, after}) {
+      if (mesh_.lines_at(vertex) != 2) continue;
+      const std::vector<Vector>& points = line_points_[vertex];
+      if (!is_kept(positions_[vertex]) || !std::all_of(points.begin(), points.end(), is_kept)) return false;
     }
-    case CollapseCost::probabilistic_triangle: {
-      // A triangle's quadric carries the square of twice its area, a border edge's does not. The corners' standard
-      // deviation is 1 % of an edge: the paper's 5 % rounds a cube's corners off.
-      const MeanSizes mean = mean_sizes(mesh);
-      const double variance = std::pow(0.01 * mean.edge, 2);
-      const CGAL::Constant_property_map<HalfedgeMesh::FaceHandle, double> variances(variance);
-      const TrianglePolicies policies(mesh, border_weight * mean.squared_double_area, variances);
-      return run(mesh, state, policies.get_cost(), policies.get_placement());
+    return true;
+  }
+
+  bool keeps_place(const std::array<Vector, 3>& corners, std::uint32_t moving) {
+    const Vector middle = (corners[0] + corners[1] + corners[2]) / 3;
+    const NearestSurface::Hit hit = surface_->nearest(frame_.to_object(middle), hints_[moving]);
+    hints_[moving] = hit.hint;
+    const Vector normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    if (surface_->normal(hit).dot(normal) < smallest_facing() * normal.norm()) return false;
+    return is_close(hit);
+  }
+  /// A surface that is simplified itself faces a little elsewhere than the input.
+  double smallest_facing() const { return &compared_ == &sequence_.start ? limits_.facing : limits_.facing + 0.25; }
+  bool is_close(const Vector& position, std::uint32_t moving) {
+    return is_close(surface_->nearest(frame_.to_object(position), hints_[moving]));
+  }
+  bool is_close(const NearestSurface::Hit& hit) const {
+    const double limit = limits_.distance * mean_edge() * frame_.diagonal;
+    return hit.squared_distance <= limit * limit;
+  }
+
+  // Passes.
+
+  void run_pass() {
+    std::vector<Candidate> heap;
+    for (std::uint32_t i = 0; i < mesh_.triangles().size(); ++i) {
+      const Triangle& t = mesh_.triangles()[i];
+      if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;  // it went with an edge
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+        if (a < b || mesh_.is_line(i, k)) heap.push_back({0, std::min(a, b), std::max(a, b), 0});
+      }
+    }
+    constexpr std::size_t chunk = 4096;
+    for (std::size_t begin = 0; begin < heap.size(); begin += 64 * chunk) {
+      const std::size_t end = std::min(heap.size(), begin + 64 * chunk);
+      tbb::parallel_for(std::size_t{0}, (end - begin + chunk - 1) / chunk, [&](std::size_t c) {
+        for (std::size_t i = begin + c * chunk; i < std::min(end, begin + (c + 1) * chunk); ++i)
+          heap[i] = candidate(heap[i].a, heap[i].b);
+      });
+      report();
+    }
+    std::erase_if(heap, [](const Candidate& c) { return !(c.cost < std::numeric_limits<double>::infinity()); });
+    std::make_heap(heap.begin(), heap.end());
+
+    const auto push = [&](const Candidate& c) {
+      if (!(c.cost < std::numeric_limits<double>::infinity())) return;
+      heap.push_back(c);
+      std::push_heap(heap.begin(), heap.end());
+    };
+    Few<std::uint32_t> neighbours;
+    while (!heap.empty() && mesh_.faces() > settings_.faces) {
+      std::pop_heap(heap.begin(), heap.end());
+      const Candidate next = heap.back();
+      heap.pop_back();
+      if (mesh_.is_removed(next.a) || mesh_.is_removed(next.b) || next.version != version(next.a, next.b)) continue;
+      // What is around it may have changed since.
+      const Evaluation now = evaluate(next.a, next.b);
+      if (now.cost > next.cost * (1 + 1e-9) && !heap.empty() && now.cost > heap.front().cost) {
+        push({now.cost, next.a, next.b, next.version});
+        continue;
+      }
+      compare_from_here();
+      if (!is_allowed(next.a, next.b, now.position)) continue;
+      const std::uint32_t kept = collapse(next.a, next.b, now.position);
+      neighbours.clear();
+      for (std::uint32_t triangle : mesh_.triangles_of(kept))
+        for (std::uint32_t vertex : mesh_.triangles()[triangle])
+          if (vertex != kept && std::find(neighbours.begin(), neighbours.end(), vertex) == neighbours.end())
+            neighbours.push_back(vertex);
+      for (std::uint32_t vertex : neighbours) push(candidate(std::min(kept, vertex), std::max(kept, vertex)));
     }
   }
-}
+
+  std::uint32_t version(std::uint32_t a, std::uint32_t b) const { return versions_[a] + versions_[b]; }
+  Candidate candidate(std::uint32_t a, std::uint32_t b) const { return {evaluate(a, b).cost, a, b, version(a, b)}; }
+
+  std::uint32_t collapse(std::uint32_t a, std::uint32_t b, const Vector& position) {
+    // The one with more triangles stays, as that moves less; a line's end or branch stays anyway.
+    const int lines_a = mesh_.lines_at(a), lines_b = mesh_.lines_at(b);
+    const bool keep_a = lines_a != lines_b && (lines_a > 0) != (lines_b > 0) ? lines_a > 0
+                        : (lines_a > 0 && lines_a != lines_b)
+                            ? lines_a != 2
+                            : mesh_.triangles_of(a).size() >= mesh_.triangles_of(b).size();
+    const std::uint32_t kept = keep_a ? a : b, removed = keep_a ? b : a;
+    if (lines_a > 0 && lines_b > 0) {
+      std::vector<Vector>&points = line_points_[kept], &more = line_points_[removed];
+      points.insert(points.end(), more.begin(), more.end());
+      points.push_back(positions_[a]);
+      points.push_back(positions_[b]);
+      more = {};
+    }
+    mesh_.collapse(removed, kept);
+    positions_[kept] = position;
+    ++versions_[kept];
+    for (std::uint32_t triangle : mesh_.triangles_of(kept)) update_plane(triangle);
+    if (!weights_.empty()) weights_[kept] += weights_[removed];
+    sequence_.collapses.push_back({removed, kept, mesh_.faces(), frame_.to_object(position).cast<float>()});
+    if (++events_ % 1024 == 0) report();
+    return kept;
+  }
+
+  void report() { progress_(0.2 + 0.8 * (start_faces_ - mesh_.faces()) / std::max(1, start_faces_ - settings_.faces)); }
+
+  void compare_from_here() {
+    if (!surface_ && mesh_.faces() <= settings_.compared_faces) surface_.emplace(compared_);
+  }
+
+  CollapseSequence& sequence_;
+  const CollapseSettings& settings_;
+  const ProgressFunction& progress_;
+  UnitFrame frame_;
+  CollapsingMesh mesh_;
+  std::vector<VertexWeight> weights_;
+  const TriangleMesh& compared_;  ///< the input or, of many triangles, what it was made of fewer
+  double area_;                   ///< of the start, in the frame
+  int start_faces_;
+  std::vector<Vector> positions_;  ///< in the frame
+  std::vector<TrianglePlane> planes_;
+  std::vector<std::uint32_t> versions_;
+  std::vector<std::vector<Vector>> line_points_;  ///< by vertex in a line: those that became it
+  std::vector<std::uint32_t> hints_;
+  std::optional<NearestSurface> surface_;
+  Limits limits_ = passes[0];
+  int events_ = 0;
+};
 
 }  // namespace
 
-// The vertices and triangles that are left keep their order.
-TriangleMesh CollapseSequence::after(std::size_t count) const {
-  std::vector<Eigen::Vector3f> positions = start.positions;
-  std::vector<std::uint32_t> became(positions.size());
-  for (std::uint32_t i = 0; i < became.size(); ++i) became[i] = i;
-  for (std::size_t i = 0; i < count; ++i) {
-    became[collapses[i].removed] = collapses[i].kept;
-    positions[collapses[i].kept] = collapses[i].position;
-  }
-  // A vertex may have gone through several others.
-  const auto now = [&](std::uint32_t vertex) {
-    std::uint32_t last = vertex;
-    while (became[last] != last) last = became[last];
-    while (became[vertex] != last) vertex = std::exchange(became[vertex], last);
-    return last;
-  };
-  TriangleMesh mesh;
-  std::vector<std::uint32_t> new_index(positions.size(), 0);
-  for (const Triangle& triangle : start.triangles) {
-    const Triangle left = {now(triangle[0]), now(triangle[1]), now(triangle[2])};
-    if (left[0] == left[1] || left[1] == left[2] || left[2] == left[0]) continue;
-    for (std::uint32_t vertex : left) new_index[vertex] = 1;
-    mesh.triangles.push_back(left);
-  }
-  for (std::uint32_t i = 0; i < new_index.size(); ++i) {
-    if (new_index[i] == 0) continue;
-    new_index[i] = static_cast<std::uint32_t>(mesh.positions.size());
-    mesh.positions.push_back(positions[i]);
-  }
-  for (Triangle& triangle : mesh.triangles)
-    for (std::uint32_t& vertex : triangle) vertex = new_index[vertex];
-  return mesh;
+CollapseSequence collapse_edges(TriangleMesh mesh, const CollapseSettings& settings, const ProgressFunction& progress) {
+  return collapse_edges_in_two_steps(std::move(mesh), std::numeric_limits<int>::max(), settings, progress);
 }
 
-CollapseSequence collapse_edges(TriangleMesh mesh, CollapseCost cost, int faces, const ProgressFunction& progress) {
-  CollapseSequence sequence;
-  sequence.start = std::move(mesh);
-  const int start_faces = static_cast<int>(sequence.start.triangles.size());
-  if (start_faces <= faces) return sequence;
-  const Frame frame(sequence.start);
-  HalfedgeMesh halfedges = to_halfedges(sequence.start);
-  for (const auto vertex : halfedges.vertices())
-    halfedges.set_point(vertex, frame.from_object(halfedges.point(vertex)));
-  const NearestSurface input(sequence.start);
-  const double area = surface_area(sequence.start) / (frame.diagonal * frame.diagonal);
-  State state{sequence.collapses, frame, input, progress, area, start_faces, faces, start_faces, {}};
-  state.border_points.resize(halfedges.n_vertices());
-  for (const Limits& limits : passes) {
-    state.limits = limits;
-    if (state.faces > faces) run(halfedges, state, cost);
+CollapseSequence collapse_edges_in_two_steps(TriangleMesh mesh, int quick_faces, const CollapseSettings& settings,
+                                             const ProgressFunction& progress) {
+  CollapseSequence first;
+  first.start = std::move(mesh);
+  if (first.faces_after(0) <= settings.faces) return first;
+  std::vector<VertexPair> lines = feature_lines(first.start, settings.crease_degrees);
+  std::vector<VertexWeight> weights = to_vertex_weights(first.start, settings.vertex_weights);
+  collapse_quickly(first, lines, weights, quick_faces, [&](double fraction) { progress(0.2 * fraction); });
+  if (first.collapses.empty()) {
+    Collapser(first, lines, std::move(weights), settings, first.start, progress).run();
+    return first;
   }
-  return sequence;
+
+  // The second step's vertices are some of the first's; lines are still where they were.
+  CollapseSequence second;
+  std::vector<std::uint32_t> origins;
+  second.start = first.after(first.collapses.size(), &origins);
+  if (second.faces_after(0) <= settings.faces) return first;
+  std::vector<std::uint32_t> index(first.start.positions.size());
+  for (std::uint32_t i = 0; i < origins.size(); ++i) index[origins[i]] = i;
+  for (auto& [a, b] : lines) {
+    a = index[a];
+    b = index[b];
+  }
+  if (!weights.empty()) {
+    for (std::uint32_t i = 0; i < origins.size(); ++i) weights[i] = weights[origins[i]];
+    weights.resize(origins.size());
+  }
+  const bool compares = settings.compared_faces > 0;
+  const TriangleMesh compared =
+      compares ? first.after(first.count_for(std::max(settings.compared_faces, most_compared_faces))) : TriangleMesh();
+  Collapser(second, lines, std::move(weights), settings, compared, progress).run();
+  for (Collapse collapse : second.collapses) {
+    collapse.removed = origins[collapse.removed];
+    collapse.kept = origins[collapse.kept];
+    first.collapses.push_back(collapse);
+  }
+  return first;
 }
 
 }  // namespace kiln

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <span>
 #include <vector>
 
 #include "base/progress.h"
 #include "mesh/triangle_mesh.h"
-#include "simplify/simplify_settings.h"
 
 namespace kiln {
 
@@ -22,16 +23,38 @@ struct CollapseSequence {
   TriangleMesh start;
   std::vector<Collapse> collapses;
 
-  /// The mesh after the first `count` collapses, without the vertices they removed.
-  TriangleMesh after(std::size_t count) const;
+  /// Triangles after the first `count` collapses.
+  int faces_after(std::size_t count) const;
+  /// The fewest collapses that leave at most `faces` triangles, or all.
+  std::size_t count_for(int faces) const;
+  /// The mesh after the first `count` collapses, without the vertices they removed. `vertex_origins`: of each of its
+  /// vertices, that of the start which it was.
+  TriangleMesh after(std::size_t count, std::vector<std::uint32_t>* vertex_origins = nullptr) const;
 };
 
-/// Collapses edges of an oriented manifold, cheapest first, until at most `faces` triangles are left or no collapse is
-/// left that keeps the topology, folds nothing over and leaves no triangle too thin for a Draco file of 16 bits. Border
-/// edges are collapsed along the border only. Lindstrom and Turk, "Fast and memory efficient polygonal simplification"
-/// (1998); Garland and Heckbert, "Surface simplification using quadric error metrics" (1997); Trettner and Kobbelt,
-/// "Fast and robust QEF minimization using probabilistic quadrics" (2020).
-CollapseSequence collapse_edges(TriangleMesh mesh, CollapseCost cost, int faces,
+/// How edges are collapsed.
+struct CollapseSettings {
+  int faces = 4;              ///< triangles to stop at
+  double crease_degrees = 0;  ///< edges of a larger dihedral angle stay lines; 0: none
+  /// From this many triangles on, those of a collapse are compared with the input, or with a large one that was
+  /// simplified quickly: they may not leave that surface, nor face against it. 0: never.
+  int compared_faces = std::numeric_limits<int>::max();
+  /// Of every vertex of the input, or empty for 1: an edge's cost is multiplied by the mean of its ends' weights. A
+  /// vertex that stands for several has the mean of theirs.
+  std::span<const double> vertex_weights = {};
+};
+
+/// Collapses edges of an oriented manifold, cheapest first, until at most settings.faces triangles are left or no
+/// collapse is left that keeps the topology, folds nothing over and leaves no triangle too thin for a Draco file of 16
+/// bits. Edges of borders and creases are collapsed along them only; where these branch or end, the vertex stays.
+/// Lindstrom and Turk, "Fast and memory efficient polygonal simplification" (1998). Costs are computed when they are
+/// needed: an edge's is renewed when it is next in the queue.
+CollapseSequence collapse_edges(TriangleMesh mesh, const CollapseSettings& settings,
                                 const ProgressFunction& progress = no_progress);
+
+/// The same, but down to `quick_faces` triangles by quadrics in rounds, which is several times faster and less exact
+/// (collapse_quickly).
+CollapseSequence collapse_edges_in_two_steps(TriangleMesh mesh, int quick_faces, const CollapseSettings& settings,
+                                             const ProgressFunction& progress = no_progress);
 
 }  // namespace kiln

@@ -1,6 +1,7 @@
 #include "simplify/low_file.h"
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 
 #include "mesh/draco_file.h"
@@ -29,26 +30,51 @@ int sufficient_position_bits(const TriangleMesh& mesh) {
 
 }  // namespace
 
+void LowFile::keep_colors(const TriangleMesh& high) {
+  colored_ = &high;
+  colored_surface_.emplace(high);
+}
+
 TriangleMesh LowFile::write(const TriangleMesh& mesh) {
   DracoQuantisation quantisation;
   quantisation.position_bits = position_bits_ = sufficient_position_bits(mesh);
   // The normals are those of the rounded positions.
   TriangleMesh low = mesh;
   low.normals.clear();
+  low.colors.clear();
   save_draco(file_, low, quantisation);
   low = load_draco(file_);
   compute_vertex_normals(low);
+  if (colored_ != nullptr) low.colors = nearest_colors(*colored_, *colored_surface_, low.positions);
   save_draco(file_, low, quantisation);
   return load_draco(file_);
 }
 
-Json repairs_to_json(const LoadRepairs& load, const ManifoldRepairs& manifold) {
-  return {{"merged_vertices", load.merged_vertices},
-          {"dropped_triangles", load.dropped_triangles + manifold.dropped_triangles},
-          {"unused_vertices", load.unused_vertices},
-          {"triangulated_polygons", load.triangulated_polygons},
-          {"reversed_triangles", manifold.reversed_triangles},
-          {"split_vertices", manifold.split_vertices}};
+std::vector<Eigen::Vector3f> nearest_colors(const TriangleMesh& mesh, const NearestSurface& surface,
+                                            const std::vector<Eigen::Vector3f>& positions) {
+  std::vector<Eigen::Vector3f> colors;
+  std::uint32_t hint = 0;
+  for (const Eigen::Vector3f& position : positions) {
+    const NearestSurface::Hit hit = surface.nearest(position.cast<double>(), hint);
+    hint = hit.hint;
+    std::array<Eigen::Vector3d, 3> corner;
+    for (std::size_t k = 0; k < 3; ++k) corner[k] = mesh.positions[mesh.triangles[hit.triangle][k]].cast<double>();
+    const Eigen::Vector3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+    Eigen::Vector3d color = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Eigen::Vector3d &next = corner[(k + 1) % 3], &last = corner[(k + 2) % 3];
+      const double share = (next - hit.point).cross(last - hit.point).dot(normal) / normal.squaredNorm();
+      color += share * mesh.colors[mesh.triangles[hit.triangle][k]].cast<double>();
+    }
+    colors.push_back(color.cwiseMax(0).cwiseMin(1).cast<float>());
+  }
+  return colors;
+}
+
+Json repairs_to_json(const MeshRepairs& repairs) {
+  Json json = Json::object();
+  for (const auto& [name, count] : MeshRepairs::kinds()) json[name] = repairs.*count;
+  return json;
 }
 
 }  // namespace kiln

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "base/options.h"
-#include "mesh/mesh_file.h"
+#include "mesh/mesh_repair.h"
+#include "mesh/nearest_surface.h"
 #include "mesh/triangle_mesh.h"
-#include "simplify/manifold_repair.h"
 
 namespace kiln {
 
@@ -14,8 +15,11 @@ class LowFile {
  public:
   explicit LowFile(std::filesystem::path file) : file_(std::move(file)) {}
 
-  /// Writes positions and normals, and returns what the file now holds. Positions have 16 bits, or more where rounding
-  /// to 16 bits takes the area or the winding of a triangle.
+  /// From now on vertices get the colours of `high` at the nearest point of its surface; it must outlive this object.
+  void keep_colors(const TriangleMesh& high);
+
+  /// Writes positions, normals and colours, and returns what the file now holds. Positions have 16 bits, or more where
+  /// rounding to 16 bits takes the area or the winding of a triangle.
   TriangleMesh write(const TriangleMesh& mesh);
 
   /// Of the latest write.
@@ -24,9 +28,16 @@ class LowFile {
  private:
   std::filesystem::path file_;
   int position_bits_ = 0;
+  const TriangleMesh* colored_ = nullptr;
+  std::optional<NearestSurface> colored_surface_;
 };
 
-/// What loading and simplifying had to mend, as one object.
-Json repairs_to_json(const LoadRepairs& load, const ManifoldRepairs& manifold);
+/// Colours for `positions`: those of `mesh` at the nearest point of its surface, between the corners of a triangle by
+/// barycentric coordinates.
+std::vector<Eigen::Vector3f> nearest_colors(const TriangleMesh& mesh, const NearestSurface& surface,
+                                            const std::vector<Eigen::Vector3f>& positions);
+
+/// How often what was mended.
+Json repairs_to_json(const MeshRepairs& repairs);
 
 }  // namespace kiln

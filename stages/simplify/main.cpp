@@ -12,24 +12,33 @@ int main(int argc, char** argv) {
     std::filesystem::path high_file, low_file;
     SimplifySettings settings;
     command.input("HIGH", high_file, "The mesh: OBJ, PLY, STL, OFF or DRC");
-    command.output(low_file, "The simplified mesh, a Draco file: positions and normals");
+    command.output(low_file, "The simplified mesh, a Draco file: positions and normals, and colours with --colors");
     command.options("Simplification", simplify_options(settings));
     command.parse(argc, argv);
     if (settings.max_error > 0 && command.app().count("--faces") > 0)
       throw WrongUsage("--faces and --max-error are two ways to say where to stop; give one of them");
 
     // Load and run; each candidate is written, so that what is measured is what the file holds.
-    LoadRepairs load_repairs;
-    const TriangleMesh high = load_mesh(high_file, &load_repairs);
+    MeshRepairs repairs;
+    const TriangleMesh high = load_mesh(high_file, &repairs, {.fill_hole_edges = settings.fill_holes});
+    if (settings.strict && !repairs.none())
+      throw BadInput(high_file.string(), "needs repair: " + repairs.text(), "a clean, oriented manifold of triangles",
+                     "mend it where it comes from, or leave out --strict");
+    if (settings.colors && high.colors.empty())
+      throw BadInput(high_file.string(), "has no colours of vertices", "an OBJ, PLY, OFF or DRC file with colours",
+                     "export them, or leave out --colors");
     OutputSet outputs(folder_of(low_file));
     LowFile low(outputs.add(low_file.filename().string()));
+    if (settings.colors) low.keep_colors(high);
     const SimplifyResult result = simplify(
         high, settings, [&](const TriangleMesh& mesh) { return low.write(mesh); }, command.progress("simplify"));
 
     // Save.
     Json metrics = result.to_json();
     metrics["position_bits"] = low.position_bits();
-    metrics["repairs"] = repairs_to_json(load_repairs, result.repairs);
+    metrics["input_components"] = repairs.components;
+    metrics["input_border_loops"] = repairs.border_loops;
+    metrics["repairs"] = repairs_to_json(repairs);
     if (settings.max_error == 0 && result.mesh.triangles.size() > static_cast<std::size_t>(settings.faces))
       command.say("stopped at " + std::to_string(result.mesh.triangles.size()) +
                   " triangles: no further collapse keeps topology and shape");

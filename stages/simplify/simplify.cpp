@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "mesh/nearest_surface.h"
-#include "simplify/collapse.h"
+#include "simplify/reduce.h"
+#include "simplify/transfer_weights.h"
 
 namespace kiln {
 
@@ -50,40 +52,10 @@ class Writer {
   double seconds_ = 0;
 };
 
-/// Whether `low`'s distance is within `max_error`; few samples suffice to see most that are not.
-bool is_within(const TriangleMesh& high, const TriangleMesh& low, double max_error) {
-  for (const int samples : {2'000, MeshDistanceSettings().samples})
-    if (mesh_distance(high, low, {.samples = samples}).hausdorff > max_error) return false;
-  return true;
-}
-
-/// The largest number of collapses that keeps within `max_error`, to 1 % in the number of triangles, by bisection.
-std::size_t count_within(const CollapseSequence& sequence, const TriangleMesh& high, double max_error, Writer& write,
-                         const ProgressFunction& progress) {
-  const auto faces_after = [&](std::size_t count) {
-    return count == 0 ? static_cast<double>(sequence.start.triangles.size()) : sequence.collapses[count - 1].faces;
-  };
-  const auto within = [&](std::size_t count) { return is_within(high, write(sequence.after(count)), max_error); };
-  std::size_t good = 0;
-  std::size_t bad = sequence.collapses.size() + 1;
-  if (within(bad - 1)) return bad - 1;
-  --bad;
-  const double start_gap = std::log(faces_after(good) / faces_after(bad));
-  for (double gap = start_gap; bad - good > 1 && gap > 0.01; gap = std::log(faces_after(good) / faces_after(bad))) {
-    progress(1 - std::log(gap / 0.01) / std::log(start_gap / 0.01));
-    // Errors grow by powers of the number of triangles, so its logarithm is halved.
-    const double wanted = std::sqrt(faces_after(good) * faces_after(bad));
-    std::size_t middle = good + 1;
-    for (std::size_t last = bad - 1; middle < last;) {
-      const std::size_t half = (middle + last) / 2;
-      if (faces_after(half) <= wanted)
-        last = half;
-      else
-        middle = half + 1;
-    }
-    (within(middle) ? good : bad) = middle;
-  }
-  return good;
+/// The Hausdorff distance; few samples suffice to see most that are too far.
+double error_of(const TriangleMesh& high, const TriangleMesh& low, double max_error) {
+  const double least = mesh_distance(high, low, {.samples = 2'000}).hausdorff;
+  return least > max_error ? least : mesh_distance(high, low).hausdorff;
 }
 
 }  // namespace
@@ -116,20 +88,22 @@ SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settin
   SimplifyResult result;
   result.input_triangles = static_cast<int>(high.triangles.size());
 
-  // Collapse: down to the number of triangles that is asked for, or as far as it goes.
-  TriangleMesh manifold = to_manifold(high, result.repairs);
-  const Stopwatch collapse_stopwatch;
-  const double collapse_share = by_error ? 0.4 : 0.8;
-  const CollapseSequence sequence = collapse_edges(std::move(manifold), settings.cost, by_error ? 4 : settings.faces,
-                                                   [&](double fraction) { progress(collapse_share * fraction); });
-  result.collapse_seconds = collapse_stopwatch.seconds();
-
-  // Choose how many of the collapses to keep.
-  std::size_t count = sequence.collapses.size();
+  TriangleMesh manifold{high.positions, high.triangles, {}, {}};
+  if (!is_manifold(manifold)) repair_mesh(manifold);  // load_mesh gives a manifold
+  std::vector<double> weights;
+  if (settings.aware == SimplifyAwareness::transfer) weights = transfer_weights(manifold);
+  const Stopwatch reduce_stopwatch;
+  const ProgressFunction reduce_progress = [&](double fraction) { progress(0.9 * fraction); };
+  TriangleMesh low;
   if (by_error)
-    count = count_within(sequence, high, settings.max_error, write,
-                         [&](double fraction) { progress(collapse_share + (0.9 - collapse_share) * fraction); });
-  result.mesh = write(sequence.after(count));
+    low = reduce_to_error(
+        manifold, settings,
+        [&](const TriangleMesh& candidate) { return error_of(high, write(candidate), settings.max_error); }, weights,
+        reduce_progress);
+  else
+    low = reduce_to_faces(manifold, settings, weights, reduce_progress);
+  result.collapse_seconds = reduce_stopwatch.seconds();
+  result.mesh = write(low);
 
   // Measure what was written.
   progress(0.9);

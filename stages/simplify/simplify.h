@@ -5,8 +5,8 @@
 #include "base/options.h"
 #include "base/progress.h"
 #include "mesh/mesh_distance.h"
+#include "mesh/mesh_repair.h"
 #include "mesh/triangle_mesh.h"
-#include "simplify/manifold_repair.h"
 #include "simplify/simplify_settings.h"
 
 namespace kiln {
@@ -20,9 +20,8 @@ struct SimplifyResult {
   bool closed = false;           ///< and without border
   int degenerate_triangles = 0;  ///< count_degenerate
   int flipped_triangles = 0;     ///< count_flipped, of the input
-  ManifoldRepairs repairs;       ///< what the input needed first
   double seconds = 0;            ///< without `written`
-  double collapse_seconds = 0;   ///< of it, the edge collapse alone
+  double collapse_seconds = 0;   ///< of it, without repairs and the result's distances
 
   Json to_json() const;
 };

@@ -9,11 +9,20 @@ OptionSet simplify_options(SimplifySettings& settings) {
       "max-error", settings.max_error, 0, 1,
       "Instead of --faces: keep within this Hausdorff distance of the input, a fraction of the bounding box's "
       "diagonal, from 0.0001; 0 is by --faces");
-  options.choice<CollapseCost>("cost", settings.cost,
-                               {{"lindstrom-turk", CollapseCost::lindstrom_turk},
-                                {"plane", CollapseCost::plane},
-                                {"probabilistic-triangle", CollapseCost::probabilistic_triangle}},
-                               "Cost of a collapse; the last two are Garland-Heckbert quadrics");
+  options.choice<SimplifyQuality>(
+      "quality", settings.quality,
+      {{"draft", SimplifyQuality::draft}, {"standard", SimplifyQuality::standard}, {"best", SimplifyQuality::best}},
+      "What is paid for the result: draft is the quickest, standard is nearer to the input, best is fitted to it for "
+      "seconds to minutes");
+  options.choice<SimplifyAwareness>(
+      "aware", settings.aware, {{"none", SimplifyAwareness::none}, {"transfer", SimplifyAwareness::transfer}},
+      "transfer: more triangles where self-shadowing varies, at equal count, fewer elsewhere");
+  options.number("crease", settings.crease, 0, 180,
+                 "Edges whose dihedral angle exceeds this stay lines, degrees; 0 is none");
+  options.toggle("strict", settings.strict, "Refuse an input that needs repair instead of repairing it");
+  options.integer("fill-holes", settings.fill_holes, 0, 10'000,
+                  "Close holes of the input of at most so many edges; 0 leaves them open, as a scan's bottom may be");
+  options.toggle("colors", settings.colors, "Keep the input's colours, as colours of vertices");
   return options;
 }
 

@@ -4,17 +4,28 @@
 
 namespace kiln {
 
-/// What orders the collapses, and where a collapsed edge's vertex goes.
-enum class CollapseCost {
-  lindstrom_turk,         ///< change of volume, boundary and shape; no memory of the original surface
-  plane,                  ///< Garland-Heckbert quadrics of the faces' planes
-  probabilistic_triangle  ///< Garland-Heckbert quadrics of triangles whose corners are uncertain
+/// What is paid for the result.
+enum class SimplifyQuality {
+  draft,     ///< collapses by quadrics, in rounds
+  standard,  ///< those down to a few times the result, then Lindstrom and Turk's
+  best       ///< Lindstrom and Turk's, then the vertices and edges are fitted to the input
+};
+
+/// What collapses are weighted by, besides the change of shape.
+enum class SimplifyAwareness {
+  none,
+  transfer  ///< how much transfer varies there (transfer_weights.h)
 };
 
 struct SimplifySettings {
   int faces = 1000;      ///< triangles to stop at, where max_error is 0
   double max_error = 0;  ///< Hausdorff distance to stop at, as a fraction of the bounding box's diagonal; 0: by faces
-  CollapseCost cost = CollapseCost::lindstrom_turk;
+  SimplifyQuality quality = SimplifyQuality::standard;
+  SimplifyAwareness aware = SimplifyAwareness::none;
+  double crease = 0;    ///< degrees; edges whose dihedral angle (0 in a plane) is larger stay lines; 0: none
+  bool strict = false;  ///< an input that needs repair is refused
+  int fill_holes = 0;   ///< holes of the input of at most so many edges are closed
+  bool colors = false;  ///< the input's colours are kept at the vertices
 };
 
 OptionSet simplify_options(SimplifySettings& settings);

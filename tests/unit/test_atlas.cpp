@@ -63,7 +63,8 @@ void expect_sound(const TriangleMesh& mesh, const AtlasResult& result, const Atl
   EXPECT_EQ(atlas.measures.triangles, static_cast<int>(mesh.triangles.size()));
   EXPECT_EQ(atlas.measures.flipped_triangles, 0);
   EXPECT_GE(atlas.measures.smallest_gap_texels, settings.gutter);
-  for (const int size : {settings.size / 2, settings.size, 2 * settings.size - 1, 2048})
+  const int side = settings.size.width;  // square
+  for (const int size : {side / 2, side, 2 * side - 1, 2048})
     EXPECT_EQ(rasterise_uvs(atlas.mesh, size, size).overlapping_texels, 0) << size;
   for (const Eigen::Vector2f& uv : atlas.mesh.uvs) {
     ASSERT_GE(uv.minCoeff(), 0);
@@ -71,15 +72,15 @@ void expect_sound(const TriangleMesh& mesh, const AtlasResult& result, const Atl
   }
 
   // The gutter once more, by growing each chart by it.
-  const UvRaster raster = rasterise_uvs(atlas.mesh, settings.size, settings.size);
+  const UvRaster raster = rasterise_uvs(atlas.mesh, side, side);
   const std::vector<std::uint32_t> chart_of = charts_of_triangles(atlas.mesh);
-  for (int j = 0; j < settings.size; ++j)
-    for (int i = 0; i < settings.size; ++i) {
+  for (int j = 0; j < side; ++j)
+    for (int i = 0; i < side; ++i) {
       if (!raster.at(i, j).covered()) continue;
-      ASSERT_GE(std::min({i, j, settings.size - 1 - i, settings.size - 1 - j}), settings.gutter);
+      ASSERT_GE(std::min({i, j, side - 1 - i, side - 1 - j}), settings.gutter);
       for (int y = j; y <= j + settings.gutter; ++y)
         for (int x = i - settings.gutter; x <= i + settings.gutter; ++x) {
-          const TexelSource& other = raster.at(x, std::min(y, settings.size - 1));
+          const TexelSource& other = raster.at(x, std::min(y, side - 1));
           const bool own = !other.covered() || chart_of[other.triangle] == chart_of[raster.at(i, j).triangle];
           ASSERT_TRUE(own) << i << " " << j;
         }
@@ -194,7 +195,9 @@ TEST(Atlas, OfTheBunnyIsDecent) {
 }
 
 TEST(Atlas, GivesEveryChartTheSameDensity) {
-  const AtlasResult result = make_atlas(shapes::torus(24), {});
+  AtlasSettings settings;
+  settings.density = AtlasDensity::even;
+  const AtlasResult result = make_atlas(shapes::torus(24), settings);
   const std::vector<std::uint32_t> chart_of = charts_of_triangles(result.mesh);
   std::map<std::uint32_t, std::pair<double, double>> areas;
   for (std::size_t i = 0; i < chart_of.size(); ++i) {
@@ -253,6 +256,148 @@ TEST(Atlas, RefusesWhatCannotBe) {
   nothing.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
   nothing.triangles = {{0, 1, 2}};
   EXPECT_THROW(make_atlas(nothing, {}), BadInput);
+}
+
+/// Every texel whose centre lies in a triangle of the turned and scaled chart.
+std::set<std::pair<int, int>> covered_centres(const Chart& chart, double angle, double scale,
+                                              const Eigen::Vector2d& origin) {
+  std::set<std::pair<int, int>> result;
+  for (const Triangle& t : chart.triangles) {
+    std::array<Eigen::Vector2d, 3> p;
+    for (int k = 0; k < 3; ++k) p[k] = turned(chart.uvs[t[k]], angle) * scale - origin;
+    const Eigen::Vector2d low = p[0].cwiseMin(p[1]).cwiseMin(p[2]), high = p[0].cwiseMax(p[1]).cwiseMax(p[2]);
+    for (int y = static_cast<int>(std::floor(low.y())); y <= static_cast<int>(high.y()); ++y)
+      for (int x = static_cast<int>(std::floor(low.x())); x <= static_cast<int>(high.x()); ++x) {
+        const Eigen::Vector2d c(x + 0.5, y + 0.5);
+        if (cross(p[0], p[1], c) >= 0 && cross(p[1], p[2], c) >= 0 && cross(p[2], p[0], c) >= 0) result.insert({x, y});
+      }
+  }
+  return result;
+}
+
+TEST(ChartBitmap, HasEveryTexelOfTheTrianglesAndFewMore) {
+  const ChartSet cut = cut_into_charts(analyse_surface(bunny()), {});
+  for (const Chart& chart : cut.charts)
+    for (const double angle : {0.0, 0.7, 3.0}) {
+      BitmapSettings settings;
+      settings.texels_per_unit = 150;
+      settings.angle = angle;
+      const ChartBitmap bitmap = rasterise_chart(chart_outline(chart), settings);
+      std::set<std::pair<int, int>> needed;
+      for (int y = 0; y < bitmap.height; ++y)
+        for (const TexelRun& run : bitmap.rows[y])
+          for (int x = run.first; x <= run.last; ++x) needed.insert({x, y});
+      EXPECT_EQ(static_cast<std::int64_t>(needed.size()), bitmap.texels);
+      const auto covered = covered_centres(chart, angle, settings.texels_per_unit, bitmap.origin);
+      for (const auto& texel : covered) ASSERT_TRUE(needed.count(texel)) << texel.first << " " << texel.second;
+      // The margin of 0.02 adds a fiftieth of a texel along the border, slivers a texel here and there.
+      EXPECT_LE(needed.size(), covered.size() + 0.1 * bitmap.height + 0.1 * bitmap.width + 8);
+    }
+}
+
+/// A strip 1 wide bent to a C in space, whose uvs leave `gap` between its ends, and its flat twin.
+Chart c_shape(TriangleMesh& mesh, double gap, bool apart_in_space) {
+  Chart chart;
+  const int cells = 24;
+  for (int i = 0; i <= cells; ++i)
+    for (const double radius : {1.0, 2.0}) {
+      const double angle = (2 * std::acos(-1.0) - gap / 1.5) * i / cells;
+      chart.uvs.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+      chart.vertices.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+      const Eigen::Vector2f uv = chart.uvs.back().cast<float>();
+      mesh.positions.emplace_back(uv.x(), uv.y(), apart_in_space ? 0.2f * static_cast<float>(i) : 0.0f);
+    }
+  for (std::uint32_t i = 0; i < 2 * cells; i += 2) {
+    chart.triangles.push_back({i, i + 1, i + 2});
+    chart.triangles.push_back({i + 2, i + 1, i + 3});
+  }
+  mesh.triangles = chart.triangles;
+  for (std::uint32_t i = 0; i < chart.triangles.size(); ++i) chart.faces.push_back(i);
+  return chart;
+}
+
+TEST(Charts, KeepClearOfThemselvesUnlessTheSurfaceDoesNotEither) {
+  for (const bool apart_in_space : {false, true}) {
+    TriangleMesh mesh;
+    const Chart chart = c_shape(mesh, 0.1, apart_in_space);
+    const Surface surface = analyse_surface(mesh);
+    EXPECT_TRUE(has_simple_border(chart));
+    EXPECT_TRUE(keeps_clear(surface, chart, 0.05));
+    EXPECT_EQ(keeps_clear(surface, chart, 0.2), !apart_in_space);
+  }
+}
+
+TEST(Atlas, TakesSurfacesOfAnyGenusAndManyComponents) {
+  TriangleMesh rings = shapes::torus(12), spheres;
+  rings = shapes::joined(rings, shapes::torus(12), {0, 5, 0});
+  for (int i = 0; i < 40; ++i)
+    spheres = shapes::joined(spheres, shapes::icosphere(1), {3.0f * static_cast<float>(i), 0, 0});
+  for (const TriangleMesh& mesh : {rings, spheres}) {
+    AtlasSettings settings;
+    settings.size = 400;
+    settings.gutter = 2;
+    expect_sound(mesh, make_atlas(mesh, settings), settings);
+  }
+}
+
+TEST(Atlas, LargeChartsAreRelaxedAroundTheirSeams) {
+  // Few charts of many triangles: beyond the size up to which merged charts are relaxed as a whole.
+  const TriangleMesh mesh = shapes::torus(96);
+  const Surface surface = analyse_surface(mesh);
+  const ChartSettings settings;
+  const ChartSet cut = cut_into_charts(surface, settings);
+  std::size_t faces = 0, largest = 0;
+  for (const Chart& chart : cut.charts) {
+    EXPECT_TRUE(is_flip_free(chart) && has_simple_border(chart));
+    EXPECT_LE(measure_stretch(surface, chart).l2, settings.largest_l2);
+    faces += chart.faces.size();
+    largest = std::max(largest, chart.faces.size());
+  }
+  EXPECT_EQ(faces, mesh.triangles.size());
+  EXPECT_LT(cut.charts.size(), 40u);
+  EXPECT_GT(largest, 4000u);
+}
+
+TEST(Surface, WeighsSeamsByOpennessAtAnUnchangedTotal) {
+  const TriangleMesh mesh = shapes::plane(4);
+  Surface surface = analyse_surface(mesh);
+  std::vector<float> openness(mesh.positions.size(), 0.2f);
+  openness[0] = 1;
+  weigh_seams(surface, openness);
+  double costs = 0, lengths = 0;
+  for (std::uint32_t h = 0; h < surface.half_edge_count(); ++h) {
+    costs += surface.seam_costs[h];
+    lengths += surface.edge_lengths[h];
+    const bool open = surface.origin(h) == 0 || surface.target(h) == 0;
+    EXPECT_EQ(surface.seam_costs[h] > surface.edge_lengths[h], open) << h;
+  }
+  EXPECT_NEAR(costs / lengths, 1, 1e-9);
+}
+
+TEST(Packing, AtAGivenScaleTakesTheLeastHeightOrSquare) {
+  const ChartSet cut = cut_into_charts(analyse_surface(shapes::torus(16)), {});
+  double area = 0;
+  for (const Chart& chart : cut.charts)
+    for (const Triangle& t : chart.triangles) area += 0.5 * cross(chart.uvs[t[0]], chart.uvs[t[1]], chart.uvs[t[2]]);
+  PackSettings settings;
+  settings.texels_per_unit = 40;
+  for (const int width : {0, 200, 1000}) {
+    settings.width = width;
+    settings.height = 0;
+    const Packing packing = pack_charts(cut.charts, settings);
+    EXPECT_EQ(packing.texels_per_unit, 40);
+    EXPECT_EQ(packing.height % 4, 0);
+    EXPECT_EQ(packing.width, width == 0 ? packing.height : width);
+    // Half of the atlas is covered even where one chart more would not have fitted beside the others.
+    EXPECT_GT(area * 40 * 40 / packing.width / packing.height, width == 1000 ? 0.3 : 0.5);
+    for (std::size_t c = 0; c < cut.charts.size(); ++c)
+      for (const Eigen::Vector2d& uv : cut.charts[c].uvs) {
+        const Eigen::Vector2d texel = turned(uv, packing.placements[c].angle) * 40 + packing.placements[c].offset;
+        EXPECT_TRUE(texel.minCoeff() > 3 && texel.x() < packing.width - 3 && texel.y() < packing.height - 3);
+      }
+  }
+  settings.width = settings.height = 100;
+  EXPECT_THROW(pack_charts(cut.charts, settings), WrongUsage);
 }
 
 TEST(Atlas, PacksNonSquareAtlases) {

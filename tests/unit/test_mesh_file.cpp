@@ -160,14 +160,87 @@ TEST_F(MeshFile, MendsAndCounts) {
       "f 6 3 4\n"    // one of them again, through a vertex at the place of the first
       "f 1 1 2\n"    // no area
       "f 1 4 2\n";   // one more, folded
-  LoadRepairs repairs;
+  MeshRepairs repairs;
   const TriangleMesh mesh = load_mesh(write("a.obj", text), &repairs);
   EXPECT_EQ(mesh.positions.size(), 4u);
   EXPECT_EQ(mesh.triangles.size(), 3u);
+  EXPECT_TRUE(is_manifold(mesh));
   EXPECT_EQ(repairs.triangulated_polygons, 1);
   EXPECT_EQ(repairs.merged_vertices, 1);
   EXPECT_EQ(repairs.unused_vertices, 1);
-  EXPECT_EQ(repairs.dropped_triangles, 2);
+  EXPECT_EQ(repairs.duplicate_triangles, 1);
+  EXPECT_EQ(repairs.degenerate_triangles, 1);
+}
+
+/// A colour that tells where a point of the unit sphere is; its values are whole 255ths.
+Eigen::Vector3f color_of(const Eigen::Vector3f& p) { return (127.5f * (p.array() + 1)).round() / 255; }
+
+TEST_F(MeshFile, EveryFormatGivesTheSameColors) {
+  const TriangleMesh shape = shapes::icosphere(2);
+  std::ostringstream obj, off, ply, float_ply;
+  obj << "# with colours\n";
+  off << "COFF\n" << shape.positions.size() << ' ' << shape.triangles.size() << " 0\n";
+  const auto properties = [](const std::string& type) {
+    return "property " + type + " red\nproperty " + type + " green\nproperty " + type + " blue\nelement face";
+  };
+  const auto header = [&](const std::string& format, const std::string& type) {
+    std::string text = ply_header(shape, format);
+    return text.replace(text.find("element face"), 12, properties(type));
+  };
+  ply << header("ascii", "uchar");
+  float_ply << header("binary_little_endian", "float");
+  for (const Eigen::Vector3f& p : shape.positions) {
+    const Eigen::Vector3f color = color_of(p);
+    const Eigen::Vector3i bytes = (255 * color).array().round().cast<int>();
+    obj << "v " << point_text(p) << ' ' << point_text(color) << "\n";
+    for (std::ostringstream* text : {&off, &ply})
+      *text << point_text(p) << ' ' << bytes.x() << ' ' << bytes.y() << ' ' << bytes.z() << "\n";
+    for (const Eigen::Vector3f& values : {p, color})
+      for (int k = 0; k < 3; ++k) float_ply << bytes_of(values[k]);
+  }
+  for (const auto& [a, b, c] : shape.triangles) {
+    obj << "f " << a + 1 << ' ' << b + 1 << ' ' << c + 1 << "\n";
+    for (std::ostringstream* text : {&off, &ply}) *text << "3 " << a << ' ' << b << ' ' << c << "\n";
+    float_ply << bytes_of(std::uint8_t{3}) << bytes_of(a) << bytes_of(b) << bytes_of(c);
+  }
+  for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{
+           {"a.obj", obj.str()}, {"a.off", off.str()}, {"a.ply", ply.str()}, {"float.ply", float_ply.str()}}) {
+    SCOPED_TRACE(name);
+    const TriangleMesh mesh = load_mesh(write(name, text));
+    expect_same(mesh, shape);
+    ASSERT_EQ(mesh.colors.size(), mesh.positions.size());
+    for (std::size_t i = 0; i < mesh.colors.size(); ++i)
+      EXPECT_LT((mesh.colors[i] - color_of(mesh.positions[i])).cwiseAbs().maxCoeff(), 1e-6f) << "rounding of floats";
+  }
+  EXPECT_TRUE(load_mesh(write("plain.obj", to_obj(shape))).colors.empty());
+}
+
+TEST_F(MeshFile, DracoKeepsColorsOf8Bits) {
+  TriangleMesh shape = shapes::icosphere(3);
+  save_draco(path("plain.drc"), shape);
+  for (const Eigen::Vector3f& p : shape.positions) shape.colors.push_back(color_of(p));
+  save_draco(path("a.drc"), shape);
+  EXPECT_TRUE(load_mesh(path("plain.drc")).colors.empty());
+  const TriangleMesh decoded = load_mesh(path("a.drc"));
+  ASSERT_EQ(decoded.positions.size(), shape.positions.size());
+  ASSERT_EQ(decoded.colors.size(), shape.positions.size());
+  for (std::size_t i = 0; i < decoded.colors.size(); ++i) {
+    std::size_t nearest = 0;  // the order may change; vertices are 0.1 apart, positions are 1/65,535 off at most
+    for (std::size_t j = 1; j < shape.positions.size(); ++j)
+      if ((shape.positions[j] - decoded.positions[i]).norm() < (shape.positions[nearest] - decoded.positions[i]).norm())
+        nearest = j;
+    EXPECT_LT((decoded.colors[i] - shape.colors[nearest]).cwiseAbs().maxCoeff(), 1e-6f);
+  }
+}
+
+TEST_F(MeshFile, PolygonsAreCutInsideThemselves) {
+  // An arrowhead, whose shorter diagonal lies outside, and an L of six corners that a fan from the first would leave.
+  const std::string arrowhead = "v 0 0 0\nv 4 1 0\nv 3 0 0\nv 4 -1 0\nf 1 4 3 2\n";
+  const std::string corner = "v 0 1 0\nv 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 2 0\nv 1 1 0\nf 1 2 3 4 5 6\n";
+  EXPECT_NEAR(surface_area(load_mesh(write("a.obj", arrowhead))), 3, 1e-6);
+  EXPECT_NEAR(surface_area(load_mesh(write("b.obj", corner))), 3, 1e-6);
+  for (const char* name : {"a.obj", "b.obj"})
+    for (const Eigen::Vector3f& normal : load_mesh(path(name)).normals) EXPECT_GT(normal.z(), 0.999f) << name;
 }
 
 TEST_F(MeshFile, DracoKeepsPositionsNormalsAndUvs) {

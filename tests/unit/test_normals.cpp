@@ -12,6 +12,7 @@
 #include "base/outputs.h"
 #include "detail/asset_hints.h"
 #include "detail/detail_maps.h"
+#include "detail/texel_way.h"
 #include "image/image_file.h"
 #include "normals/normals.h"
 #include "shapes.h"
@@ -63,7 +64,7 @@ TEST(Normals, SphereOverACoarseSphere) {
   // Triangles of an icosphere of 6 levels have edges of up to 0.0205 and lie below the sphere by at most the depth of a
   // cap of that circumradius: 0.0205^2 / 3 / 2 = 7e-5. Interpolated normals turn from the radius by less than that.
   const TriangleMesh high = shapes::icosphere(6), low = shapes::cube_sphere(4);
-  const NormalsResult result = make_normals(high, low, {.size = 192});
+  const NormalsResult result = make_normals(high, low, {.size = 192, .seams = SeamChoice::keep});
   const UvRaster raster = rasterise_uvs(low, 192, 192);
   for_each_covered(result, [&](int i, int j) {
     const Eigen::Vector3f position = vector_at(result.position, i, j);
@@ -167,8 +168,8 @@ TEST(Normals, CageComesFromTheHintOrFromMeasuring) {
   const NormalsResult same = make_normals(low, low, {.size = 16});
   EXPECT_GT(same.cage_distance, 0);
   EXPECT_EQ(same.found_by_nearest_point, 0);
-  EXPECT_EQ(make_normals(high, low, {}, {.size = 48}).coverage.width(), 48);
-  EXPECT_EQ(make_normals(high, low, {.size = 24}, {.size = 48}).coverage.width(), 24);
+  EXPECT_EQ(make_normals(high, low, {}, {.width = 48, .height = 48}).coverage.width(), 48);
+  EXPECT_EQ(make_normals(high, low, {.size = 24}, {.width = 48, .height = 48}).coverage.width(), 24);
 }
 
 TEST(Normals, BilinearLookupsInsideChartsSeeOnlyTheSphere) {
@@ -250,10 +251,11 @@ TriangleMesh dented_sphere() {
 
 TEST_F(DetailMapsFolder, BothSpacesHoldTheSameNormals) {
   const TriangleMesh high = dented_sphere(), low = shapes::cube_sphere(6);
-  const NormalsResult object = make_normals(high, low, {.size = 128});
+  const NormalsResult object = make_normals(high, low, {.size = 128, .seams = SeamChoice::keep});
   save(object);
   const DetailMaps from_object = load_detail_maps(folder_, low);
-  const NormalsResult tangent = make_normals(high, low, {.space = NormalSpace::tangent, .size = 128});
+  const NormalsResult tangent =
+      make_normals(high, low, {.space = NormalSpace::tangent, .size = 128, .seams = SeamChoice::keep});
   save(tangent);
   const DetailMaps from_tangent = load_detail_maps(folder_, low);
 
@@ -309,23 +311,114 @@ TEST_F(DetailMapsFolder, WhatDoesNotBelongTogetherIsRefused) {
 }
 
 TEST_F(DetailMapsFolder, HintsOfEarlierStages) {
-  EXPECT_EQ(read_asset_hints(folder_).size, 0);
+  EXPECT_EQ(read_asset_hints(folder_).width, 0);
   EXPECT_EQ(read_asset_hints(folder_).hausdorff_distance, 0);
   std::ofstream(folder_ / "atlas.json") << R"({"stage": "atlas", "settings": {"size": 256}})";
   std::ofstream(folder_ / "simplify.json") << R"({"hausdorff": 0.01, "hausdorff_distance": 2.5})";
-  EXPECT_EQ(read_asset_hints(folder_).size, 256);
+  EXPECT_EQ(read_asset_hints(folder_).width, 256);
+  EXPECT_EQ(read_asset_hints(folder_).height, 256);
   EXPECT_EQ(read_asset_hints(folder_).hausdorff_distance, 2.5);
   std::ofstream(folder_ / "simplify.json") << "{ \"hausdorff";
   EXPECT_THROW(read_asset_hints(folder_), BadInput);
+}
+
+TEST(Normals, AThinEarKeepsItsSides) {
+  // Flat as an ear, with dents, and a low mesh of 96 triangles that crosses it: rays along its normals pass the rim,
+  // and either side is nearer to the other than the low surface to its own.
+  const auto flatten = [](TriangleMesh mesh) {
+    for (Eigen::Vector3f& p : mesh.positions) p.z() *= 0.02f;
+    for (Eigen::Vector3f& n : mesh.normals) n = n.cwiseProduct(Eigen::Vector3f(1, 1, 50)).normalized();
+    return mesh;
+  };
+  TriangleMesh high = flatten(dented_sphere());
+  compute_vertex_normals(high);
+  const TriangleMesh low = flatten(shapes::cube_sphere(4));
+  const UvRaster raster = rasterise_uvs(low, 128, 128);
+  for (const int samples : {1, 16}) {
+    const NormalsResult result = make_normals(high, low, {.size = 128, .samples = samples});
+    EXPECT_EQ(result.disagreeing, 0);
+    int sides = 0;
+    for_each_covered(result, [&](int i, int j) {
+      const Eigen::Vector3f low_normal = interpolate(low, low.normals, raster.at(i, j)).normalized();
+      // On the faces, not the rim.
+      if (std::abs(low_normal.z()) < 0.9f) return;
+      ++sides;
+      EXPECT_GT(decoded_at(result.normal, i, j).z() * low_normal.z(), 0);
+    });
+    EXPECT_GT(sides, 1000);
+  }
+}
+
+TEST(Normals, ThePictureOfWaysAgreesWithTheShares) {
+  const TriangleMesh high = dented_sphere(), low = shapes::cube_sphere(6);
+  const NormalsResult result = make_normals(high, low, {.size = 96, .cage = 0.004});
+  std::array<int, texel_way_colours.size()> counts{};
+  for (int j = 0; j < 96; ++j)
+    for (int i = 0; i < 96; ++i)
+      for (std::size_t way = 0; way < counts.size(); ++way)
+        if (std::equal(texel_way_colours[way].colour.begin(), texel_way_colours[way].colour.end(),
+                       result.match.pixel(i, j).begin())) {
+          ++counts[way];
+          EXPECT_EQ(way != 0, result.coverage.at(i, j) != 0);
+        }
+  EXPECT_EQ(counts[0] + counts[1] + counts[2] + counts[3] + counts[4], 96 * 96);
+  const auto texels = static_cast<double>(result.covered_texels);
+  EXPECT_GT(counts[1], 0);
+  EXPECT_GT(counts[2], 0);
+  EXPECT_GT(counts[3], 0) << "the test needs a cage that is too small for some texels";
+  EXPECT_DOUBLE_EQ(counts[1] / texels, result.found_by_ray_outwards);
+  EXPECT_DOUBLE_EQ(counts[2] / texels, result.found_by_ray_inwards);
+  EXPECT_DOUBLE_EQ((counts[3] + counts[4]) / texels, result.found_by_nearest_point);
+  EXPECT_DOUBLE_EQ(counts[4] / texels, result.disagreeing);
+}
+
+TEST(Normals, SamplesFitWhatLookupsShow) {
+  // Dents a few texels wide: lookups between texels' centres miss some of it, and the fit makes up for it.
+  const TriangleMesh high = dented_sphere(), low = shapes::cube_sphere(6);
+  const NormalsResult one = make_normals(high, low, {.size = 96});
+  EXPECT_GT(one.map_error.mean_degrees, 0.5);
+  for (const int samples : {4, 16, 64}) {
+    const NormalsResult many = make_normals(high, low, {.size = 96, .samples = samples});
+    EXPECT_EQ(many.position.values(), one.position.values()) << "the receivers are the centres' points";
+    EXPECT_LT(many.map_error.mean_degrees, 0.95 * one.map_error.mean_degrees);
+    for_each_covered(many, [&](int i, int j) { EXPECT_NEAR(decoded_at(many.normal, i, j).norm(), 1, 1e-4); });
+  }
+  // What bilinear lookups can show exactly stays: a plane's one normal.
+  const TriangleMesh plane = shapes::plane(4);
+  const NormalsResult flat = make_normals(plane, plane, {.size = 32, .samples = 16});
+  for_each_covered(flat, [&](int i, int j) {
+    EXPECT_LT((decoded_at(flat.normal, i, j) - Eigen::Vector3f::UnitY()).norm(), 3e-5f);  // a 16-bit step
+  });
+  EXPECT_LT(flat.map_error.largest_degrees, 0.002);
+}
+
+TEST(Normals, ErrorOfTheMapIsTheAngleToTheHighNormals) {
+  // A map that says +Y, of a high mesh whose normals lean by 10 degrees on one half and by 30 on the other.
+  TriangleMesh high = shapes::plane(8);
+  const TriangleMesh atlas = shapes::plane(2);
+  for (std::size_t k = 0; k < high.positions.size(); ++k) {
+    const double lean = (high.positions[k].x() < 0 ? 10 : 30) * degree;
+    high.normals[k] = {static_cast<float>(std::sin(lean)), static_cast<float>(std::cos(lean)), 0};
+  }
+  Image<float> map(16, 16, 3);
+  for (int j = 0; j < 16; ++j)
+    for (int i = 0; i < 16; ++i) map.at(i, j, 1) = 1;
+  const MapError error = measure_map_error(high, atlas, map, NormalSpace::object, 50'000);
+  // Between the last vertex of the first half and the first of the other, an eighth of the plane before x = 0, normals
+  // turn from 10 to 30: 3/8 at 10, 1/8 at 20 in the mean, 4/8 at 30.
+  EXPECT_NEAR(error.mean_degrees, 0.375 * 10 + 0.125 * 20 + 0.5 * 30, 0.05);
+  EXPECT_NEAR(error.percentile_95_degrees, 30, 0.01);
+  EXPECT_NEAR(error.largest_degrees, 30, 0.01);
 }
 
 TEST(Normals, OneThreadAndManyGiveTheSameBytes) {
   const TriangleMesh high = dented_sphere(), low = shapes::cube_sphere(6);
   const auto run = [&](int threads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-    return make_normals(high, low, {.space = NormalSpace::tangent, .size = 128});
+    return make_normals(high, low, {.space = NormalSpace::tangent, .size = 128, .samples = 4});
   };
-  const NormalsResult one = run(1), many = run(4);
+  NormalsResult one = run(1), many = run(4);
+  one.measuring_seconds = many.measuring_seconds = 0;
   EXPECT_EQ(one.normal.values(), many.normal.values());
   EXPECT_EQ(one.position.values(), many.position.values());
   EXPECT_EQ(one.coverage.values(), many.coverage.values());

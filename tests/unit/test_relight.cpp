@@ -459,10 +459,7 @@ TEST(Relight, GpuAndCpuAgree) {
               brightest = std::max<double>(brightest, std::abs(expected));
             }
           }
-        std::printf("bands %d, bits %d, channels %d: largest difference %.5f of %.3f\n", bands, bits, channels, largest,
-                    brightest);
-        // A software renderer filters 8-bit textures in 8 bits, half a step off in each plane; 16-bit ones in
-        // float.
+        // A software renderer filters 8-bit textures in 8 bits, half a step off in each plane.
         EXPECT_LT(largest, (bits == 8 ? 0.01 : 1e-4) * brightest)
             << bands << " bands, " << bits << " bits, " << channels << " channels";
       }

@@ -99,6 +99,8 @@ StageOptions::StageOptions(Stage stage) : options_(bind(stage, storage_)) {}
 std::string rival_of(Stage stage, const std::string& setting) {
   if (stage == Stage::simplify && setting == "faces") return "max-error";
   if (stage == Stage::simplify && setting == "max-error") return "faces";
+  if (stage == Stage::atlas && setting == "size") return "texels-per-unit";
+  if (stage == Stage::atlas && setting == "texels-per-unit") return "size";
   return "";
 }
 
@@ -120,13 +122,18 @@ std::vector<StageRun> stage_runs(const AssetPlan& plan) {
                {},
                {simplify_record, low},
                {atlas_record, atlas, folder / "atlas.png"}};
+  if (effective(plan, Stage::atlas, "density") == "transfer") {
+    cut.command.insert(cut.command.end(), {"--high", mesh});
+    cut.inputs.push_back(plan.mesh);
+  }
   append_settings(cut.command, plan, Stage::atlas);
 
   StageRun match{"normals",
                  {"kiln-normals", mesh, atlas.string(), "-o", normals_folder},
                  {},
                  {plan.mesh, simplify_record, atlas_record, atlas},
-                 {normals_record, normals / "normal.png", normals / "position.exr", normals / "coverage.png"}};
+                 {normals_record, normals / "normal.png", normals / "position.exr", normals / "coverage.png",
+                  normals / "match.png"}};
   append_settings(match.command, plan, Stage::normals);
 
   StageRun bake{"bake",

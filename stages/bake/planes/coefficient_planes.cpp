@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <optional>
 
 #include "image/gutter.h"
 #include "image/image_file.h"
@@ -12,8 +13,19 @@ namespace kiln {
 
 namespace {
 
+/// Looser than a normal map's, whose texels are the receivers' normals: gutters have no values of their own here.
+constexpr SeamWeights plane_weights = {.covered = 0.02};
+
 std::string plane_name(int channel, int coefficient) {
   return fmt::format("coeff_{}_{:02d}.png", channel, coefficient);
+}
+
+Image<float> filled_plane(std::span<const float> values, const TexelReceivers& receivers,
+                          const std::vector<std::uint8_t>& covered) {
+  Image<float> plane(receivers.width, receivers.height, 1);
+  for (std::size_t r = 0; r < values.size(); ++r) plane.values()[receivers.texels[r]] = values[r];
+  fill_gutters(plane, covered);
+  return plane;
 }
 
 template <class Stored>
@@ -22,6 +34,58 @@ Image<Stored> store_plane(const Image<float>& plane, const PlaneRange& range, in
   std::transform(plane.values().begin(), plane.values().end(), stored.values().begin(),
                  [&](float value) { return static_cast<Stored>(range.store(value, bits)); });
   return stored;
+}
+
+/// As a runtime sees it.
+Image<float> shown_plane(const Image<float>& plane, const PlaneRange& range, int bits) {
+  Image<float> shown(plane.width(), plane.height(), 1);
+  std::transform(plane.values().begin(), plane.values().end(), shown.values().begin(),
+                 [&](float value) { return range.recover(range.store(value, bits), bits); });
+  return shown;
+}
+
+/// Adds up the distances between both sides of the seams, plane after plane.
+class MismatchSums {
+ public:
+  explicit MismatchSums(const std::vector<SeamPoint>& points) : points_(points), squares_(points.size(), 0) {}
+
+  void add(const Image<float>& shown) { Seams::add_squared_differences(points_, shown, 0, squares_); }
+
+  SeamMismatch relative_to(double length) const {
+    std::vector<double> differences(squares_.size());
+    std::transform(squares_.begin(), squares_.end(), differences.begin(),
+                   [&](double square) { return length > 0 ? std::sqrt(square) / length : 0; });
+    return Seams::summarise(points_, differences);
+  }
+
+ private:
+  const std::vector<SeamPoint>& points_;
+  std::vector<double> squares_;
+};
+
+/// Has `solver` weigh those points more where it leaves more than elsewhere, by the planes that hold most of transfer.
+void weigh_points(SeamSolver& solver, const std::vector<TransferVectors>& channels, const TexelReceivers& receivers,
+                  const std::vector<std::uint8_t>& covered) {
+  static const int rounds = std::getenv("ROUNDS") ? atoi(std::getenv("ROUNDS")) : 2;
+  static const double usual_mismatch = std::getenv("TT") ? atof(std::getenv("TT")) : .005;  // of the root mean square
+  constexpr int planes = 9;
+  std::vector<double> factors(solver.points().size(), 1);
+  for (int round = 0; round < rounds; ++round) {
+    std::vector<double> squares(factors.size(), 0);
+    double squared_length = 0;
+    for (int i = 0; i < std::min(planes, channels[0].coefficients); ++i) {
+      const std::span<const float> values = channels[0].plane(i);
+      for (const float value : values) squared_length += static_cast<double>(value) * static_cast<double>(value);
+      Image<float> plane = filled_plane(values, receivers, covered);
+      solver.equalise(plane);
+      Seams::add_squared_differences(solver.points(), plane, 0, squares);
+    }
+    if (!(squared_length > 0)) return;
+    const double usual = usual_mismatch * std::sqrt(squared_length / static_cast<double>(receivers.texels.size()));
+    for (std::size_t k = 0; k < factors.size(); ++k)
+      factors[k] = SeamSolver::raised(factors[k], std::sqrt(squares[k]) / usual);
+    solver.weigh(factors);
+  }
 }
 
 template <class Stored>
@@ -64,18 +128,35 @@ void remove_stale_planes(OutputSet& outputs, const std::set<std::string>& writte
   }
 }
 
-void write_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels, const TexelReceivers& receivers,
-                  int bits, const AssetFiles& files) {
+PlaneSeams write_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels,
+                        const TexelReceivers& receivers, int bits, const AssetFiles& files, const Seams& seams,
+                        SeamChoice choice) {
   const std::vector<std::uint8_t> covered = receivers.covered();
+  const std::vector<SeamPoint> points = seams.measuring_points();
+  MismatchSums before(points), after(points);
+  std::optional<SeamSolver> solver;
+  if (choice == SeamChoice::equalise && !seams.edges().empty())
+    weigh_points(solver.emplace(seams, covered, NormalSpace::object, plane_weights), channels, receivers, covered);
+  double squared_length = 0, squared_change = 0;
+
   std::set<std::string> written;
   Json planes = Json::array();
   for (std::size_t channel = 0; channel < channels.size(); ++channel)
     for (int i = 0; i < channels[channel].coefficients; ++i) {
       const std::span<const float> values = channels[channel].plane(i);
-      const PlaneRange range = range_of(values);
-      Image<float> plane(receivers.width, receivers.height, 1);
-      for (std::size_t r = 0; r < values.size(); ++r) plane.values()[receivers.texels[r]] = values[r];
-      fill_gutters(plane, covered);
+      PlaneRange range = range_of(values);
+      Image<float> plane = filled_plane(values, receivers, covered);
+      before.add(shown_plane(plane, range, bits));
+      if (solver) {
+        solver->equalise(plane);
+        range = range_of(plane.values());  // beyond the covered texels' in gutters that continue a slope
+      }
+      after.add(shown_plane(plane, range, bits));
+      for (std::size_t r = 0; r < values.size(); ++r) {
+        const double value = values[r], change = plane.values()[receivers.texels[r]] - value;
+        squared_length += value * value;
+        squared_change += change * change;
+      }
       const std::string name = plane_name(static_cast<int>(channel), i);
       if (bits == 8)
         write_png(outputs.add(name), store_plane<std::uint8_t>(plane, range, bits));
@@ -95,6 +176,10 @@ void write_planes(OutputSet& outputs, const std::vector<TransferVectors>& channe
   ranges["planes"] = planes;
   outputs.add_text("ranges.json", ranges.dump(2) + "\n");
   remove_stale_planes(outputs, written);
+
+  const double length = std::sqrt(squared_length / static_cast<double>(receivers.texels.size()));
+  return {before.relative_to(length), after.relative_to(length),
+          squared_length > 0 ? std::sqrt(squared_change / squared_length) : 0};
 }
 
 std::vector<TransferVectors> read_planes(const std::filesystem::path& folder, const TexelReceivers& receivers) {

@@ -10,6 +10,8 @@
 #include "bake/scene/texel_receivers.h"
 #include "base/options.h"
 #include "base/outputs.h"
+#include "detail/seam_choice.h"
+#include "detail/seams.h"
 #include "sh/transfer.h"
 
 namespace kiln {
@@ -42,11 +44,20 @@ struct AssetFiles {
   std::string normals;  ///< empty: none
 };
 
-/// Writes `coeff_<c>_<ii>.png` for every channel c and coefficient ii, gutters filled, and ranges.json, last. One entry
-/// of `channels` per channel, all for the same receivers. Planes that an earlier run with more of them left in the
-/// folder are removed.
-void write_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels, const TexelReceivers& receivers,
-                  int bits, const AssetFiles& files);
+/// How far both sides of the seams are apart in what bilinear lookups of the stored planes give: the distance between
+/// transfer vectors, of all channels together, over their root mean square length over covered texels.
+struct PlaneSeams {
+  SeamMismatch before;  ///< of planes stored as they were baked
+  SeamMismatch after;   ///< of those that were written
+  double change = 0;    ///< relative L2, over covered texels, of what equalising changed, before storing
+};
+
+/// Writes `coeff_<c>_<ii>.png` for every channel c and coefficient ii, gutters filled, seams treated as `choice` says,
+/// and ranges.json, last. One entry of `channels` per channel, all for the same receivers, which are texels of the
+/// atlas of `seams`. Planes that an earlier run with more of them left in the folder are removed.
+PlaneSeams write_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels,
+                        const TexelReceivers& receivers, int bits, const AssetFiles& files, const Seams& seams,
+                        SeamChoice choice);
 
 /// Transfer as it reads back from planes in `folder` that write_planes wrote.
 std::vector<TransferVectors> read_planes(const std::filesystem::path& folder, const TexelReceivers& receivers);

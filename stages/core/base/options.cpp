@@ -21,6 +21,10 @@ std::optional<Number> parse(const std::string& text) {
 
 }  // namespace
 
+std::string Extent::text() const {
+  return width == height ? std::to_string(width) : fmt::format("{}x{}", width, height);
+}
+
 OptionSet& OptionSet::integer(std::string name, int& value, int lowest, int highest, std::string help) {
   const std::string range = fmt::format("{} to {}", lowest, highest);
   auto set = [=, &value](const std::string& text) {
@@ -56,6 +60,23 @@ OptionSet& OptionSet::number(std::string name, double& value, double lowest, dou
     value = *parsed;
   };
   options_.push_back({name, std::move(help), range, false, set, [&value] { return Json(value); }});
+  return *this;
+}
+
+OptionSet& OptionSet::extent(std::string name, Extent& value, int lowest, int highest, std::string help) {
+  const std::string range = fmt::format("{} to {}, or WIDTHxHEIGHT", lowest, highest);
+  auto set = [=, &value](const std::string& text) {
+    const std::size_t cross = text.find('x');
+    const std::optional<int> width = parse<int>(text.substr(0, cross));
+    const std::optional<int> height = cross == std::string::npos ? width : parse<int>(text.substr(cross + 1));
+    const auto in_range = [&](const std::optional<int>& side) { return side && *side >= lowest && *side <= highest; };
+    if (!in_range(width) || !in_range(height) || (*width == 0) != (*height == 0))
+      throw WrongUsage(fmt::format("{}: found '{}'; expected a whole number, {} to {}, or two as WIDTHxHEIGHT", name,
+                                   text, lowest, highest));
+    value = {*width, *height};
+  };
+  options_.push_back({name, std::move(help), range, false, set,
+                      [&value] { return value.width == value.height ? Json(value.width) : Json(value.text()); }});
   return *this;
 }
 

@@ -10,6 +10,20 @@ namespace kiln {
 
 using Json = nlohmann::ordered_json;
 
+/// Width and height of a texture, texels. One number is a square.
+struct Extent {
+  int width = 0;
+  int height = 0;
+
+  Extent() = default;
+  Extent(int side) : width(side), height(side) {}  // NOLINT: a number is a square
+  Extent(int across, int up) : width(across), height(up) {}
+  bool operator==(const Extent&) const = default;
+
+  /// "512" or "1024x512".
+  std::string text() const;
+};
+
 /// One setting, as the command line, pipeline.yaml and the reports know it.
 struct Option {
   std::string name;                             ///< as in `--name`
@@ -33,6 +47,10 @@ class OptionSet {
   /// A number of `lowest` to `highest`, both included, finite; pass an `unset` value that stands for "not given" or
   /// "automatic".
   OptionSet& number(std::string name, double& value, double lowest, double highest, std::string help);
+
+  /// "1024" (square) or "1024x512" (width x height), both of `lowest` to `highest`. In JSON a square is a number, else
+  /// the text. 0, which stands for "automatic" where `lowest` is 0, is square only.
+  OptionSet& extent(std::string name, Extent& value, int lowest, int highest, std::string help);
 
   /// A switch, off unless given.
   OptionSet& toggle(std::string name, bool& value, std::string help);

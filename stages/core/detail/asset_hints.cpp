@@ -1,5 +1,6 @@
 #include "detail/asset_hints.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "base/errors.h"
@@ -31,11 +32,17 @@ double positive_number(const nlohmann::json& result, const char* key) {
 AssetHints read_asset_hints(const std::filesystem::path& folder) {
   AssetHints hints;
   const std::filesystem::path atlas_file = folder / "atlas.json";
-  const double size = positive_number(read_result(atlas_file), "size");
-  if (size > 16384)
+  const nlohmann::json atlas = read_result(atlas_file);
+  const double size = positive_number(atlas, "size");  // of a square atlas: older records have nothing else
+  const double width = positive_number(atlas, "width"), height = positive_number(atlas, "height");
+  if (std::max({size, width, height}) > 16384)
     throw BadInput(atlas_file.string(), "a size of more than 16384 texels", "1 to 16384", "run kiln-atlas again");
-  hints.size = static_cast<int>(size);
-  hints.hausdorff_distance = positive_number(read_result(folder / "simplify.json"), "hausdorff_distance");
+  const bool both = width >= 1 && height >= 1;
+  hints.width = static_cast<int>(both ? width : size);
+  hints.height = static_cast<int>(both ? height : size);
+  const nlohmann::json simplify = read_result(folder / "simplify.json");
+  hints.hausdorff_distance = positive_number(simplify, "hausdorff_distance");
+  hints.fill_hole_edges = static_cast<int>(std::min(positive_number(simplify, "fill-holes"), 1e6));
   return hints;
 }
 

@@ -6,8 +6,10 @@ namespace kiln {
 
 /// What earlier stages noted beside the atlas; 0 where they did not.
 struct AssetHints {
-  int size = 0;                   ///< atlas.json: texels along a side
+  int width = 0;  ///< atlas.json: texels that the atlas was packed for
+  int height = 0;
   double hausdorff_distance = 0;  ///< simplify.json: from the high to the low mesh, object units
+  int fill_hole_edges = 0;        ///< simplify.json: holes of the high mesh of so many edges are closed, in all stages
 };
 
 /// Reads atlas.json and simplify.json of `folder`, where there are any. Throws BadInput for a file that is no JSON

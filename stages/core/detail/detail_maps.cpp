@@ -84,14 +84,21 @@ std::vector<std::uint8_t> coverage_of(const UvRaster& raster) {
   return covered;
 }
 
-Image<std::uint16_t> encode_normals(const Image<float>& normal_object, NormalSpace space, const TriangleMesh& atlas,
-                                    const UvRaster& raster) {
+Image<float> normal_map(const Image<float>& normal_object, NormalSpace space, const TriangleMesh& atlas,
+                        const UvRaster& raster) {
   require_raster_of(raster, normal_object.width(), normal_object.height(), normal_object.channels());
   Image<float> map = normal_object;
   if (space == NormalSpace::tangent) convert_covered(map, atlas, raster, to_tangent_space);
   fill_gutters(map, coverage_of(raster));
-  normalise(map, space == NormalSpace::tangent ? Eigen::Vector3f::UnitZ() : Eigen::Vector3f::UnitY());
+  normalise(map, space);
+  return map;
+}
 
+void normalise(Image<float>& map, NormalSpace space) {
+  normalise(map, space == NormalSpace::tangent ? Eigen::Vector3f::UnitZ() : Eigen::Vector3f::UnitY());
+}
+
+Image<std::uint16_t> quantise_normals(const Image<float>& map) {
   Image<std::uint16_t> encoded(map.width(), map.height(), 3);
   std::transform(map.values().begin(), map.values().end(), encoded.values().begin(), [](float value) {
     return static_cast<std::uint16_t>(std::lround((std::clamp(value, -1.0f, 1.0f) * 0.5f + 0.5f) * full_scale));
@@ -99,18 +106,24 @@ Image<std::uint16_t> encode_normals(const Image<float>& normal_object, NormalSpa
   return encoded;
 }
 
-Image<float> decode_normals(const Image<std::uint16_t>& encoded, NormalSpace space, const TriangleMesh& atlas,
-                            const UvRaster& raster) {
-  require_raster_of(raster, encoded.width(), encoded.height(), encoded.channels());
+Image<float> dequantise_normals(const Image<std::uint16_t>& encoded) {
   Image<float> map(encoded.width(), encoded.height(), 3);
   std::transform(encoded.values().begin(), encoded.values().end(), map.values().begin(),
                  [](std::uint16_t value) { return static_cast<float>(value) / full_scale * 2 - 1; });
+  normalise(map, NormalSpace::object);
+  return map;
+}
+
+Image<float> decode_normals(const Image<std::uint16_t>& encoded, NormalSpace space, const TriangleMesh& atlas,
+                            const UvRaster& raster) {
+  require_raster_of(raster, encoded.width(), encoded.height(), encoded.channels());
+  Image<float> map = dequantise_normals(encoded);
   if (space == NormalSpace::tangent) {
     convert_covered(map, atlas, raster, to_object_space);
     // Outside the charts there is no frame to convert by.
     fill_gutters(map, coverage_of(raster));
+    normalise(map, NormalSpace::object);
   }
-  normalise(map, Eigen::Vector3f::UnitY());
   return map;
 }
 

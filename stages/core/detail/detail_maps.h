@@ -23,12 +23,19 @@ struct DetailMaps {
 /// 1 per covered texel, else 0, rows from the bottom.
 std::vector<std::uint8_t> coverage_of(const UvRaster& raster);
 
-/// Unit vectors in object space (3 channels, one per covered texel of `raster`) as normal.png holds them: in the map's
-/// space, gutters filled there, n * 0.5 + 0.5 of 65,535. `atlas` has normals and uvs, `raster` is its own.
-Image<std::uint16_t> encode_normals(const Image<float>& normal_object, NormalSpace space, const TriangleMesh& atlas,
-                                    const UvRaster& raster);
+/// Unit vectors in object space (3 channels, one per covered texel of `raster`) as a map in `space`, gutters filled
+/// there. `atlas` has normals and uvs; `raster` is its own, or that with more texels which have a place in it.
+Image<float> normal_map(const Image<float>& normal_object, NormalSpace space, const TriangleMesh& atlas,
+                        const UvRaster& raster);
 
-/// The inverse of encode_normals: unit vectors in object space, gutters filled.
+/// Gives all vectors of a map in `space` length one; those without a length become +Z in tangent space, else +Y.
+void normalise(Image<float>& map, NormalSpace space);
+
+/// A map of unit vectors as normal.png holds it, n * 0.5 + 0.5 of 65,535, and back.
+Image<std::uint16_t> quantise_normals(const Image<float>& map);
+Image<float> dequantise_normals(const Image<std::uint16_t>& encoded);
+
+/// normal.png as unit vectors in object space, gutters filled.
 Image<float> decode_normals(const Image<std::uint16_t>& encoded, NormalSpace space, const TriangleMesh& atlas,
                             const UvRaster& raster);
 

@@ -1,5 +1,8 @@
 #include "mesh/draco_file.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <draco/compression/decode.h>
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
@@ -42,6 +45,19 @@ std::vector<Vector> read_attribute(const draco::Mesh& decoded, draco::GeometryAt
   return values;
 }
 
+void add_colors(draco::Mesh& encoded, const std::vector<Eigen::Vector3f>& colors) {
+  draco::GeometryAttribute attribute;
+  attribute.Init(draco::GeometryAttribute::COLOR, nullptr, 3, draco::DT_UINT8, true, 3, 0);
+  const int id = encoded.AddAttribute(attribute, true, static_cast<std::uint32_t>(colors.size()));
+  for (std::uint32_t i = 0; i < colors.size(); ++i) {
+    std::array<std::uint8_t, 3> bytes{};
+    for (int k = 0; k < 3; ++k)
+      bytes[static_cast<std::size_t>(k)] =
+          static_cast<std::uint8_t>(std::lround(255 * std::clamp(colors[i][k], 0.f, 1.f)));
+    encoded.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i), bytes.data());
+  }
+}
+
 /// Positions, triangles and what else the mesh has as the first attributes of `encoded`, and how to quantise them.
 void add_mesh(draco::Mesh& encoded, const TriangleMesh& mesh, const DracoQuantisation& quantisation,
               std::vector<std::pair<int, int>>& attribute_bits) {
@@ -60,6 +76,7 @@ void add_mesh(draco::Mesh& encoded, const TriangleMesh& mesh, const DracoQuantis
                                 quantisation.normal_bits);
   if (!mesh.uvs.empty())
     attribute_bits.emplace_back(add_attribute(encoded, GeometryAttribute::TEX_COORD, mesh.uvs), quantisation.uv_bits);
+  if (!mesh.colors.empty()) add_colors(encoded, mesh.colors);
 }
 
 /// A generic attribute of `components` unsigned integers a vertex, one after another in `values`.
@@ -116,6 +133,7 @@ TriangleMesh mesh_of(const draco::Mesh& source, const std::string& name) {
   mesh.positions = read_attribute<Eigen::Vector3f>(source, draco::GeometryAttribute::POSITION);
   mesh.normals = read_attribute<Eigen::Vector3f>(source, draco::GeometryAttribute::NORMAL);
   mesh.uvs = read_attribute<Eigen::Vector2f>(source, draco::GeometryAttribute::TEX_COORD);
+  mesh.colors = read_attribute<Eigen::Vector3f>(source, draco::GeometryAttribute::COLOR);
   mesh.triangles.resize(source.num_faces());
   for (std::uint32_t i = 0; i < source.num_faces(); ++i)
     for (int corner = 0; corner < 3; ++corner)

@@ -15,10 +15,10 @@ struct DracoQuantisation {
   int position_bits = 16;
   int uv_bits = 16;
   int normal_bits = 12;
-};
+};  // colors have 8, the steps of 1/255
 
-/// Writes positions and, where the mesh has them, normals and uvs. Vertices keep being split where they were; their
-/// order and that of the triangles may change, so whoever measures the result loads it again.
+/// Writes positions and, where the mesh has them, normals, uvs and colors. Vertices keep being split where they were;
+/// their order and that of the triangles may change, so whoever measures the result loads it again.
 void save_draco(const std::filesystem::path& file, const TriangleMesh& mesh,
                 const DracoQuantisation& quantisation = {});
 

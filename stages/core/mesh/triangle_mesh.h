@@ -16,6 +16,9 @@ struct TriangleMesh {
   std::vector<Triangle> triangles;
   std::vector<Eigen::Vector3f> normals;  ///< unit vectors
   std::vector<Eigen::Vector2f> uvs;      ///< (0,0) is the lower left corner of the atlas
+
+  /// Red, green and blue from 0 to 1 as the file holds them; most files' are sRGB-encoded, none say so.
+  std::vector<Eigen::Vector3f> colors = {};
 };
 
 /// An axis-aligned box; empty (lowest > highest) for a mesh without vertices.

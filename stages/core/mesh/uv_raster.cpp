@@ -7,11 +7,11 @@ namespace kiln {
 
 namespace {
 
-// Fixed point: 1/4096 texel. With at most 2^14 texels a side and uvs up to 16, coordinates stay below 2^30 and the
-// products of the edge functions below 2^61.
+// Fixed point: 1/4096 texel. With coordinates of at most 2^18 texels (uvs up to 16 with 2^14 texels a side) they stay
+// below 2^30 and the products of the edge functions below 2^61.
 constexpr int subtexel_bits = 12;
 constexpr std::int64_t subtexels = std::int64_t{1} << subtexel_bits;
-constexpr float largest_uv = 16;
+constexpr float largest_texels = 1 << 18;
 
 struct FixedPoint {
   std::int64_t x = 0, y = 0;
@@ -49,7 +49,8 @@ UvRaster rasterise_uvs(const TriangleMesh& mesh, int width, int height) {
     bool usable = true;
     for (int k = 0; k < 3; ++k) {
       const Eigen::Vector2f& uv = mesh.uvs[mesh.triangles[t][k]];
-      usable = usable && std::abs(uv.x()) <= largest_uv && std::abs(uv.y()) <= largest_uv;  // false for NaN
+      usable = usable && std::abs(uv.x()) * static_cast<float>(width) <= largest_texels &&  // false for NaN
+               std::abs(uv.y()) * static_cast<float>(height) <= largest_texels;
       if (!usable) break;
       corner[k] = {std::llround(static_cast<double>(uv.x()) * width * subtexels),
                    std::llround(static_cast<double>(uv.y()) * height * subtexels)};

@@ -1,0 +1,214 @@
+#include "detail/seams.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <compare>
+#include <cstring>
+#include <stdexcept>
+
+#include "mesh/tangent_space.h"
+
+namespace kiln {
+
+namespace {
+
+/// A triangle's side, from the vertex with the smaller position number to that with the larger.
+struct HalfEdge {
+  std::uint32_t low = 0, high = 0;
+  std::uint32_t triangle = 0;
+  std::array<std::uint8_t, 2> corners{};
+  bool forwards = false;  ///< the triangle runs from low to high
+
+  auto operator<=>(const HalfEdge&) const = default;
+};
+
+/// One number per position, the same for the same bits.
+std::vector<std::uint32_t> number_positions(const std::vector<Eigen::Vector3f>& positions) {
+  std::vector<std::uint32_t> order(positions.size()), number(positions.size());
+  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+  const auto compare = [&](std::uint32_t a, std::uint32_t b) {
+    return std::memcmp(positions[a].data(), positions[b].data(), 3 * sizeof(float));
+  };
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return compare(a, b) < 0; });
+  for (std::size_t i = 1; i < order.size(); ++i)
+    number[order[i]] = number[order[i - 1]] + (compare(order[i - 1], order[i]) != 0 ? 1 : 0);
+  return number;
+}
+
+std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh) {
+  const std::vector<std::uint32_t> number = number_positions(mesh.positions);
+  std::vector<HalfEdge> halves;
+  halves.reserve(3 * mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::uint8_t k = 0; k < 3; ++k) {
+      const auto next = static_cast<std::uint8_t>((k + 1) % 3);
+      const std::uint32_t from = number[mesh.triangles[t][k]], to = number[mesh.triangles[t][next]];
+      if (from == to) continue;
+      if (from < to)
+        halves.push_back({from, to, t, {k, next}, true});
+      else
+        halves.push_back({to, from, t, {next, k}, false});
+    }
+  std::sort(halves.begin(), halves.end());
+  return halves;
+}
+
+std::uint32_t vertex_of(const TriangleMesh& mesh, const HalfEdge& half, int end) {
+  return mesh.triangles[half.triangle][half.corners[static_cast<std::size_t>(end)]];
+}
+
+bool is_seam(const TriangleMesh& mesh, const HalfEdge& a, const HalfEdge& b) {
+  for (int end = 0; end < 2; ++end)
+    if (mesh.uvs[vertex_of(mesh, a, end)] != mesh.uvs[vertex_of(mesh, b, end)]) return true;
+  return false;
+}
+
+/// How well the normals of both at the edge's ends agree.
+float agreement(const TriangleMesh& mesh, const HalfEdge& a, const HalfEdge& b) {
+  if (mesh.normals.empty()) return 0;
+  float sum = 0;
+  for (int end = 0; end < 2; ++end)
+    sum += mesh.normals[vertex_of(mesh, a, end)].dot(mesh.normals[vertex_of(mesh, b, end)]);
+  return sum;
+}
+
+TexelSource source_at(const std::array<std::uint8_t, 2>& corners, std::uint32_t triangle, float along) {
+  std::array<float, 3> weights{};
+  weights[corners[0]] = 1 - along;
+  weights[corners[1]] = along;
+  return {triangle, weights[1], weights[2]};
+}
+
+}  // namespace
+
+Footprint::Footprint(const Eigen::Vector2f& uv, int width, int height) {
+  const float x = uv.x() * static_cast<float>(width) - 0.5f, y = uv.y() * static_cast<float>(height) - 0.5f;
+  const float left = std::floor(x), bottom = std::floor(y);
+  const float s = x - left, t = y - bottom;
+  const auto column = [&](int offset) { return std::clamp(static_cast<int>(left) + offset, 0, width - 1); };
+  const auto row = [&](int offset) { return std::clamp(static_cast<int>(bottom) + offset, 0, height - 1); };
+  const auto texel = [&](int i, int j) {
+    return static_cast<std::uint32_t>(j) * static_cast<std::uint32_t>(width) + static_cast<std::uint32_t>(i);
+  };
+  texels = {texel(column(0), row(0)), texel(column(1), row(0)), texel(column(0), row(1)), texel(column(1), row(1))};
+  weights = {(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t};
+}
+
+double Footprint::lookup(const Image<float>& image, int channel) const {
+  double sum = 0;
+  for (std::size_t k = 0; k < 4; ++k)
+    sum += static_cast<double>(weights[k]) *
+           image.values()[static_cast<std::size_t>(texels[k]) * static_cast<std::size_t>(image.channels()) +
+                          static_cast<std::size_t>(channel)];
+  return sum;
+}
+
+Seams::Seams(const TriangleMesh& atlas, int width, int height) : atlas_(&atlas), width_(width), height_(height) {
+  if (atlas.uvs.size() != atlas.positions.size()) throw std::invalid_argument("Seams: a mesh with uvs is needed");
+  const std::vector<HalfEdge> halves = sorted_half_edges(atlas);
+  const auto add = [&](const HalfEdge& a, const HalfEdge& b) {
+    if (is_seam(atlas, a, b)) edges_.push_back({{a.triangle, b.triangle}, {a.corners, b.corners}});
+  };
+  for (std::size_t begin = 0, end; begin < halves.size(); begin = end) {
+    end = begin + 1;
+    while (end < halves.size() && halves[end].low == halves[begin].low && halves[end].high == halves[begin].high) ++end;
+    if (end - begin == 2) {
+      add(halves[begin], halves[begin + 1]);
+      continue;
+    }
+    // Sheets that touch in an edge: those continue one another that run against each other with the same normals.
+    for (std::size_t a = begin; a < end; ++a) {
+      if (!halves[a].forwards) continue;
+      const HalfEdge* best = nullptr;
+      for (std::size_t b = begin; b < end; ++b)
+        if (!halves[b].forwards &&
+            (best == nullptr || agreement(atlas, halves[a], halves[b]) > agreement(atlas, halves[a], *best)))
+          best = &halves[b];
+      if (best != nullptr) add(halves[a], *best);
+    }
+  }
+}
+
+std::vector<SeamPoint> Seams::points(double per_texel) const {
+  std::vector<SeamPoint> points;
+  const Eigen::Vector2f size(static_cast<float>(width_), static_cast<float>(height_));
+  for (const Edge& edge : edges_) {
+    std::array<std::array<Eigen::Vector2f, 2>, 2> uv;
+    float length = 0;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const Triangle& t = atlas_->triangles[edge.triangles[side]];
+      for (std::size_t end = 0; end < 2; ++end) uv[side][end] = atlas_->uvs[t[edge.corners[side][end]]];
+      length = std::max(length, (uv[side][1] - uv[side][0]).cwiseProduct(size).norm());
+    }
+    const int steps = std::max(1, static_cast<int>(std::ceil(length * per_texel)));
+    for (int k = 0; k <= steps; ++k) {
+      const float along = static_cast<float>(k) / static_cast<float>(steps);
+      SeamPoint point;
+      for (std::size_t side = 0; side < 2; ++side)
+        point.sides[side] = {source_at(edge.corners[side], edge.triangles[side], along),
+                             Footprint((1 - along) * uv[side][0] + along * uv[side][1], width_, height_)};
+      point.length_texels = length / static_cast<float>(steps) * (k == 0 || k == steps ? 0.5f : 1.0f);
+      points.push_back(point);
+    }
+  }
+  return points;
+}
+
+void Seams::add_squared_differences(std::span<const SeamPoint> points, const Image<float>& image, int channel,
+                                    std::span<double> sums) {
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const auto& [a, b] = points[k].sides;
+    const double difference = a.footprint.lookup(image, channel) - b.footprint.lookup(image, channel);
+    sums[k] += difference * difference;
+  }
+}
+
+SeamMismatch Seams::summarise(std::span<const SeamPoint> points, std::span<const double> differences) {
+  SeamMismatch mismatch;
+  double length = 0;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    mismatch.mean += static_cast<double>(points[k].length_texels) * differences[k];
+    mismatch.largest = std::max(mismatch.largest, differences[k]);
+    length += static_cast<double>(points[k].length_texels);
+  }
+  mismatch.mean = length > 0 ? mismatch.mean / length : 0;
+  return mismatch;
+}
+
+SeamMismatch Seams::mismatch(const Image<float>& image) const {
+  const std::vector<SeamPoint> all = measuring_points();
+  std::vector<double> differences(all.size(), 0);
+  for (int channel = 0; channel < image.channels(); ++channel)
+    add_squared_differences(all, image, channel, differences);
+  for (double& difference : differences) difference = std::sqrt(difference);
+  return summarise(all, differences);
+}
+
+SeamMismatch Seams::mismatch_degrees(const Image<float>& map, NormalSpace space) const {
+  const std::vector<SeamPoint> all = measuring_points();
+  return summarise(all, degrees_at(all, map, space));
+}
+
+std::vector<double> Seams::degrees_at(std::span<const SeamPoint> points, const Image<float>& map,
+                                      NormalSpace space) const {
+  if (map.channels() != 3) throw std::invalid_argument("Seams: a normal map of three channels is needed");
+  const std::vector<TangentFrame> frames =
+      space == NormalSpace::tangent ? tangent_frames(*atlas_) : std::vector<TangentFrame>{};
+  std::vector<double> degrees(points.size());
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    std::array<Eigen::Vector3d, 2> normals;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const SeamSide& at = points[k].sides[side];
+      for (int channel = 0; channel < 3; ++channel) normals[side][channel] = at.footprint.lookup(map, channel);
+      if (space == NormalSpace::tangent)
+        normals[side] = to_object_space(normals[side].cast<float>(), interpolate(*atlas_, atlas_->normals, at.source),
+                                        interpolate(*atlas_, frames, at.source))
+                            .cast<double>();
+    }
+    degrees[k] = std::atan2(normals[0].cross(normals[1]).norm(), normals[0].dot(normals[1])) * 180 / std::acos(-1.0);
+  }
+  return degrees;
+}
+
+}  // namespace kiln

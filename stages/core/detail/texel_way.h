@@ -1,0 +1,23 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace kiln {
+
+/// How a texel's point of the high mesh was found, as match.png shows it.
+enum class TexelWay : std::uint8_t { uncovered, ray_outwards, ray_inwards, nearest_point, disagreeing };
+
+struct TexelWayColour {
+  const char* name;
+  std::array<std::uint8_t, 3> colour;  ///< sRGB
+};
+
+/// By TexelWay.
+inline constexpr std::array<TexelWayColour, 5> texel_way_colours = {{{"not covered", {24, 22, 20}},
+                                                                     {"ray outwards", {214, 164, 88}},
+                                                                     {"ray inwards", {74, 132, 150}},
+                                                                     {"nearest point", {196, 120, 190}},
+                                                                     {"disagreeing", {228, 40, 30}}}};
+
+}  // namespace kiln

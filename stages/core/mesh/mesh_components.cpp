@@ -1,0 +1,135 @@
+#include "mesh/mesh_components.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace kiln {
+
+namespace {
+
+struct ComponentShape {
+  BoundingBox box;
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< a vertex of it
+  double six_volumes = 0;
+  double double_area = 0;
+  bool started = false;
+  bool closed = true;
+  std::vector<std::uint32_t> triangles;  ///< filled where it is needed
+};
+
+std::array<Eigen::Vector3d, 3> corners_from(const TriangleMesh& mesh, const Triangle& t,
+                                            const Eigen::Vector3d& origin) {
+  return {mesh.positions[t[0]].cast<double>() - origin, mesh.positions[t[1]].cast<double>() - origin,
+          mesh.positions[t[2]].cast<double>() - origin};
+}
+
+std::vector<ComponentShape> measure(const TriangleMesh& mesh, const Components& components) {
+  std::vector<ComponentShape> shapes(components.count);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
+    ComponentShape& shape = shapes[components.of_triangle[i]];
+    if (!shape.started) shape.origin = mesh.positions[t[0]].cast<double>();
+    shape.started = true;
+    const auto [a, b, c] = corners_from(mesh, t, shape.origin);
+    shape.six_volumes += a.dot(b.cross(c));
+    shape.double_area += (b - a).cross(c - a).norm();
+    for (const std::uint32_t vertex : t) {
+      shape.box.lowest = shape.box.lowest.cwiseMin(mesh.positions[vertex]);
+      shape.box.highest = shape.box.highest.cwiseMax(mesh.positions[vertex]);
+    }
+  }
+  return shapes;
+}
+
+/// Marks the components that have a border. Over the triangles at an inner vertex, the vertices after it are those
+/// before it; on a border one of each differs, and so do their sums.
+void find_open(const TriangleMesh& mesh, const Components& components, std::vector<ComponentShape>& shapes) {
+  std::vector<std::int64_t> balance(mesh.positions.size(), 0);
+  for (const Triangle& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) balance[t[k]] += std::int64_t{t[(k + 1) % 3]} - std::int64_t{t[(k + 2) % 3]};
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    for (const std::uint32_t vertex : mesh.triangles[i])
+      if (balance[vertex] != 0) shapes[components.of_triangle[i]].closed = false;
+}
+
+/// How often the closed component goes around `point` (Van Oosterom and Strackee, "The solid angle of a plane
+/// triangle", 1983).
+double winding_number(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles,
+                      const Eigen::Vector3d& point) {
+  double half_angles = 0;
+  for (const std::uint32_t i : triangles) {
+    const auto [a, b, c] = corners_from(mesh, mesh.triangles[i], point);
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    half_angles += std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return half_angles / (2 * 3.14159265358979323846);
+}
+
+}  // namespace
+
+DisjointSets::DisjointSets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0u); }
+
+std::uint32_t DisjointSets::root(std::uint32_t member) {
+  while (parent_[member] != member) member = parent_[member] = parent_[parent_[member]];
+  return member;
+}
+
+void DisjointSets::join(std::uint32_t a, std::uint32_t b) {
+  const auto [lesser, greater] = std::minmax({root(a), root(b)});
+  parent_[greater] = lesser;
+}
+
+std::vector<std::uint32_t> DisjointSets::roots() {
+  std::vector<std::uint32_t> all(parent_.size());
+  for (std::uint32_t member = 0; member < all.size(); ++member) all[member] = root(member);
+  return all;
+}
+
+Components find_components(const TriangleMesh& mesh) {
+  DisjointSets sets(mesh.positions.size());
+  for (const Triangle& t : mesh.triangles) {
+    sets.join(t[0], t[1]);
+    sets.join(t[0], t[2]);
+  }
+  Components components;
+  components.of_triangle.resize(mesh.triangles.size());
+  constexpr std::uint32_t none_yet = ~0u;
+  std::vector<std::uint32_t> number(mesh.positions.size(), none_yet);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    std::uint32_t& component = number[sets.root(mesh.triangles[i][0])];
+    if (component == none_yet) component = static_cast<std::uint32_t>(components.count++);
+    components.of_triangle[i] = component;
+  }
+  return components;
+}
+
+int turn_inside_out_components(TriangleMesh& mesh, int& count) {
+  const Components components = find_components(mesh);
+  count = static_cast<int>(components.count);
+  std::vector<ComponentShape> shapes = measure(mesh, components);
+  // What is so thin that rounding decides has no inside.
+  const auto is_negative = [](const ComponentShape& shape) {
+    return shape.six_volumes < -1e-9 * std::pow(shape.double_area, 1.5);
+  };
+  if (std::none_of(shapes.begin(), shapes.end(), is_negative)) return 0;
+  find_open(mesh, components, shapes);
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) shapes[components.of_triangle[i]].triangles.push_back(i);
+
+  const auto is_inside = [&](const ComponentShape& inner, const ComponentShape& outer) {
+    const bool may_be = (inner.box.lowest.array() > outer.box.lowest.array()).all() &&
+                        (inner.box.highest.array() < outer.box.highest.array()).all();
+    return may_be && std::abs(winding_number(mesh, outer.triangles, inner.origin)) > 0.5;
+  };
+  std::vector<bool> turned(components.count, false);
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+    turned[i] = shapes[i].closed && is_negative(shapes[i]) &&
+                std::none_of(shapes.begin(), shapes.end(),
+                             [&](const ComponentShape& outer) { return outer.closed && is_inside(shapes[i], outer); });
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    if (turned[components.of_triangle[i]]) std::swap(mesh.triangles[i][1], mesh.triangles[i][2]);
+  return static_cast<int>(std::count(turned.begin(), turned.end(), true));
+}
+
+}  // namespace kiln

@@ -1,0 +1,418 @@
+// Orientation: CGAL, "Polygon Mesh Processing", orient_polygon_soup. Taking sheets apart: Gueziec, Taubin, Lazarus and
+// Horn, "Cutting and stitching: converting sets of polygons to manifold surfaces", 2001, with local cuts and stitches.
+#include "mesh/mesh_repair.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+#include <tuple>
+#include <vector>
+
+#include "mesh/mesh_components.h"
+#include "mesh/mesh_surgery.h"
+
+namespace kiln {
+
+namespace {
+
+namespace PMP = CGAL::Polygon_mesh_processing;
+constexpr std::uint32_t none_yet = ~0u;
+
+/// Finds equal things by a hash of them; open addressing.
+class IndexTable {
+ public:
+  explicit IndexTable(std::size_t things) {
+    std::size_t slots = 16;
+    while (slots < 2 * things) slots *= 2;
+    slots_.assign(slots, none_yet);
+  }
+
+  /// The first index added for which `equal` holds, or else `index`, which is added.
+  template <class Equal>
+  std::uint32_t find_or_add(const std::array<std::uint32_t, 3>& key, std::uint32_t index, const Equal& equal) {
+    std::uint64_t hash = 0;
+    for (const std::uint32_t word : key) {
+      hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
+      hash ^= hash >> 29;
+    }
+    for (std::size_t slot = hash & (slots_.size() - 1);; slot = (slot + 1) & (slots_.size() - 1)) {
+      if (slots_[slot] == none_yet) return slots_[slot] = index;
+      if (equal(slots_[slot])) return slots_[slot];
+    }
+  }
+
+ private:
+  std::vector<std::uint32_t> slots_;
+};
+
+bool repeats_vertex(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
+
+std::array<Eigen::Vector3d, 3> corners_of(const TriangleMesh& mesh, const Triangle& t) {
+  return {mesh.positions[t[0]].cast<double>(), mesh.positions[t[1]].cast<double>(),
+          mesh.positions[t[2]].cast<double>()};
+}
+
+Eigen::Vector3d area_normal(const TriangleMesh& mesh, const Triangle& triangle) {
+  const auto [a, b, c] = corners_of(mesh, triangle);
+  return (b - a).cross(c - a);
+}
+
+/// Exact: differences and products of floats have no more digits than a double, unless they are of very different
+/// size.
+bool is_flat(const TriangleMesh& mesh, const Triangle& triangle) { return area_normal(mesh, triangle).isZero(0); }
+
+/// Vertices at the same place become the first of them.
+int merge_vertices(TriangleMesh& mesh) {
+  IndexTable table(mesh.positions.size());
+  std::vector<std::uint32_t> kept(mesh.positions.size());
+  int merged = 0;
+  for (std::uint32_t i = 0; i < kept.size(); ++i) {
+    Eigen::Vector3f& p = mesh.positions[i];
+    p += Eigen::Vector3f::Zero();  // turns -0 into +0, which would be another key
+    std::array<std::uint32_t, 3> key;
+    std::memcpy(key.data(), p.data(), sizeof key);
+    kept[i] = table.find_or_add(key, i, [&](std::uint32_t other) { return mesh.positions[other] == p; });
+    merged += kept[i] != i;
+  }
+  if (merged > 0)
+    for (Triangle& triangle : mesh.triangles)
+      for (std::uint32_t& vertex : triangle) vertex = kept[vertex];
+  return merged;
+}
+
+/// Leaves out vertices that no triangle uses; the others keep their order. Returns how many.
+int drop_unused(TriangleMesh& mesh) {
+  std::vector<std::uint32_t> new_index(mesh.positions.size(), none_yet);
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::uint32_t vertex : triangle) new_index[vertex] = 0;
+  std::uint32_t used = 0;
+  for (std::uint32_t i = 0; i < new_index.size(); ++i) {
+    if (new_index[i] == none_yet) continue;
+    mesh.positions[used] = mesh.positions[i];
+    if (!mesh.colors.empty()) mesh.colors[used] = mesh.colors[i];
+    new_index[i] = used++;
+  }
+  const int unused = static_cast<int>(mesh.positions.size() - used);
+  mesh.positions.resize(used);
+  if (!mesh.colors.empty()) mesh.colors.resize(used);
+  if (unused > 0)
+    for (Triangle& triangle : mesh.triangles)
+      for (std::uint32_t& vertex : triangle) vertex = new_index[vertex];
+  return unused;
+}
+
+void drop_duplicates(TriangleMesh& mesh, MeshRepairs& repairs) {
+  IndexTable table(mesh.triangles.size());
+  std::vector<Triangle> kept;
+  kept.reserve(mesh.triangles.size());
+  const auto sorted = [](Triangle triangle) {
+    std::sort(triangle.begin(), triangle.end());
+    return triangle;
+  };
+  for (const Triangle& triangle : mesh.triangles) {
+    if (repeats_vertex(triangle)) {
+      ++repairs.degenerate_triangles;
+      continue;
+    }
+    const Triangle key = sorted(triangle);
+    const auto index = static_cast<std::uint32_t>(kept.size());
+    if (table.find_or_add(key, index, [&](std::uint32_t other) { return sorted(kept[other]) == key; }) == index)
+      kept.push_back(triangle);
+    else
+      ++repairs.duplicate_triangles;
+  }
+  mesh.triangles = std::move(kept);
+}
+
+/// Winds triangles as their neighbours across edges of two triangles; each part that hangs together so is wound as the
+/// greater part of its area was. Returns how many were turned.
+int orient(TriangleMesh& mesh) {
+  using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
+  std::vector<Point> points;
+  for (const Eigen::Vector3f& p : mesh.positions) points.emplace_back(p.x(), p.y(), p.z());
+  std::vector<std::vector<std::size_t>> polygons;
+  polygons.reserve(mesh.triangles.size());
+  for (const Triangle& t : mesh.triangles) polygons.push_back({t[0], t[1], t[2]});
+  PMP::orient_polygon_soup(points, polygons);
+
+  // It splits vertices, too, but opens whole chains of edges where sheets meet: only the winding is taken from it, and
+  // what hangs together. Corners keep their places in a triangle unless it is turned.
+  std::vector<bool> turned(polygons.size());
+  TriangleMesh parts;
+  parts.positions.resize(points.size());
+  parts.triangles.resize(polygons.size());
+  for (std::size_t i = 0; i < polygons.size(); ++i) {
+    for (int k = 0; k < 3; ++k) parts.triangles[i][k] = static_cast<std::uint32_t>(polygons[i][k]);
+    const auto corner = [&](int k) { return points[polygons[i][k % 3]]; };
+    const auto& [a, b, c] = mesh.triangles[i];
+    int first = 0;
+    while (first < 2 && corner(first) != points[a]) ++first;
+    turned[i] = corner(first + 1) != points[b];
+  }
+
+  const Components components = find_components(parts);
+  std::vector<double> kept_area(components.count, 0);
+  for (std::size_t i = 0; i < turned.size(); ++i)
+    kept_area[components.of_triangle[i]] += (turned[i] ? -1 : 1) * area_normal(mesh, mesh.triangles[i]).norm();
+  int reversed = 0;
+  for (std::size_t i = 0; i < turned.size(); ++i) {
+    if (turned[i] == (kept_area[components.of_triangle[i]] < 0)) continue;
+    std::swap(mesh.triangles[i][1], mesh.triangles[i][2]);
+    ++reversed;
+  }
+  return reversed;
+}
+
+// ---- Taking sheets apart.
+
+/// Corner 3 t + k of triangle t; it also names the edge that starts there.
+std::uint32_t next_corner(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
+std::uint32_t vertex_at(const TriangleMesh& mesh, std::uint32_t corner) {
+  return mesh.triangles[corner / 3][corner % 3];
+}
+
+using CornerPair = std::pair<std::uint32_t, std::uint32_t>;
+
+/// An edge and the corners that its triangles' own edges start at.
+struct SharedEdge {
+  std::uint32_t first = 0, last = 0;  ///< in the list of all
+  std::vector<CornerPair> pairs;      ///< triangles that stay together: edges of opposite direction
+};
+
+/// Of the triangles at an edge, those that continue each other best: flattest first; among equals those that form a
+/// convex edge, so that two solids that touch there stay two.
+std::vector<CornerPair> pair_sheets(const TriangleMesh& mesh, const std::uint32_t* first, const std::uint32_t* last) {
+  constexpr std::ptrdiff_t most = 64;  // a fan of more is no surface; all pairs would be too many
+  if (last - first > most) return {};
+  struct Candidate {
+    long bend;  ///< rounded, so that equals are equal
+    bool concave;
+    CornerPair pair;
+    auto order() const { return std::tie(bend, concave, pair); }
+  };
+  const auto unit_normal = [&](std::uint32_t corner) {
+    return area_normal(mesh, mesh.triangles[corner / 3]).normalized().eval();
+  };
+  std::vector<Candidate> candidates;
+  for (const std::uint32_t* i = first; i != last; ++i)
+    for (const std::uint32_t* j = i + 1; j != last; ++j) {
+      const std::uint32_t from = vertex_at(mesh, *i);
+      if (vertex_at(mesh, *j) == from) continue;  // same direction
+      const Eigen::Vector3d normal = unit_normal(*i);
+      const std::uint32_t apex = vertex_at(mesh, next_corner(next_corner(*j)));
+      const double height = normal.dot((mesh.positions[apex] - mesh.positions[from]).cast<double>());
+      candidates.push_back({-std::lround(100 * normal.dot(unit_normal(*j))), height > 0, {*i, *j}});
+    }
+  std::sort(candidates.begin(), candidates.end(),
+            [](const Candidate& a, const Candidate& b) { return a.order() < b.order(); });
+  std::vector<CornerPair> pairs;
+  std::vector<std::uint32_t> taken;
+  const auto is_taken = [&](std::uint32_t c) { return std::find(taken.begin(), taken.end(), c) != taken.end(); };
+  for (const Candidate& candidate : candidates) {
+    if (is_taken(candidate.pair.first) || is_taken(candidate.pair.second)) continue;
+    pairs.push_back(candidate.pair);
+    taken.insert(taken.end(), {candidate.pair.first, candidate.pair.second});
+  }
+  return pairs;
+}
+
+/// Gives every fan of triangles that stay together a vertex of its own.
+void split_sheets(TriangleMesh& mesh, MeshRepairs& repairs) {
+  // Step 1: the triangles at each edge, and which of them stay together.
+  const auto corners = static_cast<std::uint32_t>(3 * mesh.triangles.size());
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> edges(corners);
+  for (std::uint32_t corner = 0; corner < corners; ++corner) {
+    const auto [a, b] = std::minmax({vertex_at(mesh, corner), vertex_at(mesh, next_corner(corner))});
+    edges[corner] = {std::uint64_t{a} << 32 | b, corner};
+  }
+  std::sort(edges.begin(), edges.end());
+  std::vector<std::uint32_t> at_edges(corners);
+  std::transform(edges.begin(), edges.end(), at_edges.begin(), [](const auto& edge) { return edge.second; });
+  std::vector<CornerPair> plain;      // of edges of two triangles
+  std::vector<SharedEdge> contested;  // of more
+  std::vector<bool> at_cut(mesh.positions.size(), false);
+  for (std::uint32_t i = 0, end = 0; i < corners; i = end) {
+    while (end < corners && edges[end].first == edges[i].first) ++end;
+    const std::uint32_t corner = at_edges[i];
+    if (end - i == 1) continue;
+    const bool opposite = vertex_at(mesh, corner) != vertex_at(mesh, at_edges[i + 1]);
+    if (end - i == 2 && opposite) {
+      plain.emplace_back(corner, at_edges[i + 1]);
+      continue;
+    }
+    at_cut[vertex_at(mesh, corner)] = at_cut[vertex_at(mesh, next_corner(corner))] = true;
+    if (end - i == 2) {
+      ++repairs.unorientable_edges;
+    } else {
+      ++repairs.nonmanifold_edges;
+      contested.push_back({i, end, pair_sheets(mesh, &at_edges[i], &at_edges[i] + (end - i))});
+    }
+  }
+
+  // Step 2: corners that hang together across pairs are one vertex. Where a fan comes back to a contested edge, that
+  // edge has too many triangles still: there, none stay together.
+  std::vector<std::uint32_t> group;
+  for (bool again = true; again;) {
+    DisjointSets sets(corners);
+    const auto join = [&](const CornerPair& pair) {
+      sets.join(pair.first, next_corner(pair.second));
+      sets.join(next_corner(pair.first), pair.second);
+    };
+    for (const CornerPair& pair : plain) join(pair);
+    for (const SharedEdge& edge : contested)
+      for (const CornerPair& pair : edge.pairs) join(pair);
+    group = sets.roots();
+    again = false;
+    for (SharedEdge& edge : contested) {
+      std::vector<std::pair<std::uint32_t, std::uint32_t>> directed;
+      for (std::uint32_t i = edge.first; i < edge.last; ++i)
+        directed.emplace_back(group[at_edges[i]], group[next_corner(at_edges[i])]);
+      std::sort(directed.begin(), directed.end());
+      if (edge.pairs.empty() || std::adjacent_find(directed.begin(), directed.end()) == directed.end()) continue;
+      edge.pairs.clear();
+      again = true;
+    }
+  }
+
+  // Step 3: the first group of a vertex keeps it, others get copies.
+  std::vector<std::uint32_t> vertex_of_group(corners, none_yet), kept_by(mesh.positions.size(), none_yet);
+  std::vector<bool> was_split(mesh.positions.size(), false);
+  for (std::uint32_t corner = 0; corner < corners; ++corner) {
+    std::uint32_t& vertex = mesh.triangles[corner / 3][corner % 3];
+    std::uint32_t& assigned = vertex_of_group[group[corner]];
+    if (assigned == none_yet && kept_by[vertex] == none_yet) {
+      kept_by[vertex] = group[corner];
+      assigned = vertex;
+    } else if (assigned == none_yet) {
+      assigned = static_cast<std::uint32_t>(mesh.positions.size());
+      mesh.positions.push_back(Eigen::Vector3f(mesh.positions[vertex]));
+      if (!mesh.colors.empty()) mesh.colors.push_back(Eigen::Vector3f(mesh.colors[vertex]));
+      if (!was_split[vertex] && !at_cut[vertex]) ++repairs.nonmanifold_vertices;
+      was_split[vertex] = true;
+    }
+    vertex = assigned;
+  }
+}
+
+/// After triangles were taken out or put in: edges that are there twice now, and fans that came apart.
+void make_manifold_again(TriangleMesh& mesh) {
+  MeshRepairs own;
+  drop_duplicates(mesh, own);
+  if (!is_manifold(mesh)) split_sheets(mesh, own);
+}
+
+}  // namespace
+
+const std::array<std::pair<const char*, int MeshRepairs::*>, 11>& MeshRepairs::kinds() {
+  static const std::array<std::pair<const char*, int MeshRepairs::*>, 11> all = {
+      {{"merged_vertices", &MeshRepairs::merged_vertices},
+       {"unused_vertices", &MeshRepairs::unused_vertices},
+       {"triangulated_polygons", &MeshRepairs::triangulated_polygons},
+       {"degenerate_triangles", &MeshRepairs::degenerate_triangles},
+       {"duplicate_triangles", &MeshRepairs::duplicate_triangles},
+       {"reversed_triangles", &MeshRepairs::reversed_triangles},
+       {"nonmanifold_edges", &MeshRepairs::nonmanifold_edges},
+       {"nonmanifold_vertices", &MeshRepairs::nonmanifold_vertices},
+       {"unorientable_edges", &MeshRepairs::unorientable_edges},
+       {"inside_out_components", &MeshRepairs::inside_out_components},
+       {"filled_holes", &MeshRepairs::filled_holes}}};
+  return all;
+}
+
+bool MeshRepairs::none() const {
+  return std::all_of(kinds().begin(), kinds().end(), [&](const auto& kind) {
+    return kind.second == &MeshRepairs::filled_holes || this->*kind.second == 0;
+  });
+}
+
+std::string MeshRepairs::text() const {
+  std::string words;
+  for (const auto& [name, count] : kinds()) {
+    if (this->*count == 0) continue;
+    std::string plain = name;
+    std::replace(plain.begin(), plain.end(), '_', ' ');
+    words += (words.empty() ? "" : ", ") + std::to_string(this->*count) + " " + plain;
+  }
+  return words;
+}
+
+MeshRepairs repair_mesh(TriangleMesh& mesh, const MeshRepairSettings& settings) {
+  MeshRepairs repairs;
+  mesh.normals.clear();
+  mesh.uvs.clear();
+
+  // Vertices and triangles one by one.
+  repairs.merged_vertices = merge_vertices(mesh);
+  repairs.unused_vertices = drop_unused(mesh) - repairs.merged_vertices;
+  drop_duplicates(mesh, repairs);
+
+  // The surface they form.
+  if (!is_manifold(mesh)) {
+    repairs.reversed_triangles = orient(mesh);
+    split_sheets(mesh, repairs);
+  }
+  if (std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) { return is_flat(mesh, t); })) {
+    repairs.degenerate_triangles += remove_flat_triangles(mesh);
+    make_manifold_again(mesh);
+  }
+  repairs.border_loops = count_border_loops(mesh);
+  if (settings.fill_hole_edges > 0 && repairs.border_loops > 0) {
+    repairs.filled_holes = fill_holes(mesh, settings.fill_hole_edges);
+    make_manifold_again(mesh);
+    repairs.border_loops = count_border_loops(mesh);
+  }
+  drop_unused(mesh);
+  repairs.inside_out_components = turn_inside_out_components(mesh, repairs.components);
+  return repairs;
+}
+
+bool is_manifold(const TriangleMesh& mesh) {
+  // The triangles at each vertex, as the vertices after and before it.
+  struct Wedge {
+    std::uint32_t after, before;
+    bool operator<(const Wedge& other) const { return after < other.after; }
+  };
+  std::vector<std::uint32_t> begin(mesh.positions.size() + 1, 0);
+  for (const Triangle& triangle : mesh.triangles) {
+    if (repeats_vertex(triangle)) return false;
+    for (const std::uint32_t vertex : triangle) ++begin[vertex + 1];
+  }
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<Wedge> wedges(begin.back());
+  std::vector<std::uint32_t> filled(begin.begin(), begin.end() - 1);
+  for (const Triangle& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) wedges[filled[t[k]]++] = {t[(k + 1) % 3], t[(k + 2) % 3]};
+
+  for (std::size_t vertex = 0; vertex + 1 < begin.size(); ++vertex) {
+    const auto first = wedges.begin() + begin[vertex], last = wedges.begin() + begin[vertex + 1];
+    if (first == last) continue;
+    std::sort(first, last);
+    if (std::adjacent_find(first, last, [](const Wedge& a, const Wedge& b) { return a.after == b.after; }) != last)
+      return false;
+    const auto starting_at = [&](std::uint32_t neighbour) {
+      const auto found = std::lower_bound(first, last, Wedge{neighbour, 0});
+      return found != last && found->after == neighbour ? found : last;
+    };
+    // One fan: from the one wedge that nothing comes before, or around, all are reached.
+    std::vector<bool> is_followed(static_cast<std::size_t>(last - first), false);
+    for (auto wedge = first; wedge != last; ++wedge) {
+      const auto following = starting_at(wedge->before);
+      if (following == last) continue;
+      if (is_followed[static_cast<std::size_t>(following - first)]) return false;  // two come before it
+      is_followed[static_cast<std::size_t>(following - first)] = true;
+    }
+    const auto start = first + (std::find(is_followed.begin(), is_followed.end(), false) - is_followed.begin());
+    std::ptrdiff_t reached = 1;
+    const auto head = start == last ? first : start;
+    for (auto wedge = starting_at(head->before); wedge != last && wedge != head; wedge = starting_at(wedge->before))
+      ++reached;
+    if (reached != last - first) return false;
+  }
+  return true;
+}
+
+}  // namespace kiln

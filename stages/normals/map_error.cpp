@@ -1,0 +1,82 @@
+#include "normals/map_error.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <vector>
+
+#include "detail/seams.h"
+#include "mesh/tangent_space.h"
+#include "normals/surface_match.h"
+#include "raycast/ray_scene.h"
+
+namespace kiln {
+
+namespace {
+
+/// The `k`-th of `count` points: equal steps of area, and within triangles the R2 sequence (Roberts, "The unreasonable
+/// effectiveness of quasirandom sequences", 2018).
+SurfacePoint sample_at(const std::vector<double>& areas_up_to, int k, int count) {
+  const double wanted = (k + 0.5) / count * areas_up_to.back();
+  const auto triangle = std::upper_bound(areas_up_to.begin(), areas_up_to.end(), wanted) - areas_up_to.begin();
+  double whole;
+  double u = std::modf(0.5 + 0.7548776662466927 * k, &whole), v = std::modf(0.5 + 0.5698402909980532 * k, &whole);
+  if (u + v > 1) u = 1 - u, v = 1 - v;
+  SurfacePoint point;
+  point.triangle = static_cast<std::uint32_t>(std::min<std::ptrdiff_t>(triangle, std::ssize(areas_up_to) - 1));
+  point.u = static_cast<float>(u);
+  point.v = static_cast<float>(v);
+  return point;
+}
+
+}  // namespace
+
+MapError measure_map_error(const TriangleMesh& high, const TriangleMesh& atlas, const Image<float>& map,
+                           NormalSpace space, int samples) {
+  std::vector<double> areas_up_to(high.triangles.size());
+  double area = 0;
+  for (std::size_t t = 0; t < high.triangles.size(); ++t) {
+    const auto at = [&](int k) -> Eigen::Vector3d {
+      return high.positions[high.triangles[t][static_cast<std::size_t>(k)]].cast<double>();
+    };
+    areas_up_to[t] = area += (at(1) - at(0)).cross(at(2) - at(0)).norm();
+  }
+  if (!(area > 0)) return {};
+
+  const RayScene low(atlas);
+  const std::vector<TangentFrame> frames =
+      space == NormalSpace::tangent ? tangent_frames(atlas) : std::vector<TangentFrame>{};
+  constexpr float anywhere = std::numeric_limits<float>::infinity();
+  std::vector<double> degrees(static_cast<std::size_t>(samples));
+  tbb::parallel_for(tbb::blocked_range<int>(0, samples, 512), [&](const tbb::blocked_range<int>& part) {
+    for (int k = part.begin(); k < part.end(); ++k) {
+      const SurfacePoint at_high = sample_at(areas_up_to, k, samples);
+      const Eigen::Vector3f point = position_at(high, at_high), wanted = normal_at(high, at_high);
+      SurfacePoint at_low = low.closest_facing_point(point, wanted, anywhere);
+      if (!at_low.found()) at_low = low.closest_point(point, anywhere);
+      const TexelSource source{at_low.triangle, at_low.u, at_low.v};
+      const Footprint footprint(interpolate(atlas, atlas.uvs, source), map.width(), map.height());
+      Eigen::Vector3f shown;
+      for (int channel = 0; channel < 3; ++channel) shown[channel] = static_cast<float>(footprint.lookup(map, channel));
+      if (space == NormalSpace::tangent)
+        shown = to_object_space(shown, interpolate(atlas, atlas.normals, source), interpolate(atlas, frames, source));
+      const Eigen::Vector3d a = shown.cast<double>(), b = wanted.cast<double>();
+      // The arc cosine has no digits left for small angles.
+      degrees[static_cast<std::size_t>(k)] = std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::acos(-1.0);
+    }
+  });
+
+  MapError error;
+  for (const double angle : degrees) error.mean_degrees += angle;
+  error.mean_degrees /= samples;
+  const auto place = degrees.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(degrees.size()));
+  std::nth_element(degrees.begin(), place, degrees.end());
+  error.percentile_95_degrees = *place;
+  error.largest_degrees = *std::max_element(degrees.begin(), degrees.end());
+  return error;
+}
+
+}  // namespace kiln

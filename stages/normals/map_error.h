@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+
+#include "detail/normal_space.h"
+#include "image/image.h"
+#include "mesh/triangle_mesh.h"
+
+namespace kiln {
+
+/// Angles in degrees between the high mesh's normals and what the low mesh shows with its map.
+struct MapError {
+  double mean_degrees = 0;
+  double percentile_95_degrees = 0;
+  double largest_degrees = 0;
+};
+
+/// Over `samples` points spread evenly over the high mesh's area (with normals): the nearest point of the atlas mesh
+/// that faces the same side, the map looked up bilinearly there and normalised, against the high normal. `map` holds
+/// unit vectors in `space`, gutters filled; `atlas` has normals and uvs.
+MapError measure_map_error(const TriangleMesh& high, const TriangleMesh& atlas, const Image<float>& map,
+                           NormalSpace space, int samples = 200'000);
+
+}  // namespace kiln

@@ -1,0 +1,236 @@
+#include "normals/texel_match.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <tbb/parallel_for.h>
+#include <vector>
+
+#include "normals/bilinear_fit.h"
+#include "normals/chart_ring.h"
+#include "normals/surface_walk.h"
+
+namespace kiln {
+
+namespace {
+
+using Pixel = Eigen::Map<Eigen::Vector3f>;
+
+/// A walk from a texel's centre that ends farther off than the centre's own match, by more than so many texels, has
+/// left the surface that the sample stands for.
+constexpr float largest_step_texels = 4;
+
+/// Samples in a band of rows that is rasterised at once.
+constexpr int band_samples = 1 << 20;
+
+/// Weight of a texel's centre, as a fraction of a texel's samples: holds texels that hardly any sample sees.
+constexpr float keep_centre = 0.02f;
+
+/// What one texel row adds to the metrics; rows are added up in order, so that sums do not depend on threads.
+struct RowSums {
+  double distance = 0, largest_distance = 0;
+};
+
+RowSums match_centres(int j, const TriangleMesh& high, const RayScene& scene, const TriangleMesh& atlas,
+                      const UvRaster& raster, const MatchLimits& limits, TexelMatches& matches,
+                      std::vector<std::uint32_t>& triangles) {
+  RowSums sums;
+  for (int i = 0; i < raster.width; ++i) {
+    const TexelSource& source = raster.at(i, j);
+    if (!source.covered()) continue;
+    const Eigen::Vector3f low_point = interpolate(atlas, atlas.positions, source);
+    const Eigen::Vector3f low_normal = interpolate(atlas, atlas.normals, source).normalized();
+    const SurfaceMatch match = match_surface(high, scene, low_point, low_normal, limits);
+    const Eigen::Vector3f high_point = position_at(high, match.point);
+    Pixel(matches.position.pixel(i, j).data()) = high_point;
+    Pixel(matches.normal_object.pixel(i, j).data()) = normal_at(high, match.point);
+    TexelWay way = TexelWay::disagreeing;
+    if (match.agrees)
+      way = match.way == MatchWay::ray_outwards  ? TexelWay::ray_outwards
+            : match.way == MatchWay::ray_inwards ? TexelWay::ray_inwards
+                                                 : TexelWay::nearest_point;
+    matches.way.at(i, j) = static_cast<std::uint8_t>(way);
+    if (!triangles.empty())
+      triangles[static_cast<std::size_t>(j) * static_cast<std::size_t>(raster.width) + static_cast<std::size_t>(i)] =
+          match.point.triangle;
+    const double apart = (high_point - low_point).cast<double>().norm();
+    sums.distance += apart;
+    sums.largest_distance = std::max(sums.largest_distance, apart);
+  }
+  return sums;
+}
+
+/// Rows of texels, and the triangles of the atlas that reach into them.
+struct Band {
+  int begin = 0, end = 0;
+  std::vector<std::uint32_t> triangles;
+};
+
+std::vector<Band> bands_of(const TriangleMesh& atlas, int width, int height, int samples) {
+  const int rows = std::clamp(band_samples / (width * samples), 1, height);
+  std::vector<Band> bands(static_cast<std::size_t>((height + rows - 1) / rows));
+  for (std::size_t k = 0; k < bands.size(); ++k) {
+    bands[k].begin = static_cast<int>(k) * rows;
+    bands[k].end = std::min(height, bands[k].begin + rows);
+  }
+  for (std::uint32_t t = 0; t < atlas.triangles.size(); ++t) {
+    const auto v = [&](int k) { return atlas.uvs[atlas.triangles[t][static_cast<std::size_t>(k)]].y(); };
+    const auto [low, high] = std::minmax({v(0), v(1), v(2)});
+    const auto row = [&](float coordinate) {
+      const float rows_up = coordinate * static_cast<float>(height);
+      return rows_up > 0 ? static_cast<int>(std::min(rows_up, static_cast<float>(height - 1))) : 0;
+    };
+    // One row more either way: the rasteriser rounds.
+    for (int k = std::max(0, row(low) - 1) / rows; k <= std::min(height - 1, row(high) + 1) / rows; ++k)
+      bands[static_cast<std::size_t>(k)].triangles.push_back(t);
+  }
+  return bands;
+}
+
+/// The samples of a band's texels as a raster of their own; its sources' triangles are the atlas'.
+UvRaster rasterise_band(const TriangleMesh& atlas, const Band& band, int width, int height, int side) {
+  TriangleMesh part;
+  const auto rows = static_cast<float>(band.end - band.begin);
+  for (const std::uint32_t t : band.triangles) {
+    const auto first = static_cast<std::uint32_t>(part.uvs.size());
+    for (const std::uint32_t vertex : atlas.triangles[t]) {
+      const Eigen::Vector2f& uv = atlas.uvs[vertex];
+      part.uvs.emplace_back(uv.x(), (uv.y() * static_cast<float>(height) - static_cast<float>(band.begin)) / rows);
+    }
+    part.triangles.push_back({first, first + 1, first + 2});
+  }
+  part.positions.resize(part.uvs.size());
+  UvRaster raster = rasterise_uvs(part, width * side, (band.end - band.begin) * side);
+  for (TexelSource& source : raster.texels)
+    if (source.covered()) source.triangle = band.triangles[source.triangle];
+  return raster;
+}
+
+/// The high normals of one texel's samples.
+class TexelSamples {
+ public:
+  TexelSamples(const TriangleMesh& high, const RayScene& scene, const SurfaceWalk& walk, const TriangleMesh& atlas,
+               const MatchLimits& limits)
+      : high_(high), scene_(scene), walk_(walk), atlas_(atlas), limits_(limits) {}
+
+  /// Starts a texel: the triangle of its centre's point, if it has one, and how far off samples' points may be.
+  void start(std::uint32_t triangle, float reach) {
+    triangle_ = triangle;
+    reach_ = reach;
+  }
+
+  Eigen::Vector3f normal_of(const TexelSource& source) {
+    const Eigen::Vector3f low_point = interpolate(atlas_, atlas_.positions, source);
+    const Eigen::Vector3f low_normal = interpolate(atlas_, atlas_.normals, source).normalized();
+    SurfacePoint point;
+    if (triangle_ != SurfacePoint::none) point = walk_.meet(low_point, low_normal, triangle_);
+    if (!point.found() || !(std::abs(point.distance) <= reach_)) {
+      point = match_surface(high_, scene_, low_point, low_normal, limits_).point;
+      reach_ = std::max(reach_, point.distance);
+    }
+    triangle_ = point.triangle;
+    return normal_at(high_, point);
+  }
+
+ private:
+  const TriangleMesh& high_;
+  const RayScene& scene_;
+  const SurfaceWalk& walk_;
+  const TriangleMesh& atlas_;
+  const MatchLimits& limits_;
+  std::uint32_t triangle_ = SurfacePoint::none;
+  float reach_ = 0;
+};
+
+}  // namespace
+
+TexelMatches match_texels(const TriangleMesh& high, const RayScene& scene, const TriangleMesh& atlas,
+                          const UvRaster& raster, const MatchLimits& limits, int samples,
+                          const ProgressFunction& progress) {
+  const int width = raster.width, height = raster.height;
+  TexelMatches matches;
+  matches.position = Image<float>(width, height, 3);
+  matches.normal_object = Image<float>(width, height, 3);
+  matches.way = Image<std::uint8_t>(width, height, 1);
+  matches.known = raster;
+  std::vector<std::uint32_t> triangles;  // that centres found
+  if (samples > 1) triangles.resize(raster.texels.size(), SurfacePoint::none);
+
+  // Centres, in groups of rows so that progress can be told.
+  const double centres_part = samples > 1 ? 0.5 : 1;
+  std::vector<RowSums> rows(static_cast<std::size_t>(height));
+  constexpr int group_rows = 32;
+  for (int begin = 0; begin < height; begin += group_rows) {
+    const int end = std::min(begin + group_rows, height);
+    tbb::parallel_for(begin, end, [&](int j) {
+      rows[static_cast<std::size_t>(j)] = match_centres(j, high, scene, atlas, raster, limits, matches, triangles);
+    });
+    progress(centres_part * end / height);
+  }
+  for (const RowSums& row : rows) {
+    matches.mean_distance += row.distance;
+    matches.largest_distance = std::max(matches.largest_distance, row.largest_distance);
+  }
+  matches.mean_distance /= static_cast<double>(std::max<std::int64_t>(1, raster.covered_texels));
+
+  // Beside the charts.
+  const std::vector<RingTexel> ring = ring_of_charts(atlas, raster);
+  tbb::parallel_for(std::size_t{0}, ring.size(), [&](std::size_t k) {
+    const RingTexel& texel = ring[k];
+    matches.known.texels[texel.texel] = texel.nearest;
+    const Eigen::Vector3f low_normal = interpolate(atlas, atlas.normals, texel.nearest).normalized();
+    Pixel(matches.normal_object.values().data() + 3 * static_cast<std::size_t>(texel.texel)) =
+        normal_at(high, match_surface(high, scene, texel.low_point, low_normal, limits).point);
+  });
+  matches.known.covered_texels += static_cast<std::int64_t>(ring.size());
+  if (samples <= 1) return matches;
+
+  // Samples.
+  const int side = static_cast<int>(std::lround(std::sqrt(samples)));
+  const SurfaceWalk walk(high);
+  const std::vector<Band> bands = bands_of(atlas, width, height, samples);
+  BilinearFit fit(width, height, side);
+  const auto sample_band = [&](const Band& band, BilinearFit::Rows& rows_fit) {
+    const UvRaster fine = rasterise_band(atlas, band, width, height, side);
+    TexelSamples texel(high, scene, walk, atlas, limits);
+    for (int j = band.begin; j < band.end; ++j)
+      for (int i = 0; i < width; ++i) {
+        const std::size_t index =
+            static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i);
+        float reach = 0;
+        if (const TexelSource& centre = raster.texels[index]; centre.covered()) {
+          // A sample's point is about as far as the centre's.
+          const Triangle& t = atlas.triangles[centre.triangle];
+          const Eigen::Vector3f low_point = interpolate(atlas, atlas.positions, centre);
+          const Eigen::Vector2f ab = atlas.uvs[t[1]] - atlas.uvs[t[0]], ac = atlas.uvs[t[2]] - atlas.uvs[t[0]];
+          const float uv_area =
+              std::abs(ab.x() * ac.y() - ab.y() * ac.x()) * static_cast<float>(width) * static_cast<float>(height);
+          const float area = (atlas.positions[t[1]] - atlas.positions[t[0]])
+                                 .cross(atlas.positions[t[2]] - atlas.positions[t[0]])
+                                 .norm();
+          const float texel_size = uv_area > 0 ? std::sqrt(area / uv_area) : 0;
+          reach = (Pixel(matches.position.pixel(i, j).data()) - low_point).norm() + largest_step_texels * texel_size;
+        }
+        texel.start(triangles[index], reach);
+        rows_fit.start(i, j);
+        for (int y = 0; y < side; ++y)
+          for (int x = 0; x < side; ++x)
+            if (const TexelSource& source = fine.at(i * side + x, (j - band.begin) * side + y); source.covered())
+              rows_fit.add(x, y, texel.normal_of(source));
+        rows_fit.finish();
+      }
+  };
+  constexpr std::size_t group = 8;
+  for (std::size_t begin = 0; begin < bands.size(); begin += group) {
+    const std::size_t end = std::min(begin + group, bands.size());
+    std::vector<BilinearFit::Rows> sums;
+    for (std::size_t k = begin; k < end; ++k) sums.emplace_back(fit, bands[k].begin, bands[k].end);
+    tbb::parallel_for(begin, end, [&](std::size_t k) { sample_band(bands[k], sums[k - begin]); });
+    for (const BilinearFit::Rows& part : sums) fit.join(part);
+    progress(centres_part + (1 - centres_part) * static_cast<double>(end) / static_cast<double>(bands.size()));
+  }
+  fit.solve(matches.normal_object, keep_centre);
+  return matches;
+}
+
+}  // namespace kiln

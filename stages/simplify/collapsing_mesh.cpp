@@ -1,0 +1,220 @@
+#include "simplify/collapsing_mesh.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace kiln {
+
+namespace {
+
+int corner_of(const Triangle& triangle, std::uint32_t vertex) {
+  return triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : 2;
+}
+
+Eigen::Vector3d unit_normal(const TriangleMesh& mesh, std::uint32_t triangle) {
+  const auto at = [&](int k) { return mesh.positions[mesh.triangles[triangle][k]].cast<double>().eval(); };
+  return (at(1) - at(0)).cross(at(2) - at(0)).normalized();
+}
+
+}  // namespace
+
+UnitFrame::UnitFrame(const TriangleMesh& mesh) {
+  const BoundingBox box = bounding_box(mesh);
+  centre = box.centre().cast<double>();
+  diagonal = (box.highest - box.lowest).cast<double>().norm();
+}
+
+std::vector<VertexPair> feature_lines(const TriangleMesh& mesh, double crease_degrees) {
+  // Each vertex's edges to larger ones, with the triangles on them: counted, then filled in.
+  struct Side {
+    std::uint32_t other, triangle;
+  };
+  std::vector<std::uint32_t> begin(mesh.positions.size() + 1, 0);
+  const auto for_each = [&](const auto& visit) {
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
+      for (int k = 0; k < 3; ++k) visit(std::minmax(mesh.triangles[i][k], mesh.triangles[i][(k + 1) % 3]), i);
+  };
+  for_each([&](const auto& edge, std::uint32_t) { ++begin[edge.first + 1]; });
+  for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
+  std::vector<Side> sides(begin.back());
+  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+  for_each([&](const auto& edge, std::uint32_t i) { sides[next[edge.first]++] = {edge.second, i}; });
+
+  const double smallest_cosine =
+      crease_degrees > 0 ? std::cos(crease_degrees * std::numbers::pi / 180) : -2;  // nothing is below -2
+  std::vector<VertexPair> lines;
+  for (std::uint32_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {
+    const auto first = sides.begin() + begin[vertex], last = sides.begin() + begin[vertex + 1];
+    std::sort(first, last, [](const Side& l, const Side& r) {
+      return std::pair(l.other, l.triangle) < std::pair(r.other, r.triangle);
+    });
+    for (auto side = first; side != last;) {
+      auto end = side + 1;
+      while (end != last && end->other == side->other) ++end;
+      if (end - side == 1 ||
+          (smallest_cosine > -2 &&
+           unit_normal(mesh, side->triangle).dot(unit_normal(mesh, (side + 1)->triangle)) < smallest_cosine))
+        lines.emplace_back(vertex, side->other);
+      side = end;
+    }
+  }
+  return lines;
+}
+
+CollapsingMesh::CollapsingMesh(const TriangleMesh& mesh, std::span<const VertexPair> lines)
+    : triangles_(mesh.triangles),
+      line_bits_(mesh.triangles.size(), 0),
+      lines_at_(mesh.positions.size(), 0),
+      around_(mesh.positions.size()),
+      faces_(static_cast<int>(mesh.triangles.size())),
+      mark_(mesh.positions.size(), 0) {
+  for (const Triangle& triangle : triangles_)
+    for (std::uint32_t vertex : triangle) ++around_[vertex].capacity;
+  std::uint32_t end = 0;
+  for (Around& around : around_) {
+    around.begin = end;
+    end += around.capacity;
+  }
+  pool_.reserve(2 * std::size_t{end});
+  pool_.resize(end);
+  for (std::uint32_t i = 0; i < triangles_.size(); ++i)
+    for (std::uint32_t vertex : triangles_[i]) pool_[around_[vertex].begin + around_[vertex].size++] = i;
+  for (const auto& [a, b] : lines) {
+    mark_line(a, b);
+    for (std::uint32_t vertex : {a, b}) lines_at_[vertex] = std::min(lines_at_[vertex] + 1, 200);
+  }
+}
+
+bool CollapsingMesh::has_line(std::uint32_t triangle, std::uint32_t a, std::uint32_t b) const {
+  const int ka = corner_of(triangles_[triangle], a), kb = corner_of(triangles_[triangle], b);
+  return is_line(triangle, (ka + 1) % 3 == kb ? ka : kb);
+}
+
+void CollapsingMesh::mark_line(std::uint32_t a, std::uint32_t b) {
+  for (std::uint32_t triangle : triangles_of(a)) {
+    const Triangle& t = triangles_[triangle];
+    if (t[0] != b && t[1] != b && t[2] != b) continue;
+    const int ka = corner_of(t, a), kb = corner_of(t, b);
+    line_bits_[triangle] |= static_cast<std::uint8_t>(1 << ((ka + 1) % 3 == kb ? ka : kb));
+  }
+}
+
+void CollapsingMesh::line_neighbours(std::uint32_t vertex, std::vector<std::uint32_t>& neighbours) const {
+  neighbours.clear();
+  if (lines_at_[vertex] == 0) return;
+  const auto add = [&](std::uint32_t other) {
+    if (std::find(neighbours.begin(), neighbours.end(), other) == neighbours.end()) neighbours.push_back(other);
+  };
+  for (std::uint32_t triangle : triangles_of(vertex)) {
+    const Triangle& t = triangles_[triangle];
+    const int k = corner_of(t, vertex);
+    if (is_line(triangle, k)) add(t[(k + 1) % 3]);
+    if (is_line(triangle, (k + 2) % 3)) add(t[(k + 2) % 3]);
+  }
+}
+
+CollapsingMesh::Edge CollapsingMesh::edge(std::uint32_t a, std::uint32_t b) const {
+  Edge edge;
+  // The link condition (Dey, Edelsbrunner, Guha and Nekhayev 1999): the vertices next to both ends are those of the
+  // triangles on the edge.
+  mark_now_ += 2;
+  const std::uint32_t near_a = mark_now_, near_both = mark_now_ + 1;
+  std::uint32_t opposite[2] = {};
+  for (std::uint32_t triangle : triangles_of(a)) {
+    const Triangle& t = triangles_[triangle];
+    for (std::uint32_t vertex : t) mark_[vertex] = near_a;
+    if (t[0] != b && t[1] != b && t[2] != b) continue;
+    if (edge.triangles == 2) return edge;
+    edge.at[edge.triangles] = triangle;
+    opposite[edge.triangles++] = t[0] + t[1] + t[2] - a - b;
+  }
+  if (edge.triangles == 0) return edge;
+  edge.line = has_line(edge.at[0], a, b);
+  int common = 0;
+  mark_[a] = mark_[b] = near_both;
+  for (std::uint32_t triangle : triangles_of(b))
+    for (std::uint32_t vertex : triangles_[triangle])
+      if (mark_[vertex] == near_a) {
+        mark_[vertex] = near_both;
+        ++common;
+      }
+  if (common != edge.triangles) return edge;
+
+  // Two lines do not become one, nor do the ends of one line meet; a line's end and its branches stay.
+  const int lines_a = lines_at_[a], lines_b = lines_at_[b];
+  if (lines_a > 0 && lines_b > 0 && (!edge.line || (lines_a != 2 && lines_b != 2))) return edge;
+  for (int i = 0; i < edge.triangles; ++i) {
+    if (has_line(edge.at[i], a, opposite[i]) && has_line(edge.at[i], b, opposite[i])) return edge;
+    // A vertex of three triangles would be left with two that are back to back.
+    if (around_[opposite[i]].size == 3 && lines_at_[opposite[i]] == 0) return edge;
+    if (around_[opposite[i]].size <= 1) return edge;
+    if (around_[opposite[i]].size == 3 && common == 2) {
+      // A line may pass it inside the surface.
+      std::uint32_t seen[6];
+      int vertices = 0;
+      for (std::uint32_t triangle : triangles_of(opposite[i]))
+        for (std::uint32_t vertex : triangles_[triangle])
+          if (vertex != opposite[i] && std::find(seen, seen + vertices, vertex) == seen + vertices)
+            seen[vertices++] = vertex;
+      if (vertices == 3) return edge;
+    }
+  }
+  edge.keeps_topology = true;
+  return edge;
+}
+
+void CollapsingMesh::collapse(std::uint32_t removed, std::uint32_t kept) {
+  // Triangles on the edge go; of their two other edges, which become one, either may have been a line.
+  const Edge between = edge(removed, kept);
+  VertexPair merged_lines[2];
+  int merged_line_count = 0;
+  for (int i = 0; i < between.triangles; ++i) {
+    const std::uint32_t gone = between.at[i];
+    const Triangle t = triangles_[gone];
+    const std::uint32_t opposite = t[0] + t[1] + t[2] - removed - kept;
+    if (has_line(gone, removed, opposite) || has_line(gone, kept, opposite))
+      merged_lines[merged_line_count++] = {kept, opposite};
+    for (std::uint32_t vertex : t) {
+      Around& around = around_[vertex];
+      const auto begin = pool_.begin() + around.begin;
+      const auto found = std::find(begin, begin + around.size, gone);
+      std::copy(found + 1, begin + around.size, found);
+      --around.size;
+    }
+    --faces_;
+  }
+  lines_at_[kept] =
+      static_cast<std::uint8_t>(std::min(200, lines_at_[kept] + lines_at_[removed] - 2 * int{between.line}));
+  lines_at_[removed] = 0;
+
+  // The rest of both becomes kept's.
+  Around& left = around_[kept];
+  Around& right = around_[removed];
+  for (std::uint32_t i = 0; i < right.size; ++i)
+    for (std::uint32_t& vertex : triangles_[pool_[right.begin + i]])
+      if (vertex == removed) vertex = kept;
+  Around both;
+  both.size = left.size + right.size;
+  if (both.size <= left.capacity) {
+    std::copy_n(pool_.begin() + right.begin, right.size, pool_.begin() + left.begin + left.size);
+    both.begin = left.begin;
+    both.capacity = left.capacity;
+  } else if (both.size <= right.capacity) {
+    std::copy_n(pool_.begin() + left.begin, left.size, pool_.begin() + right.begin + right.size);
+    both.begin = right.begin;
+    both.capacity = right.capacity;
+  } else {
+    both.begin = static_cast<std::uint32_t>(pool_.size());
+    both.capacity = both.size + both.size / 2;
+    pool_.resize(pool_.size() + both.capacity);
+    std::copy_n(pool_.begin() + left.begin, left.size, pool_.begin() + both.begin);
+    std::copy_n(pool_.begin() + right.begin, right.size, pool_.begin() + both.begin + left.size);
+  }
+  left = both;
+  right = {};
+  for (int i = 0; i < merged_line_count; ++i) mark_line(merged_lines[i].first, merged_lines[i].second);
+}
+
+}  // namespace kiln

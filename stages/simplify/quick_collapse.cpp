@@ -1,0 +1,280 @@
+#include "simplify/quick_collapse.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include "simplify/triangle_shape.h"
+
+namespace kiln {
+
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+/// v'Av + 2b'v + c, the sum of squared distances to planes times triangles' areas; A has xx, yy, zz, xy, xz, yz.
+struct Quadric {
+  std::array<double, 6> a = {};
+  Vector b = Vector::Zero();
+  double c = 0;
+
+  void add_plane(const Vector& normal, double offset, double weight) {
+    const Vector n = weight * normal;
+    a[0] += n.x() * normal.x();
+    a[1] += n.y() * normal.y();
+    a[2] += n.z() * normal.z();
+    a[3] += n.x() * normal.y();
+    a[4] += n.x() * normal.z();
+    a[5] += n.y() * normal.z();
+    b -= offset * n;
+    c += weight * offset * offset;
+  }
+  Quadric operator+(const Quadric& other) const {
+    Quadric sum = *this;
+    for (int i = 0; i < 6; ++i) sum.a[i] += other.a[i];
+    sum.b += other.b;
+    sum.c += other.c;
+    return sum;
+  }
+  Vector times(const Vector& v) const {
+    return {a[0] * v.x() + a[3] * v.y() + a[4] * v.z(), a[3] * v.x() + a[1] * v.y() + a[5] * v.z(),
+            a[4] * v.x() + a[5] * v.y() + a[2] * v.z()};
+  }
+  double operator()(const Vector& v) const { return v.dot(times(v)) + 2 * b.dot(v) + c; }
+
+  /// Where it is smallest, if its planes are well apart.
+  bool minimum(Vector& v) const {
+    const Vector row0(a[0], a[3], a[4]), row1(a[3], a[1], a[5]), row2(a[4], a[5], a[2]);
+    const Vector across = row1.cross(row2);
+    const double determinant = row0.dot(across), trace = a[0] + a[1] + a[2];
+    if (!(determinant > 1e-4 * trace * trace * trace)) return false;
+    v = -(b.x() * across + b.y() * row2.cross(row0) + b.z() * row0.cross(row1)) / determinant;
+    return true;
+  }
+};
+
+struct Placement {
+  double cost = std::numeric_limits<double>::infinity();
+  Vector position = Vector::Zero();
+};
+
+/// One edge of a round. The cost is rounded, so that few bytes are sorted.
+struct Candidate {
+  float cost;
+  std::uint32_t a, b;
+
+  bool operator<(const Candidate& other) const {
+    return cost != other.cost ? cost < other.cost : a != other.a ? a < other.a : b < other.b;
+  }
+};
+
+class QuickCollapser {
+ public:
+  QuickCollapser(CollapseSequence& sequence, std::span<const VertexPair> lines, std::vector<VertexWeight>& weights)
+      : sequence_(sequence),
+        weights_(weights),
+        frame_(sequence.start),
+        triangles_(sequence.start.triangles),
+        faces_(static_cast<int>(triangles_.size())) {
+    const std::size_t vertices = sequence.start.positions.size();
+    positions_.resize(vertices);
+    tbb::parallel_for(std::size_t{0}, vertices,
+                      [&](std::size_t i) { positions_[i] = frame_.from_object(sequence.start.positions[i]); });
+    is_fixed_.resize(vertices, 0);
+    for (const auto& [a, b] : lines) is_fixed_[a] = is_fixed_[b] = 1;
+    became_.resize(vertices);
+    for (std::uint32_t i = 0; i < vertices; ++i) became_[i] = i;
+    mark_.resize(vertices, 0);
+    list_triangles_around();
+    quadrics_.resize(vertices);
+    tbb::parallel_for(std::size_t{0}, vertices, [&](std::size_t i) {
+      for (std::uint32_t triangle : around(static_cast<std::uint32_t>(i))) {
+        const Triangle& t = triangles_[triangle];
+        Vector normal = (positions_[t[1]] - positions_[t[0]]).cross(positions_[t[2]] - positions_[t[0]]);
+        const double length = normal.norm();
+        if (!(length > 0)) continue;
+        normal /= length;
+        quadrics_[i].add_plane(normal, normal.dot(positions_[t[0]]), length / 2);
+      }
+    });
+  }
+
+  void run(int target, const ProgressFunction& progress) {
+    for (const int start = faces_; faces_ > target;) {
+      const int before = faces_;
+      run_round(target);
+      progress(static_cast<double>(start - faces_) / std::max(1, start - target));
+      if (before - faces_ <= before / 200) break;
+    }
+  }
+
+ private:
+  std::span<const std::uint32_t> around(std::uint32_t vertex) const {
+    return {around_.data() + around_begin_[vertex], around_begin_[vertex + 1] - around_begin_[vertex]};
+  }
+
+  void list_triangles_around() {
+    around_begin_.assign(positions_.size() + 1, 0);
+    for (const Triangle& t : triangles_)
+      for (std::uint32_t vertex : t) ++around_begin_[vertex + 1];
+    size_.resize(positions_.size());
+    for (std::size_t i = 0; i < positions_.size(); ++i) {
+      size_[i] = around_begin_[i + 1];
+      around_begin_[i + 1] += around_begin_[i];
+    }
+    around_.resize(around_begin_.back());
+    next_.assign(around_begin_.begin(), around_begin_.end() - 1);
+    for (std::uint32_t i = 0; i < triangles_.size(); ++i)
+      for (std::uint32_t vertex : triangles_[i]) around_[next_[vertex]++] = i;
+  }
+
+  Placement placement(std::uint32_t a, std::uint32_t b) const {
+    const Quadric both = quadrics_[a] + quadrics_[b];
+    const double weight = weights_.empty() ? 1 : 0.5 * (weights_[a].mean() + weights_[b].mean());
+    const auto at = [&](const Vector& position) { return Placement{weight * std::max(0.0, both(position)), position}; };
+    if (is_fixed_[a]) return at(positions_[a]);
+    if (is_fixed_[b]) return at(positions_[b]);
+    const Vector &pa = positions_[a], &pb = positions_[b];
+    const Vector middle = (pa + pb) / 2;
+    Vector position;
+    if (both.minimum(position) && (position - middle).squaredNorm() < (pb - pa).squaredNorm()) return at(position);
+    // The planes are nearly one: from the middle to it.
+    const Vector slope = both.times(middle) + both.b;
+    const double bend = slope.dot(both.times(slope));
+    Placement best = at(bend > 0 ? Vector(middle - slope.squaredNorm() / bend * slope) : middle);
+    for (const Vector& end : {pa, pb}) {
+      const Placement other = at(end);
+      if (other.cost < best.cost) best = other;
+    }
+    return best;
+  }
+
+  void run_round(int target) {
+    // Edges with their costs.
+    candidates_.clear();
+    for (const Triangle& t : triangles_)
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t a = t[k], b = t[(k + 1) % 3];
+        if (a < b && !(is_fixed_[a] && is_fixed_[b])) candidates_.push_back({0, a, b});
+      }
+    constexpr std::size_t chunk = 4096;
+    tbb::parallel_for(std::size_t{0}, (candidates_.size() + chunk - 1) / chunk, [&](std::size_t c) {
+      for (std::size_t i = c * chunk; i < std::min(candidates_.size(), (c + 1) * chunk); ++i)
+        candidates_[i].cost = static_cast<float>(1e20 * placement(candidates_[i].a, candidates_[i].b).cost);
+    });
+
+    // The cheapest in order; none that costs much more than would be needed, if no edges had an end in common.
+    const std::size_t wanted = static_cast<std::size_t>(faces_ - target + 1) / 2;
+    std::size_t considered = candidates_.size();
+    if (wanted < candidates_.size()) {
+      const auto middle = candidates_.begin() + static_cast<std::ptrdiff_t>(wanted);
+      std::nth_element(candidates_.begin(), middle, candidates_.end());
+      const float largest = 1.5f * middle->cost;
+      considered = static_cast<std::size_t>(
+          std::partition(middle, candidates_.end(), [&](const Candidate& c) { return c.cost <= largest; }) -
+          candidates_.begin());
+    }
+    tbb::parallel_sort(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(considered));
+
+    is_touched_.assign(positions_.size(), 0);
+    for (std::size_t i = 0; i < considered && faces_ > target; ++i) try_collapse(candidates_[i].a, candidates_[i].b);
+
+    std::size_t left = 0;
+    for (const Triangle& t : triangles_) {
+      const Triangle now = {became_[t[0]], became_[t[1]], became_[t[2]]};
+      if (now[0] != now[1] && now[1] != now[2] && now[2] != now[0]) triangles_[left++] = now;
+    }
+    triangles_.resize(left);
+    list_triangles_around();
+  }
+
+  /// Calls visit(triangle) for those that are left around a vertex that was not touched in this round.
+  template <class Visit>
+  void for_each_around(std::uint32_t vertex, const Visit& visit) const {
+    for (std::uint32_t triangle : around(vertex)) {
+      const Triangle& t = triangles_[triangle];
+      const Triangle now = {became_[t[0]], became_[t[1]], became_[t[2]]};
+      if (now[0] != now[1] && now[1] != now[2] && now[2] != now[0]) visit(now);
+    }
+  }
+
+  void try_collapse(std::uint32_t a, std::uint32_t b) {
+    if (is_touched_[a] || is_touched_[b]) return;
+    const Placement place = placement(a, b);
+
+    // Nothing turns over.
+    bool allowed = true;
+    std::uint32_t opposite[2] = {};
+    int on_edge = 0;
+    for (const auto& [end, other] : {std::pair(a, b), std::pair(b, a)})
+      for_each_around(end, [&, moving = end, fixed = other](const Triangle& t) {
+        if (!allowed) return;
+        if (t[0] == fixed || t[1] == fixed || t[2] == fixed) {
+          if (moving == b) return;
+          if (on_edge == 2) return;
+          opposite[on_edge++] = t[0] + t[1] + t[2] - a - b;
+          return;
+        }
+        const int k = t[0] == moving ? 0 : t[1] == moving ? 1 : 2;
+        const Vector &first = positions_[t[(k + 1) % 3]], &second = positions_[t[(k + 2) % 3]];
+        allowed = keeps_shape({positions_[moving], first, second}, {place.position, first, second}, 0.02);
+      });
+    // The link condition; a vertex of three triangles may not lose one.
+    if (!allowed || on_edge != 2) return;
+    for (std::uint32_t vertex : opposite)
+      if (size_[vertex] <= 3) return;
+    mark_now_ += 2;
+    for_each_around(a, [&](const Triangle& t) {
+      for (std::uint32_t vertex : t) mark_[vertex] = mark_now_;
+    });
+    mark_[a] = mark_[b] = mark_now_ + 1;
+    int common = 0;
+    for_each_around(b, [&](const Triangle& t) {
+      for (std::uint32_t vertex : t)
+        if (mark_[vertex] == mark_now_) {
+          mark_[vertex] = mark_now_ + 1;
+          ++common;
+        }
+    });
+    if (common != 2) return;
+
+    const std::uint32_t kept = is_fixed_[b] ? b : a, removed = is_fixed_[b] ? a : b;
+    became_[removed] = kept;
+    positions_[kept] = place.position;
+    quadrics_[kept] = quadrics_[a] + quadrics_[b];
+    if (!weights_.empty()) weights_[kept] += weights_[removed];
+    size_[kept] = size_[a] + size_[b] - 4;
+    for (std::uint32_t vertex : opposite) --size_[vertex];
+    is_touched_[a] = is_touched_[b] = 1;
+    faces_ -= 2;
+    sequence_.collapses.push_back({removed, kept, faces_, frame_.to_object(place.position).cast<float>()});
+  }
+
+  CollapseSequence& sequence_;
+  std::vector<VertexWeight>& weights_;
+  UnitFrame frame_;
+  std::vector<Triangle> triangles_;  ///< at the start of the round
+  int faces_;
+  std::vector<Vector> positions_;  ///< in the frame
+  std::vector<Quadric> quadrics_;
+  std::vector<std::uint8_t> is_fixed_, is_touched_;
+  std::vector<std::uint32_t> became_;
+  std::vector<std::uint32_t> around_begin_, around_, next_;
+  std::vector<std::uint32_t> size_;  ///< triangles around each vertex, kept up within a round
+  std::vector<Candidate> candidates_;
+  std::vector<std::uint32_t> mark_;
+  std::uint32_t mark_now_ = 0;
+};
+
+}  // namespace
+
+void collapse_quickly(CollapseSequence& sequence, std::span<const VertexPair> lines, std::vector<VertexWeight>& weights,
+                      int faces, const ProgressFunction& progress) {
+  if (sequence.faces_after(0) > faces) QuickCollapser(sequence, lines, weights).run(faces, progress);
+}
+
+}  // namespace kiln

@@ -1,0 +1,56 @@
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <string>
+#include <unistd.h>
+
+#include "base/outputs.h"
+#include "mesh/mesh_file.h"
+#include "shapes.h"
+#include "simplify/low_file.h"
+
+namespace kiln {
+namespace {
+
+namespace fs = std::filesystem;
+
+class LowColors : public testing::Test {
+ protected:
+  LowColors() : folder_(fs::temp_directory_path() / ("kiln-low-file-" + std::to_string(getpid()))) {
+    fs::create_directories(folder_);
+  }
+  ~LowColors() override { fs::remove_all(folder_); }
+  fs::path path(const std::string& name) const { return folder_ / name; }
+
+ private:
+  fs::path folder_;
+};
+
+TEST_F(LowColors, AreThoseOfTheNearestPointOfTheInput) {
+  // Colours that go linearly along the sheet, so that any point of it has that of its place.
+  TriangleMesh high = shapes::plane(7);
+  const auto color_at = [](const Eigen::Vector3f& p) { return Eigen::Vector3f(p.x() + 0.5f, 0.25f, p.z() + 0.5f); };
+  for (const Eigen::Vector3f& p : high.positions) high.colors.push_back(color_at(p));
+  const TriangleMesh low = shapes::plane(3, 1, 0.1f);  // above it, with other vertices
+
+  LowFile file(path("low.drc"));
+  file.keep_colors(high);
+  const TriangleMesh written = file.write(low);
+  ASSERT_EQ(written.colors.size(), low.positions.size());
+  // Half a step of 8 bits, and of 16 bits for the place.
+  for (std::size_t i = 0; i < written.colors.size(); ++i)
+    EXPECT_LT((written.colors[i] - color_at(written.positions[i])).cwiseAbs().maxCoeff(), 0.501f / 255);
+  EXPECT_EQ(load_mesh(path("low.drc")).colors, written.colors);
+}
+
+TEST_F(LowColors, AreLeftOutUnlessAskedFor) {
+  TriangleMesh low = shapes::icosphere(2);
+  LowFile plain(path("plain.drc"));
+  plain.write(low);
+  low.colors.assign(low.positions.size(), Eigen::Vector3f::Ones());
+  LowFile colored(path("colored.drc"));
+  EXPECT_TRUE(colored.write(low).colors.empty());
+  EXPECT_EQ(read_text(path("plain.drc")), read_text(path("colored.drc")));
+}
+
+}  // namespace
+}  // namespace kiln

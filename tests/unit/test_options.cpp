@@ -1,0 +1,51 @@
+#include <gtest/gtest.h>
+
+#include "base/errors.h"
+#include "base/options.h"
+
+namespace kiln {
+namespace {
+
+TEST(Extent, IsOneNumberOrTwo) {
+  Extent size = 512;
+  OptionSet options;
+  options.extent("size", size, 16, 8192, "Of the atlas, texels");
+  const Option& option = *options.find("size");
+  EXPECT_EQ(option.get(), Json(512));
+  option.set("256");
+  EXPECT_EQ(size, Extent(256, 256));
+  EXPECT_EQ(option.get(), Json(256));
+  option.set("1024x64");
+  EXPECT_EQ(size, Extent(1024, 64));
+  EXPECT_EQ(option.get(), Json("1024x64"));
+  option.set("64x64");
+  EXPECT_EQ(option.get(), Json(64));
+  // What get() gives, set() takes.
+  option.set("32x48");
+  option.set(option.get().get<std::string>());
+  EXPECT_EQ(size, Extent(32, 48));
+}
+
+TEST(Extent, RefusesWhatIsNone) {
+  Extent size = 512;
+  OptionSet options;
+  options.extent("size", size, 16, 8192, "Of the atlas, texels");
+  for (const char* text : {"", "x", "64x", "x64", "15", "64x15", "15x64", "8193", "64x64x64", "64 x 64", "64.5", "0"}) {
+    EXPECT_THROW(options.find("size")->set(text), WrongUsage) << text;
+    EXPECT_EQ(size, Extent(512)) << text;
+  }
+}
+
+TEST(Extent, ZeroIsAutomaticAndSquare) {
+  Extent size;
+  OptionSet options;
+  options.extent("size", size, 0, 8192, "Of the atlas, texels");
+  options.find("size")->set("64x32");
+  options.find("size")->set("0");
+  EXPECT_EQ(size, Extent(0));
+  EXPECT_THROW(options.find("size")->set("0x32"), WrongUsage);
+  EXPECT_THROW(options.find("size")->set("32x0"), WrongUsage);
+}
+
+}  // namespace
+}  // namespace kiln
