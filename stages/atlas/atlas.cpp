@@ -27,11 +27,18 @@ ChartSettings chart_settings(const AtlasSettings& settings, double area) {
   charts.largest_l2 = settings.max_stretch;
   charts.largest_linf = settings.max_stretch_linf;
   charts.crease_degrees = settings.crease;
-  constexpr double usual_share = 0.68;  // of the atlas that is covered
+  constexpr double usual_share = 0.68;   // of the atlas that is covered
+  constexpr double narrow = 0.9;         // in lengths of the surface's side; twice as long as wide is just that
+  constexpr double narrow_share = 0.55;  // of a narrow atlas's width that a chart may reach across
   const double texels_per_unit = settings.texels_per_unit > 0
                                      ? settings.texels_per_unit
                                      : std::sqrt(usual_share * settings.size.width * settings.size.height / area);
   charts.clearance = (settings.gutter + 1) / texels_per_unit;
+  if (!(settings.texels_per_unit > 0)) {
+    // Charts should fit beside each other between the longer sides of a narrow atlas.
+    const double shorter = std::min(settings.size.width, settings.size.height) / texels_per_unit / std::sqrt(area);
+    if (shorter < narrow) charts.largest_width = narrow_share * shorter;
+  }
   return charts;
 }
 
@@ -56,12 +63,14 @@ PackSettings pack_settings(const AtlasSettings& settings) {
                   texels_per_unit, side_texels, most_texels, 0.98 * texels_per_unit * most_texels / side_texels));
 }
 
-Packing pack(const std::vector<Chart>& charts, double area, const AtlasSettings& settings,
-             const ProgressFunction& progress) {
-  // What cannot fit even when packed well is told at once.
+/// What cannot fit even when packed well is told at once.
+void check_density(const AtlasSettings& settings, double area) {
   constexpr double dense = 0.8;
   const double least_side = settings.texels_per_unit * std::sqrt(area / dense);
   if (least_side > most_texels) refuse_density(settings.texels_per_unit, least_side);
+}
+
+Packing pack(const std::vector<Chart>& charts, const AtlasSettings& settings, const ProgressFunction& progress) {
   const Packing packing = pack_charts(charts, pack_settings(settings), progress);
   const int side = std::max(packing.width, packing.height);
   if (side > most_texels) refuse_density(settings.texels_per_unit, side);
@@ -132,6 +141,7 @@ AtlasResult make_atlas(const TriangleMesh& low, const AtlasSettings& settings, c
   // Step 1: charts, each flat.
   Surface surface = analyse_surface(*mesh);
   if (!(surface.area > 0)) throw BadInput(name, "has no triangle with an area", "a surface", "check how it was made");
+  check_density(settings, surface.area);
   weigh_seams(surface, surface_openness(*mesh, {mesh->positions, mesh->normals}));
   const ChartSettings how_to_cut = chart_settings(settings, surface.area);
   const auto cutting = [&](double fraction) { progress(0.6 * fraction); };
@@ -150,8 +160,7 @@ AtlasResult make_atlas(const TriangleMesh& low, const AtlasSettings& settings, c
   const double scaled_seconds = watch.seconds();
 
   // Step 3: a place for each.
-  const Packing packing =
-      pack(cut.charts, surface.area, settings, [&](double fraction) { progress(0.6 + 0.4 * fraction); });
+  const Packing packing = pack(cut.charts, settings, [&](double fraction) { progress(0.6 + 0.4 * fraction); });
 
   // Step 4: the mesh with uvs.
   result.mesh = assemble(*mesh, cut.charts, packing);

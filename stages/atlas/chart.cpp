@@ -91,16 +91,21 @@ bool has_simple_border(const Chart& chart) {
 
 bool keeps_clear(const Surface& surface, const Chart& chart, double distance) {
   if (!(distance > 0)) return true;
+  const std::vector<BorderEdge> border = border_edges(chart);
+  double perimeter = 0;
+  for (const auto& [from, to] : border) perimeter += (chart.uvs[to] - chart.uvs[from]).norm();
+  constexpr double most_samples = 20'000;  // apart from one an edge
+  distance = std::max(distance, 2 * perimeter / most_samples);
   struct Sample {
     Eigen::Vector2d uv;
     Eigen::Vector3d position;
   };
   std::vector<Sample> samples;
-  for (const auto& [from, to] : border_edges(chart)) {
+  for (const auto& [from, to] : border) {
     const Eigen::Vector3d a = surface.mesh->positions[chart.vertices[from]].cast<double>();
     const Eigen::Vector3d b = surface.mesh->positions[chart.vertices[to]].cast<double>();
     const double length = (chart.uvs[to] - chart.uvs[from]).norm();
-    const int steps = 1 + static_cast<int>(std::min(2 * length / distance, 1e4));
+    const int steps = 1 + static_cast<int>(2 * length / distance);
     for (int i = 0; i < steps; ++i) {
       const double t = (i + 0.5) / steps;
       samples.push_back({chart.uvs[from] + t * (chart.uvs[to] - chart.uvs[from]), a + t * (b - a)});

@@ -42,7 +42,7 @@ bool has_simple_border(const Chart& chart);
 
 /// Whether no two points of the border are nearer to one another in the plane than `distance` while being three times
 /// as far apart in space: parts of the surface that have nothing to do with one another would bleed into one another. A
-/// chart's uvs must be as large as the surface.
+/// chart's uvs must be as large as the surface. Less than a ten-thousandth of the border's length counts as that.
 bool keeps_clear(const Surface& surface, const Chart& chart, double distance);
 
 /// Scales the uvs so that their area is that of the surface.

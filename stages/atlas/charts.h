@@ -13,6 +13,7 @@ struct ChartSettings {
   double crease_degrees = 75;   ///< a border that bends more on average stays a seam
   double largest_extent = 0.6;  ///< of a merged chart, over the square root of the surface's area: longer ones pack
                                 ///< badly, unless they are compact or rectangles
+  double largest_width = 1e9;   ///< of a merged chart's smallest rectangle, the shorter side, over the same
   double clearance = 0;         ///< object units; a merged chart's border does not come nearer to itself in the plane,
                                 ///< but where it does so on the surface, too: at corners and along slits
 };

@@ -189,10 +189,11 @@ Extents measure_extents(const Chart& chart) {
 }
 
 /// Whether a merged chart packs well enough: small, compact, or about a rectangle that is not too long.
-bool packs_well(const Surface& surface, const Chart& chart, double largest_extent) {
+bool packs_well(const Surface& surface, const Chart& chart, const ChartSettings& settings) {
   const Extents extents = measure_extents(chart);
   const double area = chart_area(surface, chart), side = std::sqrt(surface.area);
-  const bool small = extents.largest <= largest_extent * side;
+  if (extents.rectangle_area > settings.largest_width * side * extents.rectangle_side) return false;
+  const bool small = extents.largest <= settings.largest_extent * side;
   const bool compact_shape = extents.largest < 1.5 * std::sqrt(area);  // a square's diagonal is 1.41
   const bool rectangle = area > 0.85 * extents.rectangle_area && extents.rectangle_side < 1.1 * side;
   return small || compact_shape || rectangle;
@@ -225,7 +226,7 @@ std::optional<Chart> flattened(const Surface& surface, GluedChart glued, const C
   }
   if (!within_bounds(surface, chart, settings) || !is_flip_free(chart)) return {};
   if (!has_simple_border(chart) || !keeps_clear(surface, chart, settings.clearance) ||
-      !packs_well(surface, chart, settings.largest_extent))
+      !packs_well(surface, chart, settings))
     return {};
   return std::move(chart);
 }

@@ -29,7 +29,7 @@ Placer::Placer(const std::vector<Shape>& shapes, int width, int height, int gutt
     : shapes_(shapes), width_(width), height_(height), gutter_(gutter), use_(use) {
   for (const Shape& shape : shapes) texels_ += static_cast<double>(shape[0].texels);
   const std::size_t grid_bytes = static_cast<std::size_t>(width + 63) / 8 * height;
-  step_between_grids_ = use == Use::once ? shapes.size() : 1 + shapes.size() * grid_bytes / most_grid_bytes;
+  step_between_grids_ = use != Use::search ? shapes.size() : 1 + shapes.size() * grid_bytes / most_grid_bytes;
   const std::size_t grids = (shapes.size() + step_between_grids_ - 1) / step_between_grids_;
   for (State* state : {&kept_, &trial_}) {
     state->grids.assign(grids, TexelGrid(width, height));
@@ -95,7 +95,7 @@ Placer::Height Placer::place(const PlacePlan& plan, std::size_t first, int highe
       if (std::isfinite(best_cost)) last_row = std::min(last_row, static_cast<int>(std::floor(best_cost - height)));
       Spot spot{rotation, 0, 0};
       int first_row = gutter_;
-      if (use_ == Use::once) {
+      if (use_ == Use::crowd) {
         int& row_of_class = rows_of_classes.emplace(size_class(bitmap), gutter_).first->second;
         first_row = std::max(gutter_, row_of_class - bitmap.height / 4);
         if (!lowest_spot(grid, bitmap, first_row, last_row, spot)) {

@@ -35,9 +35,9 @@ struct Spot {
 /// last are placed from where they differ.
 class Placer {
  public:
-  /// A search keeps the grid before each step. Placing once does not; a chart then starts a little below where the one
-  /// of the same size before it came to lie, so that placing thousands takes seconds.
-  enum class Use : std::uint8_t { search, once };
+  /// A search keeps the grid before each step, placing once does not. In a crowd, a chart starts a little below where
+  /// the one of the same size before it came to lie, so that placing thousands takes seconds.
+  enum class Use : std::uint8_t { search, once, crowd };
 
   /// Room for the charts: `width` x `height` texels, of which `gutter` stay free at the border.
   Placer(const std::vector<Shape>& shapes, int width, int height, int gutter, Use use = Use::search);

@@ -45,6 +45,12 @@ BilinearFit::BilinearFit(int width, int height, int side) : width_(width), heigh
   const std::size_t texels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   stencils_.resize(texels, Stencil{});
   rights_.resize(texels, Eigen::Vector3f::Zero());
+  for (int x = 0; x < side; ++x) {
+    const Between place = between(x, side);
+    auto& weights = weights_.emplace_back();
+    weights[static_cast<std::size_t>(place.left + 1)] = 1 - place.right_weight;
+    weights[static_cast<std::size_t>(place.left + 2)] = place.right_weight;
+  }
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x)
       add_products(x, y, [&](int i, int j) -> Stencil& {
@@ -60,47 +66,46 @@ BilinearFit::Rows::Rows(const BilinearFit& fit, int begin, int end)
     : fit_(&fit),
       begin_(std::max(begin - 1, 0)),
       end_(std::min(end + 1, fit.height_)),
-      points_(static_cast<std::size_t>(fit.side_ * fit.side_)),
       stencils_(fit.index(0, end_ - begin_), Stencil{}),
       rights_(fit.index(0, end_ - begin_), Eigen::Vector3f::Zero()) {}
 
-void BilinearFit::Rows::start(int i, int j) {
-  i_ = i;
-  j_ = j;
-  count_ = 0;
-  right_.fill(Eigen::Vector3f::Zero());
-  std::fill(points_.begin(), points_.end(), std::uint8_t{0});
-}
-
-void BilinearFit::Rows::add(int x, int y, const Eigen::Vector3f& value) {
-  const Between across = between(x, fit_->side_), up = between(y, fit_->side_);
-  const float r = across.right_weight, t = up.right_weight;
-  Eigen::Vector3f* lower = &right_[static_cast<std::size_t>(3 * (up.left + 1) + across.left + 1)];
-  lower[0] += (1 - r) * (1 - t) * value;
-  lower[1] += r * (1 - t) * value;
-  lower[3] += (1 - r) * t * value;
-  lower[4] += r * t * value;
-  points_[static_cast<std::size_t>(y * fit_->side_ + x)] = 1;
-  ++count_;
-}
-
-void BilinearFit::Rows::finish() {
+void BilinearFit::Rows::add(int i, int j, const TexelPoints& points) {
   // Lookups at the texture's edge are clamped; there is nothing to fit there.
-  if (count_ == 0 || i_ == 0 || j_ == 0 || i_ == fit_->width_ - 1 || j_ == fit_->height_ - 1) return;
-  const auto at = [&](int i, int j) { return fit_->index(i_ + i, j_ + j - begin_); };
-  for (int j = -1; j <= 1; ++j)
-    for (int i = -1; i <= 1; ++i) rights_[at(i, j)] += right_[static_cast<std::size_t>(3 * (j + 1) + i + 1)];
-  if (count_ == fit_->side_ * fit_->side_) {
-    for (int j = -1; j <= 1; ++j)
-      for (int i = -1; i <= 1; ++i)
+  if (points.count == 0 || i == 0 || j == 0 || i == fit_->width_ - 1 || j == fit_->height_ - 1) return;
+  const int side = fit_->side_;
+  const auto at = [&](int across, int up) { return fit_->index(i + across, j + up - begin_); };
+
+  // The points' values, each shared among four texels: first up, then across.
+  for (int component = 0; component < 3; ++component) {
+    const float* values = points.vectors.col(component).data();
+    std::array<std::array<float, 8>, 3> columns{};
+    for (int y = 0; y < side; ++y)
+      for (std::size_t up = 0; up < 3; ++up) {
+        const float weight = fit_->weights_[static_cast<std::size_t>(y)][up];
+        for (int x = 0; x < side; ++x) columns[up][static_cast<std::size_t>(x)] += weight * values[y * side + x];
+      }
+    for (int up = -1; up <= 1; ++up) {
+      std::array<float, 3> sums{};
+      for (std::size_t x = 0; x < static_cast<std::size_t>(side); ++x)
+        for (std::size_t across = 0; across < 3; ++across)
+          sums[across] += fit_->weights_[x][across] * columns[static_cast<std::size_t>(up + 1)][x];
+      for (int across = -1; across <= 1; ++across)
+        rights_[at(across, up)][component] += sums[static_cast<std::size_t>(across + 1)];
+    }
+  }
+
+  if (points.count == side * side) {
+    for (int up = -1; up <= 1; ++up)
+      for (int across = -1; across <= 1; ++across)
         for (std::size_t k = 0; k < 5; ++k)
-          stencils_[at(i, j)][k] += fit_->full_[static_cast<std::size_t>(j + 1)][static_cast<std::size_t>(i + 1)][k];
+          stencils_[at(across, up)][k] +=
+              fit_->full_[static_cast<std::size_t>(up + 1)][static_cast<std::size_t>(across + 1)][k];
     return;
   }
-  for (int y = 0; y < fit_->side_; ++y)
-    for (int x = 0; x < fit_->side_; ++x)
-      if (points_[static_cast<std::size_t>(y * fit_->side_ + x)] != 0)
-        fit_->add_products(x, y, [&](int i, int j) -> Stencil& { return stencils_[at(i, j)]; });
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x)
+      if (points.present[static_cast<std::size_t>(y * side + x)] != 0)
+        fit_->add_products(x, y, [&](int across, int up) -> Stencil& { return stencils_[at(across, up)]; });
 }
 
 void BilinearFit::join(const Rows& rows) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "image/image.h"
+#include "normals/texel_samples.h"
 
 namespace kiln {
 
@@ -21,23 +22,13 @@ class BilinearFit {
    public:
     Rows(const BilinearFit& fit, int begin, int end);
 
-    /// Starts texel (i, j) of these rows.
-    void start(int i, int j);
-
-    /// The value at its point (x, y), both of 0 to side - 1.
-    void add(int x, int y, const Eigen::Vector3f& value);
-
-    /// Puts the texel's points into the sums.
-    void finish();
+    /// Puts the values at the points of texel (i, j), one of these rows, into the sums.
+    void add(int i, int j, const TexelPoints& points);
 
    private:
     friend class BilinearFit;
     const BilinearFit* fit_;
     int begin_, end_;  ///< of the rows with sums: one more on either side
-    int i_ = 0, j_ = 0;
-    std::array<Eigen::Vector3f, 9> right_;
-    std::vector<std::uint8_t> points_;
-    int count_ = 0;
     std::vector<std::array<float, 5>> stencils_;
     std::vector<Eigen::Vector3f> rights_;
   };
@@ -56,6 +47,7 @@ class BilinearFit {
   void add_products(int x, int y, const At& at) const;
 
   int width_, height_, side_;
+  std::vector<std::array<float, 3>> weights_;     ///< that a point's column or row gives texels at offsets -1 to 1
   std::array<std::array<Stencil, 3>, 3> full_{};  ///< of a texel with all points, by offset -1 to 1 (row, column)
   std::vector<Stencil> stencils_;
   std::vector<Eigen::Vector3f> rights_;

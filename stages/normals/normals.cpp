@@ -66,16 +66,9 @@ double measure_distance(const TriangleMesh& high, const RayScene& high_scene, co
 /// round mends. Points where more is left than elsewhere weigh more from round to round.
 void equalise(Image<float>& map, const Seams& seams, const std::vector<std::uint8_t>& covered, NormalSpace space) {
   constexpr int rounds = 6;
-  constexpr double usual_degrees = 0.2;
   SeamSolver solver(seams, covered, space);
-  std::vector<double> factors(solver.points().size(), 1);
   for (int round = 0; round < rounds; ++round) {
-    if (round > 0) {
-      const std::vector<double> degrees = seams.degrees_at(solver.points(), map, space);
-      for (std::size_t k = 0; k < factors.size(); ++k)
-        factors[k] = SeamSolver::raised(factors[k], degrees[k] / usual_degrees);
-      solver.weigh(factors);
-    }
+    if (round > 0) solver.reweigh(seams.degrees_at(solver.points(), map, space));
     solver.equalise(map);
     normalise(map, space);
   }
@@ -160,7 +153,7 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   const MatchLimits limits{static_cast<float>(distance), static_cast<float>(surface_tolerance * diagonal)};
 
   // A high point and normal for each texel.
-  const TexelMatches matches = match_texels(high, scene, atlas, raster, limits, settings.samples,
+  const TexelMatches matches = match_texels(high, scene, atlas, raster, limits, settings.samples, settings.fit,
                                             [&](double fraction) { progress(0.9 * fraction); });
   const std::vector<std::uint8_t> covered = coverage_of(raster);
   result.position = matches.position;

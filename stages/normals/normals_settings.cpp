@@ -12,6 +12,10 @@ OptionSet normals_options(NormalsSettings& settings) {
       "Width and height of the maps in texels; 0 is the size in atlas.json beside the atlas, or 512 without it");
   options.choice<int>("samples", settings.samples, {{"1", 1}, {"4", 4}, {"16", 16}, {"64", 64}},
                       "Points per texel that normals are averaged over");
+  options.toggle(
+      "fit", settings.fit,
+      "With one sample: sharpens the map so that bilinear lookups between texels' centres are nearer to the high "
+      "mesh, and those at the centres a little less near; more samples are fitted always");
   options.choice<SeamChoice>("seams", settings.seams, {{"equalise", SeamChoice::equalise}, {"keep", SeamChoice::keep}},
                              "Changes texels near seams so that lookups on both sides agree, or keeps them");
   options.number(

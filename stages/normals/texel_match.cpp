@@ -9,6 +9,7 @@
 #include "normals/bilinear_fit.h"
 #include "normals/chart_ring.h"
 #include "normals/surface_walk.h"
+#include "normals/texel_samples.h"
 
 namespace kiln {
 
@@ -60,6 +61,26 @@ RowSums match_centres(int j, const TriangleMesh& high, const RayScene& scene, co
   return sums;
 }
 
+/// From the normals at texels' centres those whose bilinear lookups are nearest to what lies between them: the best
+/// linear spline for f at steps of h has the coefficients f - h^2 / 12 f'' + O(h^4), and f'' is a difference of
+/// neighbours, axis by axis. What BilinearFit solves for with many samples, to second order, from one.
+void sharpen(Image<float>& normals, const UvRaster& raster, const UvRaster& known) {
+  constexpr float share = 1.0f / 12;
+  const Image<float> centres = normals;
+  tbb::parallel_for(1, std::max(1, raster.height - 1), [&](int j) {
+    for (int i = 1; i + 1 < raster.width; ++i) {
+      if (!raster.at(i, j).covered()) continue;
+      const auto at = [&](int x, int y) { return Eigen::Map<const Eigen::Vector3f>(centres.pixel(x, y).data()); };
+      Eigen::Vector3f bend = Eigen::Vector3f::Zero();
+      if (known.at(i - 1, j).covered() && known.at(i + 1, j).covered())
+        bend += at(i - 1, j) - 2 * at(i, j) + at(i + 1, j);
+      if (known.at(i, j - 1).covered() && known.at(i, j + 1).covered())
+        bend += at(i, j - 1) - 2 * at(i, j) + at(i, j + 1);
+      Pixel(normals.pixel(i, j).data()) = (at(i, j) - share * bend).normalized();
+    }
+  });
+}
+
 /// Rows of texels, and the triangles of the atlas that reach into them.
 struct Band {
   int begin = 0, end = 0;
@@ -106,46 +127,10 @@ UvRaster rasterise_band(const TriangleMesh& atlas, const Band& band, int width, 
   return raster;
 }
 
-/// The high normals of one texel's samples.
-class TexelSamples {
- public:
-  TexelSamples(const TriangleMesh& high, const RayScene& scene, const SurfaceWalk& walk, const TriangleMesh& atlas,
-               const MatchLimits& limits)
-      : high_(high), scene_(scene), walk_(walk), atlas_(atlas), limits_(limits) {}
-
-  /// Starts a texel: the triangle of its centre's point, if it has one, and how far off samples' points may be.
-  void start(std::uint32_t triangle, float reach) {
-    triangle_ = triangle;
-    reach_ = reach;
-  }
-
-  Eigen::Vector3f normal_of(const TexelSource& source) {
-    const Eigen::Vector3f low_point = interpolate(atlas_, atlas_.positions, source);
-    const Eigen::Vector3f low_normal = interpolate(atlas_, atlas_.normals, source).normalized();
-    SurfacePoint point;
-    if (triangle_ != SurfacePoint::none) point = walk_.meet(low_point, low_normal, triangle_);
-    if (!point.found() || !(std::abs(point.distance) <= reach_)) {
-      point = match_surface(high_, scene_, low_point, low_normal, limits_).point;
-      reach_ = std::max(reach_, point.distance);
-    }
-    triangle_ = point.triangle;
-    return normal_at(high_, point);
-  }
-
- private:
-  const TriangleMesh& high_;
-  const RayScene& scene_;
-  const SurfaceWalk& walk_;
-  const TriangleMesh& atlas_;
-  const MatchLimits& limits_;
-  std::uint32_t triangle_ = SurfacePoint::none;
-  float reach_ = 0;
-};
-
 }  // namespace
 
 TexelMatches match_texels(const TriangleMesh& high, const RayScene& scene, const TriangleMesh& atlas,
-                          const UvRaster& raster, const MatchLimits& limits, int samples,
+                          const UvRaster& raster, const MatchLimits& limits, int samples, bool fit_one,
                           const ProgressFunction& progress) {
   const int width = raster.width, height = raster.height;
   TexelMatches matches;
@@ -183,7 +168,10 @@ TexelMatches match_texels(const TriangleMesh& high, const RayScene& scene, const
         normal_at(high, match_surface(high, scene, texel.low_point, low_normal, limits).point);
   });
   matches.known.covered_texels += static_cast<std::int64_t>(ring.size());
-  if (samples <= 1) return matches;
+  if (samples <= 1) {
+    if (fit_one) sharpen(matches.normal_object, raster, matches.known);
+    return matches;
+  }
 
   // Samples.
   const int side = static_cast<int>(std::lround(std::sqrt(samples)));
@@ -192,7 +180,7 @@ TexelMatches match_texels(const TriangleMesh& high, const RayScene& scene, const
   BilinearFit fit(width, height, side);
   const auto sample_band = [&](const Band& band, BilinearFit::Rows& rows_fit) {
     const UvRaster fine = rasterise_band(atlas, band, width, height, side);
-    TexelSamples texel(high, scene, walk, atlas, limits);
+    TexelSamples texel(high, scene, walk, atlas, limits, samples);
     for (int j = band.begin; j < band.end; ++j)
       for (int i = 0; i < width; ++i) {
         const std::size_t index =
@@ -212,12 +200,11 @@ TexelMatches match_texels(const TriangleMesh& high, const RayScene& scene, const
           reach = (Pixel(matches.position.pixel(i, j).data()) - low_point).norm() + largest_step_texels * texel_size;
         }
         texel.start(triangles[index], reach);
-        rows_fit.start(i, j);
         for (int y = 0; y < side; ++y)
           for (int x = 0; x < side; ++x)
             if (const TexelSource& source = fine.at(i * side + x, (j - band.begin) * side + y); source.covered())
-              rows_fit.add(x, y, texel.normal_of(source));
-        rows_fit.finish();
+              texel.add(y * side + x, source);
+        rows_fit.add(i, j, texel.finish());
       }
   };
   constexpr std::size_t group = 8;

@@ -24,11 +24,12 @@ struct TexelMatches {
 };
 
 /// The high mesh's points for all texels of `raster`, that of `atlas`; texels beside a chart, which lookups at its edge
-/// see, have the normal of the high mesh where the low mesh's triangle continues beyond the edge. With `samples` of 4,
-/// 16 or 64, that many points of a regular grid in each texel are matched, those outside all charts left out, and
-/// normals are those whose bilinear lookups fit the points' best (BilinearFit).
+/// see, have the normal of the high mesh where the low mesh's triangle continues beyond the edge. With `fit_one` and
+/// one sample texels hold what makes bilinear lookups fit, a little sharper than the normals at their centres. With
+/// `samples` of 4, 16 or 64, that many points of a regular grid in each texel are matched, those outside all charts
+/// left out, and normals are those whose bilinear lookups fit the points' best (BilinearFit).
 TexelMatches match_texels(const TriangleMesh& high, const RayScene& scene, const TriangleMesh& atlas,
-                          const UvRaster& raster, const MatchLimits& limits, int samples,
+                          const UvRaster& raster, const MatchLimits& limits, int samples, bool fit_one,
                           const ProgressFunction& progress);
 
 }  // namespace kiln

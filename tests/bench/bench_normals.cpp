@@ -79,6 +79,8 @@ int main(int argc, char** argv) {
   bake_mode->add_option("--size", size);
   bake_mode->add_option("--samples", samples);
   bake_mode->add_option("--repeat", repeat);
+  bool fit = false;
+  bake_mode->add_flag("--fit", fit);
   measure_mode->add_option("map", map_file)->required();
   app.require_subcommand(1);
   CLI11_PARSE(app, argc, argv);
@@ -92,6 +94,7 @@ int main(int argc, char** argv) {
     NormalsSettings settings;
     settings.size = Extent(size);
     settings.samples = samples;
+    settings.fit = fit;
     NormalsResult result;
     double seconds = 1e9, cpu = 1e9;
     for (int k = 0; k < repeat; ++k) {

@@ -39,6 +39,15 @@ const TriangleMesh& bunny() {
   return mesh;
 }
 
+/// Packing is not what most tests are about: few angles make it quick.
+AtlasSettings quick_settings(const Extent& size = 512, int gutter = 4) {
+  AtlasSettings settings;
+  settings.size = size;
+  settings.gutter = gutter;
+  settings.rotations = 2;
+  return settings;
+}
+
 std::map<std::string, TriangleMesh> test_meshes() {
   std::map<std::string, TriangleMesh> meshes;
   meshes["sphere"] = shapes::icosphere(3);
@@ -64,7 +73,7 @@ void expect_sound(const TriangleMesh& mesh, const AtlasResult& result, const Atl
   EXPECT_EQ(atlas.measures.flipped_triangles, 0);
   EXPECT_GE(atlas.measures.smallest_gap_texels, settings.gutter);
   const int side = settings.size.width;  // square
-  for (const int size : {side / 2, side, 2 * side - 1, 2048})
+  for (const int size : {side / 2, side, 2 * side - 1, 1000})
     EXPECT_EQ(rasterise_uvs(atlas.mesh, size, size).overlapping_texels, 0) << size;
   for (const Eigen::Vector2f& uv : atlas.mesh.uvs) {
     ASSERT_GE(uv.minCoeff(), 0);
@@ -136,9 +145,7 @@ TEST(Atlas, IsSoundForEveryMesh) {
   for (const auto& [name, mesh] : test_meshes())
     for (const int size : {128, 300}) {
       SCOPED_TRACE(name + " at " + std::to_string(size));
-      AtlasSettings settings;
-      settings.size = size;
-      settings.gutter = size == 128 ? 2 : 4;
+      const AtlasSettings settings = quick_settings(size, size == 128 ? 2 : 4);
       expect_sound(mesh, make_atlas(mesh, settings), settings);
     }
 }
@@ -146,10 +153,8 @@ TEST(Atlas, IsSoundForEveryMesh) {
 TEST(Atlas, KeepsEveryGutter) {
   for (const int gutter : {0, 1, 3, 9}) {
     SCOPED_TRACE(gutter);
-    AtlasSettings settings;
-    settings.size = 160;
-    settings.gutter = gutter;
-    expect_sound(shapes::torus(16), make_atlas(shapes::torus(16), settings), settings);
+    const AtlasSettings settings = quick_settings(160, gutter);
+    expect_sound(shapes::torus(12), make_atlas(shapes::torus(12), settings), settings);
   }
 }
 
@@ -195,7 +200,7 @@ TEST(Atlas, OfTheBunnyIsDecent) {
 }
 
 TEST(Atlas, GivesEveryChartTheSameDensity) {
-  AtlasSettings settings;
+  AtlasSettings settings = quick_settings();
   settings.density = AtlasDensity::even;
   const AtlasResult result = make_atlas(shapes::torus(24), settings);
   const std::vector<std::uint32_t> chart_of = charts_of_triangles(result.mesh);
@@ -211,14 +216,19 @@ TEST(Atlas, GivesEveryChartTheSameDensity) {
   for (const auto& [chart, area] : areas) EXPECT_NEAR(area.second / area.first / first, 1, 1e-4);  // float uvs
 }
 
-TEST(Atlas, IsTheSameWithOneThreadAndTwo) {
-  const auto with_threads = [](std::size_t threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    return make_atlas(bunny(), {}).mesh;
-  };
-  const TriangleMesh one = with_threads(1), two = with_threads(2);
-  EXPECT_EQ(one.uvs, two.uvs);
-  EXPECT_EQ(one.triangles, two.triangles);
+TEST(Atlas, IsTheSameWithOneThreadAndMany) {
+  for (const AtlasQuality quality : {AtlasQuality::standard, AtlasQuality::best}) {
+    SCOPED_TRACE(static_cast<int>(quality));
+    const auto with_threads = [&](std::size_t threads) {
+      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+      AtlasSettings settings = quick_settings(96, 2);
+      settings.quality = quality;
+      return make_atlas(shapes::torus(8), settings).mesh;
+    };
+    const TriangleMesh one = with_threads(1), many = with_threads(8);
+    EXPECT_EQ(one.uvs, many.uvs);
+    EXPECT_EQ(one.triangles, many.triangles);
+  }
 }
 
 TEST(Atlas, TakesOddTriangles) {
@@ -231,7 +241,7 @@ TEST(Atlas, TakesOddTriangles) {
   mesh.triangles.push_back({0, 1, vertices});   // a third triangle at an edge
   mesh.triangles.push_back({5, 4, vertices});   // and another
   mesh.triangles.push_back(mesh.triangles[0]);  // twice the same
-  const AtlasSettings settings;
+  const AtlasSettings settings = quick_settings();
   const AtlasResult result = make_atlas(mesh, settings);
   EXPECT_EQ(result.degenerate_triangles, 2);
   expect_sound(mesh, result, settings);
@@ -333,16 +343,14 @@ TEST(Atlas, TakesSurfacesOfAnyGenusAndManyComponents) {
   for (int i = 0; i < 40; ++i)
     spheres = shapes::joined(spheres, shapes::icosphere(1), {3.0f * static_cast<float>(i), 0, 0});
   for (const TriangleMesh& mesh : {rings, spheres}) {
-    AtlasSettings settings;
-    settings.size = 400;
-    settings.gutter = 2;
+    const AtlasSettings settings = quick_settings(400, 2);
     expect_sound(mesh, make_atlas(mesh, settings), settings);
   }
 }
 
 TEST(Atlas, LargeChartsAreRelaxedAroundTheirSeams) {
   // Few charts of many triangles: beyond the size up to which merged charts are relaxed as a whole.
-  const TriangleMesh mesh = shapes::torus(96);
+  const TriangleMesh mesh = shapes::cylinder_patch(64, 3, 3);
   const Surface surface = analyse_surface(mesh);
   const ChartSettings settings;
   const ChartSet cut = cut_into_charts(surface, settings);
@@ -354,7 +362,7 @@ TEST(Atlas, LargeChartsAreRelaxedAroundTheirSeams) {
     largest = std::max(largest, chart.faces.size());
   }
   EXPECT_EQ(faces, mesh.triangles.size());
-  EXPECT_LT(cut.charts.size(), 40u);
+  EXPECT_LT(cut.charts.size(), 10u);
   EXPECT_GT(largest, 4000u);
 }
 
@@ -381,6 +389,7 @@ TEST(Packing, AtAGivenScaleTakesTheLeastHeightOrSquare) {
     for (const Triangle& t : chart.triangles) area += 0.5 * cross(chart.uvs[t[0]], chart.uvs[t[1]], chart.uvs[t[2]]);
   PackSettings settings;
   settings.texels_per_unit = 40;
+  settings.rotations = 8;
   for (const int width : {0, 200, 1000}) {
     settings.width = width;
     settings.height = 0;
@@ -388,8 +397,8 @@ TEST(Packing, AtAGivenScaleTakesTheLeastHeightOrSquare) {
     EXPECT_EQ(packing.texels_per_unit, 40);
     EXPECT_EQ(packing.height % 4, 0);
     EXPECT_EQ(packing.width, width == 0 ? packing.height : width);
-    // Half of the atlas is covered even where one chart more would not have fitted beside the others.
-    EXPECT_GT(area * 40 * 40 / packing.width / packing.height, width == 1000 ? 0.3 : 0.5);
+    // About half of the atlas is covered even where one chart more would not have fitted beside the others.
+    EXPECT_GT(area * 40 * 40 / packing.width / packing.height, width == 1000 ? 0.3 : 0.45);
     for (std::size_t c = 0; c < cut.charts.size(); ++c)
       for (const Eigen::Vector2d& uv : cut.charts[c].uvs) {
         const Eigen::Vector2d texel = turned(uv, packing.placements[c].angle) * 40 + packing.placements[c].offset;
@@ -400,12 +409,69 @@ TEST(Packing, AtAGivenScaleTakesTheLeastHeightOrSquare) {
   EXPECT_THROW(pack_charts(cut.charts, settings), WrongUsage);
 }
 
+TEST(Packing, PutsACrowdDownOnceAndWell) {
+  // 300 right triangles in three sizes, legs to the axes: two make a square, of which five by thirty fit.
+  std::vector<Chart> charts(300);
+  double area = 0;
+  for (std::size_t i = 0; i < charts.size(); ++i) {
+    const double side = 1 + 0.5 * static_cast<double>(i % 3);
+    charts[i].faces = {static_cast<std::uint32_t>(i)};
+    charts[i].triangles = {{0, 1, 2}};
+    charts[i].vertices = {0, 1, 2};
+    charts[i].uvs = {{0, 0}, {side, 0}, {0, side}};
+    area += 0.5 * side * side;
+  }
+  PackSettings settings;
+  settings.width = 512;
+  settings.height = 256;
+  settings.gutter = 2;
+  const Packing packing = pack_charts(charts, settings);
+  const double share = area * packing.texels_per_unit * packing.texels_per_unit / (512 * 256);
+  EXPECT_GT(share, 0.5);  // of some 0.65: triangles of 22 texels lose a sixth to a gutter of 2
+
+  // No two need the same texel, gutters included, and none sticks out.
+  std::vector<int> owner(512 * 256, -1);
+  for (std::size_t c = 0; c < charts.size(); ++c) {
+    BitmapSettings bitmap;
+    bitmap.texels_per_unit = packing.texels_per_unit;
+    bitmap.angle = packing.placements[c].angle;
+    for (const auto& [x, y] :
+         covered_centres(charts[c], bitmap.angle, bitmap.texels_per_unit, -packing.placements[c].offset)) {
+      ASSERT_TRUE(x >= 2 && y >= 2 && x < 510 && y < 254);
+      for (int j = y - 2; j <= y + 2; ++j)
+        for (int i = x - 2; i <= x + 2; ++i)
+          ASSERT_TRUE(owner[j * 512 + i] < 0 || owner[j * 512 + i] == static_cast<int>(c));
+      owner[y * 512 + x] = static_cast<int>(c);
+    }
+  }
+
+  settings.gutter = 30;
+  EXPECT_THROW(pack_charts(charts, settings), WrongUsage);
+}
+
+TEST(Packing, TellsProgressThroughoutAndLetsInterruptsThrough) {
+  const ChartSet cut = cut_into_charts(analyse_surface(shapes::torus(12)), {});
+  PackSettings settings;
+  settings.rotations = 2;
+  std::vector<double> told;
+  pack_charts(cut.charts, settings, [&](double fraction) { told.push_back(fraction); });
+  EXPECT_GE(told.size(), 20u);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_EQ(told.back(), 1);
+  EXPECT_THROW(pack_charts(cut.charts, settings,
+                           [](double fraction) {
+                             if (fraction > 0.2) throw Interrupted();
+                           }),
+               Interrupted);
+}
+
 TEST(Atlas, PacksNonSquareAtlases) {
   const TriangleMesh mesh = shapes::torus(16);
   const ChartSet cut = cut_into_charts(analyse_surface(mesh), {});
   PackSettings settings;
   settings.width = 300;
   settings.height = 120;
+  settings.rotations = 4;
   const Packing packing = pack_charts(cut.charts, settings);
   for (std::size_t c = 0; c < cut.charts.size(); ++c)
     for (const Eigen::Vector2d& uv : cut.charts[c].uvs) {

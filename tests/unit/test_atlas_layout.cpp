@@ -47,7 +47,7 @@ AtlasSettings quick_settings(const Extent& size, int gutter = 4) {
   AtlasSettings settings;
   settings.size = size;
   settings.gutter = gutter;
-  settings.rotations = 4;
+  settings.rotations = 2;
   return settings;
 }
 

@@ -14,8 +14,11 @@
 #include "detail/detail_maps.h"
 #include "detail/texel_way.h"
 #include "image/image_file.h"
+#include "mesh/mesh_file.h"
 #include "normals/normals.h"
+#include "raycast/ray_scene.h"
 #include "shapes.h"
+#include "simplify/simplify.h"
 
 namespace kiln {
 namespace {
@@ -346,6 +349,56 @@ TEST(Normals, AThinEarKeepsItsSides) {
       EXPECT_GT(decoded_at(result.normal, i, j).z() * low_normal.z(), 0);
     });
     EXPECT_GT(sides, 1000);
+  }
+}
+
+/// The simplified bunny, each triangle in a square of its own of 32 * 32.
+TriangleMesh bunny_of_single_charts(const TriangleMesh& high) {
+  const TriangleMesh low = simplify(high, {.faces = 1000}).mesh;
+  TriangleMesh charts;
+  for (std::size_t t = 0; t < low.triangles.size(); ++t) {
+    const Eigen::Vector2f corner(static_cast<float>(t % 32), static_cast<float>(t / 32));
+    const auto first = static_cast<std::uint32_t>(charts.positions.size());
+    for (const std::uint32_t vertex : low.triangles[t]) {
+      charts.positions.push_back(low.positions[vertex]);
+      charts.normals.push_back(low.normals[vertex]);
+    }
+    for (const Eigen::Vector2f& place : {Eigen::Vector2f(0.1f, 0.1f), {0.9f, 0.1f}, {0.1f, 0.9f}})
+      charts.uvs.push_back((corner + place) / 32);
+    charts.triangles.push_back({first, first + 1, first + 2});
+  }
+  return charts;
+}
+
+TEST(Normals, TheBunnysEarsKeepTheirSides) {
+  const TriangleMesh high = load_mesh("/usr/share/glmark2/models/bunny.obj");
+  const TriangleMesh low = bunny_of_single_charts(high);
+  const BoundingBox box = bounding_box(low);
+  const RayScene scene(high);
+  const UvRaster raster = rasterise_uvs(low, 512, 512);
+  for (const int samples : {1, 16}) {
+    const NormalsResult result = make_normals(high, low, {.size = 512, .samples = samples, .seams = SeamChoice::keep});
+    int on_ears = 0, nearest_on_the_other_side = 0;
+    for_each_covered(result, [&](int i, int j) {
+      const TexelSource& source = raster.at(i, j);
+      const Eigen::Vector3f low_point = interpolate(low, low.positions, source);
+      // The ears are the uppermost quarter.
+      if (low_point.y() < box.lowest.y() + 0.75f * (box.highest.y() - box.lowest.y())) return;
+      ++on_ears;
+      const Eigen::Vector3f low_normal = interpolate(low, low.normals, source).normalized();
+      EXPECT_GT(decoded_at(result.normal, i, j).dot(low_normal), 0) << i << ' ' << j;
+      // Rays go as far as the cage, and where they disagree a point is sought within four times that.
+      EXPECT_LE((vector_at(result.position, i, j) - low_point).norm(), result.cage_distance) << i << ' ' << j;
+      const SurfacePoint nearest = scene.closest_point(low_point, std::numeric_limits<float>::infinity());
+      const Triangle& t = high.triangles[nearest.triangle];
+      const Eigen::Vector3f a = high.positions[t[0]];
+      nearest_on_the_other_side +=
+          (high.positions[t[1]] - a).cross(high.positions[t[2]] - a).dot(low_normal) < 0 ? 1 : 0;
+    });
+    EXPECT_GT(on_ears, 5000);
+    // What the test is about: the nearest point often is the other side's.
+    EXPECT_GT(nearest_on_the_other_side, 0);
+    EXPECT_EQ(result.disagreeing, 0);
   }
 }
 

@@ -119,9 +119,9 @@ TEST_F(TurnedCharts, OnlyTexelsAtSeamsChangeAndCoveredOnesLittle) {
   Image<float> after = before;
   const SeamSolver solver(seams_, covered_);
   solver.equalise(after);
-  // What a lookup within a texel of a seam can see.
+  // What a lookup on a seam can see.
   std::vector<std::uint8_t> seen(covered_.size(), 0);
-  for (const SeamPoint& point : seams_.points(2))
+  for (const SeamPoint& point : seams_.points(30))
     for (const SeamSide& side : point.sides)
       for (const std::uint32_t texel : side.footprint.texels) seen[texel] = 1;
   double squares = 0;

@@ -64,27 +64,19 @@ class MismatchSums {
 };
 
 /// Has `solver` weigh those points more where it leaves more than elsewhere, by the planes that hold most of transfer.
-void weigh_points(SeamSolver& solver, const std::vector<TransferVectors>& channels, const TexelReceivers& receivers,
-                  const std::vector<std::uint8_t>& covered) {
-  static const int rounds = std::getenv("ROUNDS") ? atoi(std::getenv("ROUNDS")) : 2;
-  static const double usual_mismatch = std::getenv("TT") ? atof(std::getenv("TT")) : .005;  // of the root mean square
+void reweigh_points(SeamSolver& solver, const std::vector<TransferVectors>& channels, const TexelReceivers& receivers,
+                    const std::vector<std::uint8_t>& covered) {
+  constexpr int rounds = 2;
   constexpr int planes = 9;
-  std::vector<double> factors(solver.points().size(), 1);
   for (int round = 0; round < rounds; ++round) {
-    std::vector<double> squares(factors.size(), 0);
-    double squared_length = 0;
+    std::vector<double> mismatches(solver.points().size(), 0);
     for (int i = 0; i < std::min(planes, channels[0].coefficients); ++i) {
-      const std::span<const float> values = channels[0].plane(i);
-      for (const float value : values) squared_length += static_cast<double>(value) * static_cast<double>(value);
-      Image<float> plane = filled_plane(values, receivers, covered);
+      Image<float> plane = filled_plane(channels[0].plane(i), receivers, covered);
       solver.equalise(plane);
-      Seams::add_squared_differences(solver.points(), plane, 0, squares);
+      Seams::add_squared_differences(solver.points(), plane, 0, mismatches);
     }
-    if (!(squared_length > 0)) return;
-    const double usual = usual_mismatch * std::sqrt(squared_length / static_cast<double>(receivers.texels.size()));
-    for (std::size_t k = 0; k < factors.size(); ++k)
-      factors[k] = SeamSolver::raised(factors[k], std::sqrt(squares[k]) / usual);
-    solver.weigh(factors);
+    for (double& mismatch : mismatches) mismatch = std::sqrt(mismatch);
+    solver.reweigh(mismatches);
   }
 }
 
@@ -136,7 +128,7 @@ PlaneSeams write_planes(OutputSet& outputs, const std::vector<TransferVectors>& 
   MismatchSums before(points), after(points);
   std::optional<SeamSolver> solver;
   if (choice == SeamChoice::equalise && !seams.edges().empty())
-    weigh_points(solver.emplace(seams, covered, NormalSpace::object, plane_weights), channels, receivers, covered);
+    reweigh_points(solver.emplace(seams, covered, NormalSpace::object, plane_weights), channels, receivers, covered);
   double squared_length = 0, squared_change = 0;
 
   std::set<std::string> written;

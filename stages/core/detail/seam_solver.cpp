@@ -16,6 +16,12 @@ namespace {
 /// still are up to twice as far apart as with 3, and 4 change nothing more.
 constexpr double samples_per_texel = 3;
 
+/// Points with more than so many times the mean mismatch are weighed more.
+constexpr double times_usual = 3;
+
+/// A bound on factors that keeps the normal equations well conditioned.
+constexpr double largest_factor = 1e4;
+
 using Sparse = Eigen::SparseMatrix<double>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
@@ -86,6 +92,7 @@ struct SeamSolver::System {
   std::vector<std::uint32_t> pinned;    ///< texels that equations see and that stay
   std::vector<double> keep;             ///< weight of its own value, per unknown
   std::vector<SeamPoint> points;        ///< the first equations are theirs
+  std::vector<double> factors;          ///< of the points' weights
   std::vector<Equation> equations;
   Sparse normal;                        ///< the normal equations, lower half
   Sparse from_pinned;                   ///< rows: unknowns, columns: pinned
@@ -94,8 +101,7 @@ struct SeamSolver::System {
 
   void number_places(std::span<const std::uint32_t> number);
   void lay_out();
-  /// With the points' weights times `factors`; none: as they are.
-  void factorise(std::span<const double> factors);
+  void factorise();
   /// Calls visit(equation's number, row's term, column's term).
   template <class Visit>
   void for_each_product(const Visit& visit) const;
@@ -215,7 +221,7 @@ void SeamSolver::System::lay_out() {
   factor.analyzePattern(normal);
 }
 
-void SeamSolver::System::factorise(std::span<const double> factors) {
+void SeamSolver::System::factorise() {
   std::fill_n(normal.valuePtr(), normal.nonZeros(), 0.0);
   std::fill_n(from_pinned.valuePtr(), from_pinned.nonZeros(), 0.0);
   const int* own_place = own_at.data();
@@ -309,7 +315,8 @@ SeamSolver::SeamSolver(const Seams& seams, std::span<const std::uint8_t> covered
     own.keep.push_back(covered[texel] != 0 ? weights.covered : weights.gutter);
   own.number_places(number);
   own.lay_out();
-  own.factorise({});
+  own.factors.assign(own.points.size(), 1.0);
+  own.factorise();
 }
 
 SeamSolver::~SeamSolver() = default;
@@ -320,15 +327,17 @@ std::size_t SeamSolver::unknown_texels() const { return system_->unknowns.size()
 
 std::span<const SeamPoint> SeamSolver::points() const { return system_->points; }
 
-double SeamSolver::raised(double factor, double times) {
-  constexpr double largest_factor = 1e4;
-  return std::min(largest_factor, factor * std::max(1.0, times * times));
-}
-
-void SeamSolver::weigh(std::span<const double> factors) {
-  if (factors.size() != system_->points.size())
-    throw std::invalid_argument("SeamSolver: one factor per point is needed");
-  system_->factorise(factors);
+void SeamSolver::reweigh(std::span<const double> mismatches) {
+  System& own = *system_;
+  if (mismatches.size() != own.points.size())
+    throw std::invalid_argument("SeamSolver: one mismatch per point is needed");
+  const double usual = times_usual * Seams::summarise(own.points, mismatches).mean;
+  if (!(usual > 0)) return;
+  for (std::size_t k = 0; k < mismatches.size(); ++k) {
+    const double times = std::max(1.0, mismatches[k] / usual);
+    own.factors[k] = std::min(largest_factor, own.factors[k] * times * times);
+  }
+  own.factorise();
 }
 
 void SeamSolver::equalise(Image<float>& image) const {

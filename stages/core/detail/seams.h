@@ -122,14 +122,10 @@ class SeamSolver {
   /// The points at which equality is asked for.
   std::span<const SeamPoint> points() const;
 
-  /// From now on asks for equality at points() with weights multiplied by `factors`, one per point: where a mismatch
-  /// is left that is larger than others, or counts for more. Not while other threads equalise. Throws
-  /// std::invalid_argument for another number of factors.
-  void weigh(std::span<const double> factors);
-
-  /// A factor for the next round where the mismatch is `times` the usual one: iteratively reweighted least squares,
-  /// bounded so that the normal equations stay well conditioned.
-  static double raised(double factor, double times);
+  /// From now on asks more for equality at those points() where more is left than elsewhere: `mismatches`, one per
+  /// point, are what equalise leaves (iteratively reweighted least squares). Not while other threads equalise. Throws
+  /// std::invalid_argument for another number of mismatches.
+  void reweigh(std::span<const double> mismatches);
 
   /// Texels that equalise may change.
   std::size_t unknown_texels() const;

@@ -78,6 +78,7 @@ def main(arguments):
     parser.add_argument("--size", type=int, default=512)
     parser.add_argument("--samples", type=int, nargs="+", default=[1, 64])
     parser.add_argument("--repeat", type=int, default=3)
+    parser.add_argument("--fit", action="store_true", help="kiln-normals --fit")
     parser.add_argument("--cage", type=float, help="Blender's extrusion, object units (default: Kiln's cage)")
     options = parser.parse_args(arguments)
     print("| samples | baker | seconds | CPU seconds | mean, degrees | 95 % | seams, mean | seams, largest |")
@@ -87,7 +88,7 @@ def main(arguments):
         for samples in options.samples:
             ours = os.path.join(folder, "kiln.png")
             bake = [options.bench, "bake", options.high, options.atlas, ours, "--size", str(options.size), "--samples",
-                    str(samples), "--repeat", str(options.repeat)]
+                    str(samples), "--repeat", str(options.repeat), *(["--fit"] if options.fit else [])]
             kiln = json.loads(run(bake))
             cage = options.cage or kiln["cage_distance"]
             subprocess.run(["blender", "-b", "--factory-startup", "--python-exit-code", "1", "--python", __file__, "--",

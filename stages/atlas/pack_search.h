@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "atlas/pack.h"
+#include "atlas/place.h"
+
+namespace kiln {
+
+/// What packing needs to know of a chart.
+struct Piece {
+  ChartOutline outline;
+  double area = 0;
+  double extent = 0;     ///< longer side of its smallest rectangle
+  double perimeter = 0;  ///< of that rectangle
+  double base_angle = 0;
+};
+
+Piece piece_of(const Chart& chart);
+
+/// The atlas at some resolution. Below that of the texels each piece is drawn half a gutter larger to all sides.
+struct PackGrid {
+  double zoom = 1;  ///< grid texels per texel
+  int width = 0;
+  int height = 0;  ///< that charts should keep to
+  int gutter = 0;
+  BitmapSettings bitmap;
+
+  int top_row() const { return height - gutter; }
+};
+
+PackGrid grid_of(const PackSettings& settings, double zoom);
+
+using Angles = std::vector<std::vector<double>>;  ///< per piece, those to be tried
+
+std::vector<Shape> rasterise(const std::vector<Piece>& pieces, const PackGrid& grid, const Angles& angles,
+                             double texels_per_unit);
+
+/// A way to put pieces down that fitted.
+struct FoundPlan {
+  double texels_per_unit = 0;
+  double height = std::numeric_limits<double>::infinity();  ///< used, texels
+  PlacePlan plan;
+  std::vector<double> angles;  ///< per piece
+};
+
+/// How long to search: until one of the two is reached.
+struct SearchBounds {
+  std::int64_t work = 0;    ///< as Placer counts it
+  int changes_in_vain = 0;  ///< one after the other
+};
+
+/// Looks for better orders by small changes, at one resolution: simulated annealing, the same in every run.
+class PackSearch {
+ public:
+  enum class Aim : std::uint8_t { raise_scale, lower_height };
+
+  /// Starts with a plan. Where the scale is to be raised, `texels_per_unit` is where that starts; it may be too large.
+  PackSearch(const std::vector<Piece>& pieces, const PackGrid& grid, Angles angles, std::uint64_t seed,
+             const SearchBounds& bounds);
+  void start(Aim aim, PlacePlan plan, double texels_per_unit);
+
+  /// Searches on until `share` of all work is done.
+  void advance(double share);
+
+  /// The best that fitted, if any did.
+  const std::optional<FoundPlan>& found() const { return found_; }
+
+ private:
+  std::int64_t work() const { return work_ + (placer_ ? placer_->work() : 0); }
+  double chance() { return static_cast<double>(random_() >> 11) * 0x1p-53; }  // the same on every platform
+  std::size_t pick(std::size_t count) { return static_cast<std::size_t>(chance() * static_cast<double>(count)); }
+
+  void start_raising();
+  void start_lowering();
+  bool set_scale(double texels_per_unit, int room);
+  void change(double temperature);
+  void keep_found();
+
+  const std::vector<Piece>& pieces_;
+  const PackGrid grid_;
+  const Angles angles_;
+  const SearchBounds bounds_;
+  Aim aim_ = Aim::raise_scale;
+  bool ended_ = false;
+  std::mt19937_64 random_;
+  std::int64_t work_ = 0;
+  int changes_in_vain_ = 0;
+  double texels_per_unit_ = 0;
+  std::vector<Shape> shapes_;
+  std::optional<Placer> placer_;
+  PlacePlan plan_;
+  Placer::Height height_;
+  std::vector<Spot> spots_;
+  std::optional<FoundPlan> found_;
+};
+
+}  // namespace kiln

@@ -1,0 +1,134 @@
+#include "normals/texel_samples.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace kiln {
+
+namespace {
+
+// Four lanes: both compilers' vector extension, which every machine has instructions for.
+using Floats = float __attribute__((vector_size(16)));
+using Ints = std::int32_t __attribute__((vector_size(16)));  ///< of a comparison: -1 or 0
+
+template <class Lanes, class Value>
+Lanes load(const Value* values) {
+  Lanes lanes;
+  std::memcpy(&lanes, values, sizeof lanes);
+  return lanes;
+}
+
+template <class Lanes, class Value>
+void store(Value* values, const Lanes& lanes) {
+  std::memcpy(values, &lanes, sizeof lanes);
+}
+
+struct Vectors {
+  Floats x, y, z;
+
+  Vectors(Floats vx, Floats vy, Floats vz) : x(vx), y(vy), z(vz) {}
+  Vectors(const TexelPoints::Components& values, int first)
+      : x(load<Floats>(&values(first, 0))), y(load<Floats>(&values(first, 1))), z(load<Floats>(&values(first, 2))) {}
+
+  friend Vectors operator-(const Eigen::Vector3f& a, const Vectors& b) {
+    return {a.x() - b.x, a.y() - b.y, a.z() - b.z};
+  }
+  Floats dot(const Vectors& v) const { return x * v.x + y * v.y + z * v.z; }
+  Vectors cross(const Vectors& v) const { return {y * v.z - z * v.y, z * v.x - x * v.z, x * v.y - y * v.x}; }
+};
+
+}  // namespace
+
+TexelSamples::Corners::Corners(const std::vector<Eigen::Vector3f>& values, const Triangle& t)
+    : first(values[t[0]]), second(values[t[1]] - values[t[0]]), third(values[t[2]] - values[t[0]]) {}
+
+TexelSamples::TexelSamples(const TriangleMesh& high, const RayScene& scene, const SurfaceWalk& walk,
+                           const TriangleMesh& atlas, const MatchLimits& limits, int samples)
+    : high_(high), scene_(scene), walk_(walk), atlas_(atlas), limits_(limits), samples_(samples) {}
+
+void TexelSamples::start(std::uint32_t triangle, float reach) {
+  triangle_ = triangle;
+  reach_ = reach;
+  pending_.fill(0);
+  found_.present.fill(0);
+  found_.count = 0;
+  found_.vectors.setZero();
+}
+
+void TexelSamples::add(int sample, const TexelSource& source) {
+  if (source.triangle != low_triangle_) {
+    low_triangle_ = source.triangle;
+    low_positions_ = Corners(atlas_.positions, atlas_.triangles[low_triangle_]);
+    low_normals_ = Corners(atlas_.normals, atlas_.triangles[low_triangle_]);
+  }
+  points_.row(sample) = low_positions_.at(source.u, source.v);
+  directions_.row(sample) = low_normals_.at(source.u, source.v);
+  pending_[static_cast<std::size_t>(sample)] = -1;
+  found_.present[static_cast<std::size_t>(sample)] = 1;
+  ++found_.count;
+}
+
+const TexelPoints& TexelSamples::finish() {
+  if (found_.count == 0) return found_;
+  normalise(directions_);
+  if (triangle_ != SurfacePoint::none) try_triangle(triangle_);
+  for (int sample = 0; sample < samples_; ++sample) {
+    if (pending_[static_cast<std::size_t>(sample)] == 0) continue;
+    find(sample);
+    try_triangle(triangle_);
+  }
+  normalise(found_.vectors);
+  return found_;
+}
+
+/// As SurfaceWalk::meet, for all pending samples, four at a time.
+void TexelSamples::try_triangle(std::uint32_t triangle) {
+  const Triangle& t = high_.triangles[triangle];
+  const Eigen::Vector3f p0 = high_.positions[t[0]], p1 = high_.positions[t[1]], p2 = high_.positions[t[2]];
+  const Eigen::Vector3f n0 = high_.normals[t[0]], n1 = high_.normals[t[1]], n2 = high_.normals[t[2]];
+  for (int k = 0; k < samples_; k += 4) {
+    const Ints pending = load<Ints>(&pending_[static_cast<std::size_t>(k)]);
+    if ((pending[0] | pending[1] | pending[2] | pending[3]) == 0) continue;
+    const Vectors point(points_, k), direction(directions_, k);
+    const Vectors a = p0 - point, b = p1 - point, c = p2 - point;
+    const Vectors c_turned = c.cross(direction);
+    const Floats of_a = b.dot(c_turned), of_b = -a.dot(c_turned), of_c = a.cross(b).dot(direction);
+    const Floats sum = of_a + of_b + of_c;
+    const Floats distance_times_sum = of_a * a.dot(direction) + of_b * b.dot(direction) + of_c * c.dot(direction);
+    const Ints take = (of_a >= 0) & (of_b >= 0) & (of_c >= 0) & (sum > 0) & (distance_times_sum <= reach_ * sum) &
+                      (-distance_times_sum <= reach_ * sum) & pending;
+    if ((take[0] | take[1] | take[2] | take[3]) == 0) continue;
+    const Floats scale = 1 / (take ? sum : sum - sum + 1);
+    for (int axis = 0; axis < 3; ++axis) {
+      float* found = &found_.vectors(k, axis);
+      const Floats normal = (of_a * n0[axis] + of_b * n1[axis] + of_c * n2[axis]) * scale;
+      store(found, take ? normal : load<Floats>(found));
+    }
+    store(&pending_[static_cast<std::size_t>(k)], pending & ~take);
+  }
+}
+
+void TexelSamples::find(int sample) {
+  const Eigen::Vector3f point = points_.row(sample), direction = directions_.row(sample);
+  SurfacePoint met;
+  if (triangle_ != SurfacePoint::none) met = walk_.meet(point, direction, triangle_);
+  if (!met.found() || !(std::abs(met.distance) <= reach_)) {
+    met = match_surface(high_, scene_, point, direction, limits_).point;
+    reach_ = std::max(reach_, met.distance);
+  }
+  triangle_ = met.triangle;
+  found_.vectors.row(sample) = normal_at(high_, met);
+  pending_[static_cast<std::size_t>(sample)] = 0;
+}
+
+void TexelSamples::normalise(TexelPoints::Components& vectors) const {
+  constexpr float least_squared_length = 1e-12f;  // vertex normals that cancel each other stay next to nothing
+  auto used = vectors.topRows(samples_);
+  const Eigen::Array<float, Eigen::Dynamic, 1, 0, TexelPoints::most, 1> scale =
+      used.square().rowwise().sum().max(least_squared_length).rsqrt();
+  used.colwise() *= scale;
+}
+
+}  // namespace kiln

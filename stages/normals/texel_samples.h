@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+#include "mesh/triangle_mesh.h"
+#include "mesh/uv_raster.h"
+#include "normals/surface_match.h"
+#include "normals/surface_walk.h"
+#include "raycast/ray_scene.h"
+
+namespace kiln {
+
+/// Vectors at the points of a grid in a texel, row by row, component by component; those that are absent are zero.
+struct TexelPoints {
+  static constexpr int most = 64;
+  using Components = Eigen::Array<float, most, 3>;
+
+  Components vectors = Components::Zero();
+  std::array<std::uint8_t, most> present{};
+  int count = 0;  ///< that are present
+};
+
+/// The high mesh's normals at the samples of one texel after another. Samples of a texel mostly meet the same few high
+/// triangles: each triangle that a walk finds is tried for all samples of the texel at once.
+class TexelSamples {
+ public:
+  /// Keeps references. `samples` per texel, at most TexelPoints::most.
+  TexelSamples(const TriangleMesh& high, const RayScene& scene, const SurfaceWalk& walk, const TriangleMesh& atlas,
+               const MatchLimits& limits, int samples);
+
+  /// Starts a texel: the triangle of its centre's point, if it has one, and how far off samples' points may be.
+  void start(std::uint32_t triangle, float reach);
+
+  /// Sample number `sample` of the texel lies at `source`.
+  void add(int sample, const TexelSource& source);
+
+  /// High normals, of unit length, of the samples that were added.
+  const TexelPoints& finish();
+
+ private:
+  /// A low triangle: a value at its first corner, and from there to the others.
+  struct Corners {
+    Eigen::Vector3f first, second, third;
+    Corners() = default;
+    Corners(const std::vector<Eigen::Vector3f>& values, const Triangle& t);
+    Eigen::Vector3f at(float u, float v) const { return first + u * second + v * third; }
+  };
+
+  void try_triangle(std::uint32_t triangle);
+  void find(int sample);
+  void normalise(TexelPoints::Components& vectors) const;
+
+  const TriangleMesh& high_;
+  const RayScene& scene_;
+  const SurfaceWalk& walk_;
+  const TriangleMesh& atlas_;
+  const MatchLimits& limits_;
+  int samples_;
+
+  std::uint32_t triangle_ = SurfacePoint::none;
+  float reach_ = 0;
+  std::uint32_t low_triangle_ = TexelSource::none;
+  Corners low_positions_, low_normals_;
+  TexelPoints::Components points_ = TexelPoints::Components::Zero(), directions_ = TexelPoints::Components::Zero();
+  std::array<std::int32_t, TexelPoints::most> pending_{};  ///< -1 or 0
+  TexelPoints found_;
+};
+
+}  // namespace kiln
