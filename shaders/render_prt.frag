@@ -1,4 +1,8 @@
+#ifdef CLUSTERED
+#include "common_prt_pca.glsl"
+#else
 #include "common_prt.glsl"
+#endif
 
 in vec2 surface_uv;
 

@@ -12,10 +12,10 @@ namespace kiln {
 
 namespace {
 
-// Bindings and locations as shaders/common_prt.glsl and shaders/render_prt.vert have them.
-constexpr GLuint planes_unit = 0, weights_binding = 0;
+// Bindings and locations as shaders/common_prt.glsl, shaders/common_prt_pca.glsl and shaders/render_prt.vert have them.
+constexpr GLuint planes_unit = 0, cluster_ids_unit = 1, weights_binding = 0;
 constexpr GLuint position_location = 0, uv_location = 1;
-constexpr GLint clip_from_object_location = 0;
+constexpr GLint clip_from_object_location = 0, layers_location = 1;
 constexpr std::size_t planes_per_layer = 4;
 
 // Pictures are drawn in tiles of at most so many samples a side, so that memory does not grow with supersampling.
@@ -75,17 +75,41 @@ void add_attribute(GLuint vertices, GLuint location, const GlBuffer& buffer, int
   glEnableVertexArrayAttrib(vertices, location);
 }
 
-/// The buffer of common_prt.glsl: the constant, then for each layer what its planes add to red, green and blue.
-GlBuffer upload_weights(const PlaneWeights& weights) {
-  const std::size_t layers = (weights.scales.size() + planes_per_layer - 1) / planes_per_layer;
-  std::vector<float> values(4 + 3 * planes_per_layer * layers, 0.f);
-  for (int colour = 0; colour < 3; ++colour) {
-    values[static_cast<std::size_t>(colour)] = weights.constant[colour];
-    for (std::size_t plane = 0; plane < weights.scales.size(); ++plane)
-      values[4 + planes_per_layer * (3 * (plane / planes_per_layer) + static_cast<std::size_t>(colour)) +
-             plane % planes_per_layer] = weights.scales[plane][colour];
+/// The buffer of common_prt.glsl and common_prt_pca.glsl: for each cluster the constant, then for each layer what its
+/// planes add to red, green and blue.
+GlBuffer upload_weights(const std::vector<PlaneWeights>& clusters) {
+  const std::size_t layers = (clusters.front().scales.size() + planes_per_layer - 1) / planes_per_layer;
+  const std::size_t stride = 4 + 3 * planes_per_layer * layers;
+  std::vector<float> values(stride * clusters.size(), 0.f);
+  for (std::size_t cluster = 0; cluster < clusters.size(); ++cluster) {
+    const PlaneWeights& weights = clusters[cluster];
+    float* to = values.data() + stride * cluster;
+    for (int colour = 0; colour < 3; ++colour) {
+      to[colour] = weights.constant[colour];
+      for (std::size_t plane = 0; plane < weights.scales.size(); ++plane)
+        to[4 + planes_per_layer * (3 * (plane / planes_per_layer) + static_cast<std::size_t>(colour)) +
+           plane % planes_per_layer] = weights.scales[plane][colour];
+    }
   }
   return make_buffer(std::span<const float>(values));
+}
+
+bool is_clustered(const PrtAsset& asset) { return asset.clusters && asset.clusters->count > 1; }
+
+/// The cluster of every texel, clamped at the edges as the planes are; none where there is one cluster.
+GlTexture upload_cluster_ids(const PrtAsset& asset) {
+  if (!is_clustered(asset)) return {};
+  GlTexture texture = make_texture(GL_TEXTURE_2D);
+  glTextureStorage2D(texture.name(), 1, GL_R8UI, asset.width, asset.height);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage2D(texture.name(), 0, 0, 0, asset.width, asset.height, GL_RED_INTEGER, GL_UNSIGNED_BYTE,
+                      asset.clusters->ids.values().data());
+  glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  glTextureParameteri(texture.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(texture.name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  check_gl("uploading the clusters");
+  return texture;
 }
 
 /// Part of a picture, in pixels of it.
@@ -139,8 +163,10 @@ void box_filter(const Image<float>& fine, int factor, const Tile& tile, Image<fl
 
 PrtRenderer::PrtRenderer(const PrtAsset& asset)
     : asset_(asset),
-      program_(load_program({"render_prt.vert", "render_prt.frag"})),
+      program_(load_program({"render_prt.vert", "render_prt.frag"},
+                            is_clustered(asset) ? ShaderDefines{{"CLUSTERED", "1"}} : ShaderDefines{})),
       planes_(upload_planes(asset)),
+      cluster_ids_(upload_cluster_ids(asset)),
       positions_(make_buffer(std::span<const Eigen::Vector3f>(asset.mesh.positions))),
       uvs_(make_buffer(std::span<const Eigen::Vector2f>(asset.mesh.uvs))),
       indices_(make_buffer(std::span<const Triangle>(asset.mesh.triangles))),
@@ -158,9 +184,13 @@ Image<float> PrtRenderer::render(const LightCoefficients& light, const PrtView& 
   const Frame frame(widest * factor, highest * factor);
 
   // What all tiles share.
-  const GlBuffer weights = upload_weights(plane_weights(asset_, light, view.albedo));
+  const GlBuffer weights = upload_weights(cluster_weights(asset_, light, view.albedo));
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, weights_binding, weights.name());
   glBindTextureUnit(planes_unit, planes_.name());
+  if (is_clustered(asset_)) {
+    glBindTextureUnit(cluster_ids_unit, cluster_ids_.name());
+    glProgramUniform1i(program_.name(), layers_location, layer_count(asset_));
+  }
   glBindFramebuffer(GL_FRAMEBUFFER, frame.framebuffer.name());
   glEnable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);

@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
+#include "asset/prt_asset.h"
 #include "image/image.h"
-#include "relight/prt_asset.h"
 #include "sh/lights.h"
 
 namespace kiln {
@@ -18,10 +18,17 @@ struct PlaneWeights {
   std::vector<Eigen::Vector3f> scales;  ///< one per plane, RGB
 };
 
-/// `light` has three channels (R, G, B) and the asset's bands. An asset of one channel has the same transfer for all
-/// colours; of three, one for each. Throws std::invalid_argument for another light, BadInput for another number of
-/// channels: those are spectral basis functions, which need sensor matrices to become colours.
-PlaneWeights plane_weights(const PrtAsset& asset, const LightCoefficients& light, const std::array<float, 3>& albedo);
+/// One for every cluster of a compressed asset, one for any other. The constant of a compressed one has the clusters'
+/// means in it, and the scales the dot products of basis vectors with the light: the terms in brackets of D3DX'
+///
+///   R_p = (M_k . L') + sum_j w_pj (B_kj . L'),
+///
+/// which are computed once per light. `light` has three channels (R, G, B) and the asset's bands. An asset of one
+/// channel has the same transfer for all colours; of three, one for each. Throws std::invalid_argument for another
+/// light, BadInput for another number of channels: those are spectral basis functions, which need sensor matrices to
+/// become colours.
+std::vector<PlaneWeights> cluster_weights(const PrtAsset& asset, const LightCoefficients& light,
+                                          const std::array<float, 3>& albedo);
 
 /// Exit radiance of every texel, three channels, rows from the bottom; what the GPU draws, computed by the CPU.
 Image<float> relight_texels(const PrtAsset& asset, const LightCoefficients& light, const std::array<float, 3>& albedo);

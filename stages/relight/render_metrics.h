@@ -2,10 +2,10 @@
 
 #include <vector>
 
+#include "asset/prt_asset.h"
 #include "base/options.h"
 #include "gpu/egl_context.h"
 #include "image/image.h"
-#include "relight/prt_asset.h"
 #include "sh/light_spec.h"
 
 namespace kiln {

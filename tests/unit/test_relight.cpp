@@ -13,6 +13,7 @@
 #include <unistd.h>
 #include <vector>
 
+#include "asset/prt_asset.h"
 #include "base/errors.h"
 #include "base/outputs.h"
 #include "gpu/egl_context.h"
@@ -23,7 +24,6 @@
 #include "mesh/uv_raster.h"
 #include "relight/environment.h"
 #include "relight/picture.h"
-#include "relight/prt_asset.h"
 #include "relight/prt_renderer.h"
 #include "relight/relight.h"
 #include "relight/render_settings.h"

@@ -1,6 +1,6 @@
+#include "asset/prt_asset.h"
 #include "base/command_line.h"
 #include "gpu/egl_context.h"
-#include "relight/prt_asset.h"
 #include "relight/prt_renderer.h"
 #include "relight/render_metrics.h"
 #include "relight/render_settings.h"
@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
     std::filesystem::path folder, file;
     LightSettings lights;
     RenderSettings settings;
-    command.input("PRT", folder, "The output folder of kiln-bake; nothing else is read");
+    command.input("PRT", folder, "The output folder of kiln-bake or kiln-compress; nothing else is read");
     command.output(file, "The picture: .png, or .exr for linear float radiance as it is");
     command.app()
         .add_option(

@@ -1,0 +1,322 @@
+#include "compress/compress.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <map>
+#include <optional>
+
+#include "base/command_line.h"
+#include "base/errors.h"
+#include "compress/compress_files.h"
+
+namespace kiln {
+
+namespace {
+
+constexpr std::size_t sampled_texels = 65536;  // that steps are chosen on
+constexpr int planes_per_lookup = 4;
+constexpr double reach = 0.97;  // a model that leaves more of the target than this has no room for rounding
+
+std::uint64_t size_of(const EncodedFiles& files) {
+  std::uint64_t bytes = 0;
+  for (const auto& file : files) bytes += file.second.size();
+  return bytes;
+}
+
+/// What is known of a search; candidates are tried one after another.
+class Search {
+ public:
+  Search(const PrtAsset& asset, const CompressSettings& settings, ProgressFunction progress)
+      : asset_(asset),
+        settings_(settings),
+        progress_(std::move(progress)),
+        source_(asset),
+        owners_(gutter_owners(source_, settings.gutter)),
+        sample_(source_.sample(sampled_texels)),
+        all_(principal_components(source_)) {}
+
+  CompressResult run() {
+    const bool free = settings_.clusters == 0 && settings_.components == 0;
+    const CompressCandidate eight = plain(8);
+    const std::optional<double> asked = target_error(settings_);
+    result_.target_error = asked.value_or(asset_.bits == 8 ? rounding_error() : eight.error);
+    if (settings_.components > source_.length())
+      throw WrongUsage(fmt::format("pca: found {}; expected at most {}, the length of a transfer vector",
+                                   settings_.components, source_.length()));
+    if (free) {
+      consider(eight, nullptr);
+      if (asset_.bits == 16) consider(plain(16), nullptr);
+    }
+    if (settings_.clusters <= 1) try_one_basis();
+    progress_(0.2);
+    if (settings_.clusters != 1) try_clusters();
+    if (!best_) fail();
+    finish();
+    return std::move(result_);
+  }
+
+ private:
+  double error_of(double residual) const {
+    return source_.squared_norm() > 0 ? std::sqrt(std::max(residual, 0.0) / source_.squared_norm()) : 0;
+  }
+
+  /// What rounding to the steps of the asset's own planes costs: step^2 / 12 in every entry.
+  double rounding_error() const {
+    double sum = 0;
+    for (std::size_t k = 0; k < asset_.planes.size(); ++k) {
+      const double step = source_.scale()[static_cast<Eigen::Index>(k)] *
+                          (asset_.planes[k].highest - asset_.planes[k].lowest) / ((1 << asset_.bits) - 1);
+      sum += step * step / 12;
+    }
+    return error_of(sum * static_cast<double>(source_.covered().size()));
+  }
+
+  CompressCandidate plain(int bits) const {
+    CompressCandidate candidate;
+    candidate.components = static_cast<int>(asset_.planes.size());
+    candidate.bits = bits;
+    candidate.error = bits < asset_.bits ? relighting_error(with_eight_bits(asset_), source_) : 0;
+    candidate.bytes = size_of(encode_planes(asset_, bits, PngEffort::quick));
+    candidate.lookups = candidate.lookups_at_borders =
+        (candidate.components + planes_per_lookup - 1) / planes_per_lookup;
+    return candidate;
+  }
+
+  /// Notes a candidate, and `model` with it if it is the cheapest so far; says whether its bytes are the least.
+  bool consider(CompressCandidate candidate, const TexelModel* model) {
+    candidate.feasible = candidate.error <= result_.target_error;
+    result_.tried.push_back(candidate);
+    if (!candidate.feasible || (best_ && best_->bytes <= candidate.bytes)) return false;
+    best_ = candidate;
+    best_model_ = model != nullptr ? std::optional(*model) : std::nullopt;
+    return true;
+  }
+
+  /// The largest step that stays within the target, on the sample; 0 where none does.
+  double step_for(const TexelModel& model) const {
+    const auto error_at = [&](double step) {
+      const TexelModel rounded{rounded_model(model.model, source_, all_, step), model.ids, {}};
+      return error_of(stored_residual(source_, rounded, sample_, step));
+    };
+    const double room =
+        result_.target_error * std::sqrt(source_.squared_norm() / static_cast<double>(source_.covered().size()));
+    // All the error a step's rounding can make is step^2 / 12 per component; start from there, in steps of factors.
+    double high = room * std::sqrt(12.0 / std::max(1, model.model.components)) * 4, low = 0;
+    for (double step = high; step > high / 4096; step /= 2)
+      if (error_at(step) <= result_.target_error) {
+        low = step;
+        break;
+      } else {
+        high = step;
+      }
+    if (low == 0) return 0;
+    for (int k = 0; k < 5 && high > low; ++k) {
+      const double middle = std::sqrt(low * high);
+      (error_at(middle) <= result_.target_error ? low : high) = middle;
+    }
+    return low;
+  }
+
+  /// Tries a model: as coarse as the target allows, measured on all texels. Says whether it is the cheapest so far.
+  bool attempt(const TexelModel& model, CompressScheme scheme) {
+    double step = step_for(model);
+    if (step == 0) return false;
+    for (int k = 0; k < 8; ++k, step *= 0.98) {
+      const StoredPca stored = store_pca(source_, model, all_, step);
+      CompressCandidate candidate = describe(stored, scheme, step);
+      candidate.error = error_of(stored_residual(source_, stored.decoded, source_.covered(), step));
+      if (candidate.error > result_.target_error && k < 7) continue;  // the sample was too kind
+      candidate.bytes = size_of(encode_pca(stored, source_, PngEffort::quick));
+      return consider(candidate, &model);
+    }
+    return false;
+  }
+
+  CompressCandidate describe(const StoredPca& stored, CompressScheme scheme, double step) const {
+    CompressCandidate candidate;
+    candidate.scheme = scheme;
+    candidate.clusters = stored.decoded.model.clusters();
+    candidate.components = stored.decoded.model.components;
+    candidate.step = step;
+    for (const StoredPicture& plane : stored.weights) candidate.bits = std::max(candidate.bits, plane.bits);
+    const int layers = (candidate.components + planes_per_lookup - 1) / planes_per_lookup;
+    candidate.lookups = candidate.clusters == 1 ? layers : 1 + layers;
+    candidate.lookups_at_borders = candidate.clusters == 1 ? layers : 1 + 4 * layers;
+    return candidate;
+  }
+
+  void note_lacking(double error) { least_error_ = std::min(least_error_.value_or(error), error); }
+
+  /// With one basis: the fewest components that leave less than the target, and more as long as that saves bytes.
+  void try_one_basis() {
+    const int length = source_.length();
+    const auto feasible = [&](int n) {
+      const double error = error_of(all_.residual[static_cast<std::size_t>(n)]);
+      if (error > reach * result_.target_error) note_lacking(error);
+      return error <= reach * result_.target_error;
+    };
+    if (settings_.components > 0) {
+      raise_target(error_of(all_.residual[static_cast<std::size_t>(settings_.components)]));
+      if (feasible(settings_.components)) attempt_plain(settings_.components);
+      return;
+    }
+    int fewest = 1;
+    while (fewest < length && !feasible(fewest)) ++fewest;
+    if (!feasible(fewest)) return;
+    int missed = 0;
+    for (int n = fewest, further = 1; n <= length && missed < 2; n += further, further = std::min(4, 2 * further)) {
+      missed = attempt_plain(n) ? 0 : missed + 1;
+      if (n < length && n + further > length && missed < 2) attempt_plain(length);
+    }
+  }
+
+  bool attempt_plain(int components) {
+    return attempt(texel_model(source_, all_.model(components), owners_), CompressScheme::pca);
+  }
+
+  /// Where the settings fix the model and leave the error open, the error is what the model leaves, and a quarter more
+  /// for rounding.
+  void raise_target(double left) {
+    const bool fixed = settings_.clusters > 0 && settings_.components > 0;
+    if (fixed && settings_.max_error == "auto") result_.target_error = std::max(result_.target_error, 1.25 * left);
+  }
+
+  /// Says whether the model leaves room, and if so what came of it.
+  enum class Outcome { lacks, worse, best };
+  Outcome attempt_clusters(int clusters, int components) {
+    const ClusteredPca clustered = clustered_pca(source_, all_, clusters, components, settings_.seed);
+    const double left = error_of(clustered.residual);
+    raise_target(left);
+    if (left > reach * result_.target_error) {
+      note_lacking(left);
+      return Outcome::lacks;
+    }
+    const TexelModel model = texel_model(source_, clustered, owners_);
+    return attempt(model, CompressScheme::clustered_pca) ? Outcome::best : Outcome::worse;
+  }
+
+  Outcome attempt_once(int clusters, int components) {
+    const auto [place, is_new] = attempted_.try_emplace({clusters, components}, Outcome::lacks);
+    if (is_new) {
+      place->second = attempt_clusters(clusters, components);
+      progress_(std::min(0.85, 0.2 + 0.04 * static_cast<double>(attempted_.size())));
+    }
+    return place->second;
+  }
+
+  /// The fewest components that leave less than the target with so many clusters; none where the most do not.
+  std::optional<int> fewest_components(int clusters, int most) {
+    if (attempt_once(clusters, most) == Outcome::lacks) return std::nullopt;
+    int low = 1, high = most;
+    while (low < high) {
+      const int middle = (low + high) / 2;
+      if (attempt_once(clusters, middle) == Outcome::lacks)
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    return low;
+  }
+
+  /// Fewer clusters and fewer components leave more, so what lacks with many clusters lacks with few. Bytes first fall
+  /// with components, as steps get coarser, then rise.
+  void try_clusters() {
+    std::vector<int> clusters = {256, 128, 64};
+    if (settings_.clusters > 0) clusters = {settings_.clusters};
+    if (settings_.components > 0) {
+      for (const int k : clusters)
+        if (attempt_once(k, settings_.components) == Outcome::lacks) break;
+      return;
+    }
+    constexpr int most_components = 24, further_components = 4;
+    const int most = std::min(source_.length() - 1, most_components);
+    if (most < 1) return;
+    const std::optional<int> fewest = fewest_components(clusters.front(), most);
+    if (!fewest) return;
+    int first = *fewest;
+    for (const int k : clusters) {
+      const int last = std::min(most, first + further_components);
+      while (first < last && attempt_once(k, first) == Outcome::lacks) ++first;
+      for (int n = first; n <= last; ++n)
+        if (attempt_once(k, n) != Outcome::best && n > first) break;
+    }
+  }
+
+  [[noreturn]] void fail() const {
+    throw WrongUsage(
+        fmt::format("max-error: found {}; expected at least {:.3g}, which --clusters and --pca as they are "
+                    "leave; allow more error, clusters or components",
+                    settings_.max_error, least_error_.value_or(result_.target_error) / reach));
+  }
+
+  /// Encodes the cheapest candidate as small as can be.
+  void finish() {
+    progress_(0.9);
+    result_.chosen = *best_;
+    if (best_model_) {
+      result_.files = encode_pca(store_pca(source_, *best_model_, all_, best_->step), source_, PngEffort::thorough);
+      result_.border_share = border_share(*best_model_);
+    } else {
+      result_.files = encode_planes(asset_, best_->bits, PngEffort::thorough);
+    }
+    result_.chosen.bytes = size_of(result_.files);
+    progress_(1);
+  }
+
+  double border_share(const TexelModel& model) const {
+    if (model.model.clusters() == 1) return 0;
+    const auto width = static_cast<std::size_t>(asset_.width);
+    std::size_t borders = 0;
+    for (const std::uint32_t texel : source_.covered()) {
+      const std::size_t right = texel % width + 1 < width ? texel + 1 : texel,
+                        above = texel + width < model.ids.size() ? texel + width : texel;
+      borders += model.ids[texel] != model.ids[right] || model.ids[texel] != model.ids[above];
+    }
+    return static_cast<double>(borders) / static_cast<double>(source_.covered().size());
+  }
+
+  const PrtAsset& asset_;
+  const CompressSettings& settings_;
+  ProgressFunction progress_;
+  TransferSource source_;
+  std::vector<std::uint32_t> owners_, sample_;
+  PrincipalComponents all_;
+  CompressResult result_;
+  std::optional<CompressCandidate> best_;
+  std::optional<TexelModel> best_model_;              ///< none: planes
+  std::optional<double> least_error_;                 ///< that was left by models which leave too much
+  std::map<std::pair<int, int>, Outcome> attempted_;  ///< by clusters and components
+};
+
+}  // namespace
+
+std::string scheme_name(CompressScheme scheme) {
+  if (scheme == CompressScheme::planes) return "planes";
+  return scheme == CompressScheme::pca ? "pca" : "clustered-pca";
+}
+
+Json CompressCandidate::to_json() const {
+  return {{"scheme", scheme_name(scheme)},
+          {"clusters", clusters},
+          {"components", components},
+          {"bits", bits},
+          {"step", step},
+          {"error", error},
+          {"bytes", bytes},
+          {"lookups", lookups},
+          {"lookups_at_borders", lookups_at_borders},
+          {"feasible", feasible}};
+}
+
+CompressResult compress(const PrtAsset& asset, const CompressSettings& settings, const ProgressFunction& progress) {
+  if (asset.clusters)
+    throw BadInput(asset.ranges_file.string(), "is a compressed asset", "the output folder of kiln-bake",
+                   "compress the baked folder itself");
+  const Stopwatch watch;
+  CompressResult result = Search(asset, settings, progress).run();
+  result.seconds = watch.seconds();
+  return result;
+}
+
+}  // namespace kiln

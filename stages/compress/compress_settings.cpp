@@ -1,0 +1,34 @@
+#include "compress/compress_settings.h"
+
+#include <charconv>
+
+#include "base/errors.h"
+
+namespace kiln {
+
+OptionSet compress_options(CompressSettings& settings) {
+  OptionSet options;
+  options
+      .text("max-error", settings.max_error,
+            "Expected relighting error against the input that the result stays under, 1e-6 to 1, or auto: what planes "
+            "of 8 bits have against planes of more")
+      .integer_or_auto("clusters", settings.clusters, 1, 256,
+                       "Clusters of texels, each with a basis of its own; 1: one basis for all; auto: what is cheapest")
+      .integer_or_auto("pca", settings.components, 1, 256,
+                       "Basis vectors of a cluster, so many weights per texel; auto: what is cheapest")
+      .integer("gutter", settings.gutter, 1, 64,
+               "Texels around charts that keep their values; those beyond are filled with what costs least");
+  return options;
+}
+
+std::optional<double> target_error(const CompressSettings& settings) {
+  if (settings.max_error == "auto") return std::nullopt;
+  double value = 0;
+  const char* end = settings.max_error.data() + settings.max_error.size();
+  const auto [rest, fault] = std::from_chars(settings.max_error.data(), end, value);
+  if (fault != std::errc() || rest != end || !(value >= 1e-6 && value <= 1))
+    throw WrongUsage("max-error: found '" + settings.max_error + "'; expected auto, or a number of 1e-6 to 1");
+  return value;
+}
+
+}  // namespace kiln

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "image/image.h"
+
+namespace kiln {
+
+/// How hard to look for the smallest file.
+enum class PngEffort {
+  quick,     ///< one filter: a measure of what the picture is worth, some percent too high
+  thorough,  ///< every filter and adaptive ones, each with two strategies of zlib; the smallest
+};
+
+/// A grey PNG of 8 or 16 bits (of 8, values are at most 255) as the bytes of a file; the same values give the same
+/// bytes. image/image_file.h writes without filters, which costs smooth planes a tenth to a fifth of their bytes.
+std::string encode_grey_png(const Image<std::uint16_t>& image, int bits, PngEffort effort);
+
+}  // namespace kiln

@@ -1,0 +1,210 @@
+#include "compress/stored_pca.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tbb/parallel_for.h>
+
+namespace kiln {
+
+namespace {
+
+constexpr double most_steps = 65535;
+
+/// Turns the vector of a texel into weights: (B^T B)^-1 B^T of every cluster.
+std::vector<Eigen::MatrixXf> fitting_matrices(const PcaModel& model) {
+  std::vector<Eigen::MatrixXf> result;
+  for (const Eigen::MatrixXf& basis : model.bases) {
+    const Eigen::MatrixXd exact = basis.cast<double>(), square = exact.transpose() * exact;
+    const Eigen::MatrixXd fit = square.ldlt().solve(exact.transpose());
+    result.emplace_back(fit.cast<float>());
+  }
+  return result;
+}
+
+/// components x texels.
+Eigen::MatrixXf fitted_weights(const TexelModel& model, const std::vector<Eigen::MatrixXf>& fits,
+                               const Eigen::MatrixXf& vectors, std::span<const std::uint32_t> texels) {
+  Eigen::MatrixXf weights(model.model.components, vectors.cols());
+  if (model.model.clusters() == 1) {
+    weights = fits[0] * (vectors.colwise() - model.model.means[0]);
+    return weights;
+  }
+  for (Eigen::Index k = 0; k < vectors.cols(); ++k) {
+    const std::size_t cluster = model.ids[texels[static_cast<std::size_t>(k)]];
+    const Eigen::VectorXf centred = vectors.col(k) - model.model.means[cluster];
+    weights.col(k).noalias() = fits[cluster] * centred;
+  }
+  return weights;
+}
+
+/// Steps of a mean's entries and of those of each basis vector.
+std::vector<double> vector_steps(const PcaModel& model, const TransferSource& source, const PrincipalComponents& all,
+                                 double step) {
+  const double share = model.clusters() == 1 ? 1.0 / 16 : 1.0 / 4;  // one basis costs next to nothing
+  std::vector<double> steps = {share * step};
+  for (int j = 0; j < model.components; ++j) {
+    const double deviation = std::sqrt(all.variances[j] / static_cast<double>(source.covered().size()));
+    steps.push_back(share * step / std::max(deviation, step));
+  }
+  return steps;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> gutter_owners(const TransferSource& source, int gutter) {
+  const int width = source.asset().width, height = source.asset().height;
+  std::vector<std::uint32_t> owners(source.coverage().size(), no_owner);
+  for (const std::uint32_t texel : source.covered()) owners[texel] = texel;
+  for (int ring = 0; ring < gutter; ++ring) {
+    const std::vector<std::uint32_t> before = owners;
+    tbb::parallel_for(0, height, [&](int j) {
+      for (int i = 0; i < width; ++i) {
+        std::uint32_t& owner = owners[static_cast<std::size_t>(j) * width + i];
+        // Neighbours across an edge first, then across a corner.
+        for (const auto& [x, y] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}) {
+          if (owner != no_owner) break;
+          if (i + x >= 0 && i + x < width && j + y >= 0 && j + y < height)
+            owner = before[static_cast<std::size_t>(j + y) * width + i + x];
+        }
+      }
+    });
+  }
+  return owners;
+}
+
+TexelModel texel_model(const TransferSource& source, const PcaModel& one, const std::vector<std::uint32_t>& owners) {
+  return {one, std::vector<std::uint8_t>(source.coverage().size(), 0), owners};
+}
+
+TexelModel texel_model(const TransferSource& source, const ClusteredPca& clustered,
+                       const std::vector<std::uint32_t>& owners) {
+  TexelModel result = texel_model(source, clustered.model, owners);
+  for (std::size_t k = 0; k < source.covered().size(); ++k) result.ids[source.covered()[k]] = clustered.ids[k];
+  const auto width = static_cast<std::size_t>(source.asset().width);
+  for (std::size_t texel = 0; texel < owners.size(); ++texel)
+    if (owners[texel] != no_owner)
+      result.ids[texel] = result.ids[owners[texel]];
+    else if (texel % width > 0)
+      result.ids[texel] = result.ids[texel - 1];
+  return result;
+}
+
+int StoredPicture::largest() const { return *std::max_element(values.values().begin(), values.values().end()); }
+
+PcaModel rounded_model(const PcaModel& model, const TransferSource& source, const PrincipalComponents& all, double step,
+                       StoredPca* stored) {
+  PcaModel rounded = model;
+  const std::vector<double> steps = vector_steps(model, source, all, step);
+  const int rows = model.clusters() * (model.components + 1);
+  if (stored != nullptr) stored->vectors = Image<std::uint16_t>(source.length(), rows, 1);
+  for (int j = 0; j <= model.components; ++j) {
+    // Row j of every cluster has one range.
+    const auto row = [&](std::size_t cluster) {
+      float* first = j == 0 ? rounded.means[cluster].data() : rounded.bases[cluster].col(j - 1).data();
+      return Eigen::Map<Eigen::VectorXf>(first, source.length());
+    };
+    double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+    for (std::size_t c = 0; c < model.means.size(); ++c) {
+      lowest = std::min<double>(lowest, row(c).minCoeff());
+      highest = std::max<double>(highest, row(c).maxCoeff());
+    }
+    const double step_j = std::max(steps[static_cast<std::size_t>(j)], (highest - lowest) / most_steps);
+    const double unit = step_j > 0 ? step_j : 1;
+    if (stored != nullptr) stored->vector_rows.push_back({{}, 16, lowest, lowest + most_steps * unit});
+    for (std::size_t c = 0; c < model.means.size(); ++c) {
+      Eigen::Map<Eigen::VectorXf> values = row(c);
+      for (int i = 0; i < values.size(); ++i) {
+        const double place = std::min(std::round((values[i] - lowest) / unit), most_steps);
+        values[i] = static_cast<float>(lowest + place * unit);
+        if (stored != nullptr)
+          stored->vectors.at(i, rows - 1 - (static_cast<int>(c) * (model.components + 1) + j)) =
+              static_cast<std::uint16_t>(place);
+      }
+    }
+  }
+  return rounded;
+}
+
+double stored_residual(const TransferSource& source, const TexelModel& decoded,
+                       const std::vector<std::uint32_t>& texels, double step) {
+  const std::vector<Eigen::MatrixXf> fits = fitting_matrices(decoded.model);
+  const auto unit = static_cast<float>(step);
+  const double sum = sum_of_chunks(texels.size(), [&](std::size_t first, std::size_t count) {
+    const std::span<const std::uint32_t> part = std::span(texels).subspan(first, count);
+    const Eigen::MatrixXf vectors = source.vectors(part);
+    const Eigen::MatrixXf weights = fitted_weights(decoded, fits, vectors, part);
+    double squares = 0;
+    Eigen::VectorXf difference(source.length());
+    for (Eigen::Index k = 0; k < vectors.cols(); ++k) {
+      const std::size_t cluster = decoded.ids[part[static_cast<std::size_t>(k)]];
+      difference = vectors.col(k) - decoded.model.means[cluster];
+      difference.noalias() -= decoded.model.bases[cluster] * (unit * (weights.col(k).array() / unit).round()).matrix();
+      squares += difference.squaredNorm();
+    }
+    return squares;
+  });
+  return sum * static_cast<double>(source.covered().size()) / static_cast<double>(texels.size());
+}
+
+StoredPca store_pca(const TransferSource& source, const TexelModel& model, const PrincipalComponents& all,
+                    double step) {
+  StoredPca stored;
+  stored.decoded = model;
+  stored.decoded.model = rounded_model(model.model, source, all, step, &stored);
+  const std::vector<Eigen::MatrixXf> fits = fitting_matrices(stored.decoded.model);
+  std::vector<std::uint32_t> kept;  // texels that have values of their own
+  for (std::size_t texel = 0; texel < model.owners.size(); ++texel)
+    if (model.owners[texel] != no_owner) kept.push_back(static_cast<std::uint32_t>(texel));
+  const auto weights_of = [&](std::size_t first, std::size_t count) {
+    const std::span<const std::uint32_t> part = std::span(kept).subspan(first, count);
+    return fitted_weights(stored.decoded, fits, source.vectors(part), part);
+  };
+
+  // Ranges; then the values, anew, so that no float planes need memory.
+  const int components = model.model.components;
+  std::vector<Eigen::VectorXf> least((kept.size() + chunk_texels - 1) / chunk_texels), most = least;
+  for_each_chunk(kept.size(), [&](std::size_t first, std::size_t count) {
+    const Eigen::MatrixXf weights = weights_of(first, count);
+    least[first / chunk_texels] = weights.rowwise().minCoeff();
+    most[first / chunk_texels] = weights.rowwise().maxCoeff();
+  });
+  std::vector<double> units;
+  for (int j = 0; j < components; ++j) {
+    double lowest = least[0][j], highest = most[0][j];
+    for (std::size_t chunk = 1; chunk < least.size(); ++chunk) {
+      lowest = std::min<double>(lowest, least[chunk][j]);
+      highest = std::max<double>(highest, most[chunk][j]);
+    }
+    const double unit = std::max(step, (highest - lowest) / most_steps);
+    // Whole steps from zero, where rounding was measured.
+    lowest = unit * std::round(lowest / unit);
+    const double steps = std::round((highest - lowest) / unit);
+    const int bits = steps > 255 ? 16 : 8;
+    stored.weights.push_back({Image<std::uint16_t>(source.asset().width, source.asset().height, 1), bits, lowest,
+                              lowest + unit * ((1 << bits) - 1)});
+    units.push_back(unit);
+  }
+  for_each_chunk(kept.size(), [&](std::size_t first, std::size_t count) {
+    const Eigen::MatrixXf weights = weights_of(first, count);
+    for (int j = 0; j < components; ++j) {
+      StoredPicture& plane = stored.weights[static_cast<std::size_t>(j)];
+      const double top = (1 << plane.bits) - 1;
+      for (std::size_t k = 0; k < count; ++k)
+        plane.values.values()[kept[first + k]] = static_cast<std::uint16_t>(std::clamp(
+            std::round((weights(j, static_cast<Eigen::Index>(k)) - plane.lowest) / units[static_cast<std::size_t>(j)]),
+            0.0, top));
+    }
+  });
+
+  // What no lookup reaches repeats its left neighbour.
+  const auto width = static_cast<std::size_t>(source.asset().width);
+  for (StoredPicture& plane : stored.weights)
+    for (std::size_t texel = 0; texel < model.owners.size(); ++texel)
+      if (model.owners[texel] == no_owner && texel % width > 0)
+        plane.values.values()[texel] = plane.values.values()[texel - 1];
+  return stored;
+}
+
+}  // namespace kiln

@@ -1,0 +1,83 @@
+#include "compress/transfer_source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tbb/parallel_for.h>
+
+#include "base/errors.h"
+#include "mesh/uv_raster.h"
+#include "sh/basis.h"
+#include "sh/transfer.h"
+
+namespace kiln {
+
+namespace {
+
+std::vector<std::uint8_t> coverage_of_mesh(const PrtAsset& asset) {
+  const UvRaster raster = rasterise_uvs(asset.mesh, asset.width, asset.height);
+  std::vector<std::uint8_t> coverage(raster.texels.size());
+  std::transform(raster.texels.begin(), raster.texels.end(), coverage.begin(),
+                 [](const TexelSource& source) { return static_cast<std::uint8_t>(source.covered()); });
+  return coverage;
+}
+
+}  // namespace
+
+void for_each_chunk(std::size_t size, const std::function<void(std::size_t, std::size_t)>& body) {
+  const std::size_t chunks = (size + chunk_texels - 1) / chunk_texels;
+  tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+    const std::size_t first = chunk * chunk_texels;
+    body(first, std::min(chunk_texels, size - first));
+  });
+}
+
+double sum_of_chunks(std::size_t size, const std::function<double(std::size_t, std::size_t)>& body) {
+  std::vector<double> sums((size + chunk_texels - 1) / chunk_texels, 0.0);
+  for_each_chunk(size, [&](std::size_t first, std::size_t count) { sums[first / chunk_texels] = body(first, count); });
+  double sum = 0;
+  for (const double part : sums) sum += part;
+  return sum;
+}
+
+TransferSource::TransferSource(const PrtAsset& asset) : TransferSource(asset, coverage_of_mesh(asset)) {}
+
+TransferSource::TransferSource(const PrtAsset& asset, std::vector<std::uint8_t> coverage)
+    : asset_(asset), coverage_(std::move(coverage)) {
+  const std::vector<double> prior = lighting_prior(asset.bands);
+  const int coefficients = asset.bands * asset.bands;
+  scale_.resize(asset.channels * coefficients);
+  for (int i = 0; i < scale_.size(); ++i) scale_[i] = static_cast<float>(std::sqrt(prior[band_of(i % coefficients)]));
+  for (std::size_t texel = 0; texel < coverage_.size(); ++texel)
+    if (coverage_[texel] != 0) covered_.push_back(static_cast<std::uint32_t>(texel));
+  if (covered_.empty())
+    throw BadInput(asset.ranges_file.string(), "has a mesh that covers no texel", "an atlas packed for this size",
+                   "bake the asset again");
+  squared_norm_ = sum_of_chunks(covered_.size(), [&](std::size_t first, std::size_t count) {
+    return vectors(std::span(covered_).subspan(first, count)).cast<double>().squaredNorm();
+  });
+}
+
+std::vector<std::uint32_t> TransferSource::sample(std::size_t most) const {
+  const std::size_t count = std::min(most, covered_.size());
+  std::vector<std::uint32_t> texels(count);
+  for (std::size_t k = 0; k < count; ++k) texels[k] = covered_[k * covered_.size() / count];
+  return texels;
+}
+
+Eigen::MatrixXf TransferSource::vectors(std::span<const std::uint32_t> texels) const {
+  Eigen::MatrixXf result(length(), static_cast<Eigen::Index>(texels.size()));
+  decode_transfer(asset_, texels, std::span(result.data(), static_cast<std::size_t>(result.size())));
+  result.array().colwise() *= scale_.array();
+  return result;
+}
+
+double relighting_error(const PrtAsset& a, const TransferSource& b) {
+  const TransferSource other(a, b.coverage());
+  const double squares = sum_of_chunks(b.covered().size(), [&](std::size_t first, std::size_t count) {
+    const std::span<const std::uint32_t> texels = std::span(b.covered()).subspan(first, count);
+    return (other.vectors(texels) - b.vectors(texels)).cast<double>().squaredNorm();
+  });
+  return b.squared_norm() > 0 ? std::sqrt(squares / b.squared_norm()) : 0;
+}
+
+}  // namespace kiln

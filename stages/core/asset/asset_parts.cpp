@@ -1,0 +1,55 @@
+#include "asset/asset_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.h"
+#include "image/image_file.h"
+#include "mesh/draco_file.h"
+
+namespace kiln {
+
+namespace {
+
+template <class Texel>
+void require_grey(const Image<Texel>& picture, const std::filesystem::path& file, int width, int height,
+                  const std::string& remedy) {
+  const std::string size = std::to_string(picture.width()) + " x " + std::to_string(picture.height());
+  const std::string expected = std::to_string(width) + " x " + std::to_string(height);
+  if (size != expected)
+    throw BadInput(file.string(), "is " + size + " texels", expected + ", as the folder's JSON has it", remedy);
+  if (picture.channels() != 1)
+    throw BadInput(file.string(), "has " + std::to_string(picture.channels()) + " channels", "a grey PNG", remedy);
+}
+
+}  // namespace
+
+template <>
+Image<std::uint8_t> read_grey(const std::filesystem::path& file, int width, int height, const std::string& remedy) {
+  Image<std::uint8_t> picture = read_png8(file);
+  require_grey(picture, file, width, height, remedy);
+  return picture;
+}
+
+template <>
+Image<std::uint16_t> read_grey(const std::filesystem::path& file, int width, int height, const std::string& remedy) {
+  Image<std::uint16_t> picture = read_png16(file);
+  require_grey(picture, file, width, height, remedy);
+  return picture;
+}
+
+TriangleMesh read_asset_mesh(const std::filesystem::path& file) {
+  TriangleMesh mesh = load_atlas(file);
+  const auto is_there = [&](std::uint32_t vertex) { return vertex < mesh.positions.size(); };
+  for (const Triangle& triangle : mesh.triangles)
+    if (!std::all_of(triangle.begin(), triangle.end(), is_there))
+      throw BadInput(file.string(), "has a triangle with a vertex that is not there", "the output of kiln-atlas",
+                     "bake the asset again with kiln-bake");
+  const float diagonal = bounding_box(mesh).diagonal();
+  if (!(std::isfinite(diagonal) && diagonal > 0))
+    throw BadInput(file.string(), "is as large as " + std::to_string(diagonal), "a mesh of finite size above 0",
+                   "scale the mesh and start over with kiln-simplify");
+  return mesh;
+}
+
+}  // namespace kiln

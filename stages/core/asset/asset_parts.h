@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <tbb/parallel_for.h>
+#include <vector>
+
+#include "image/image.h"
+#include "mesh/triangle_mesh.h"
+
+namespace kiln {
+
+inline constexpr int most_asset_bands = 24;
+inline constexpr int most_asset_channels = 64;
+inline constexpr int largest_asset_side = 16384;
+
+/// The mesh of an asset, fit to be drawn. Throws BadInput.
+TriangleMesh read_asset_mesh(const std::filesystem::path& file);
+
+/// A grey PNG of 8 or 16 bits and of that size. Throws BadInput.
+template <class Texel>
+Image<Texel> read_grey(const std::filesystem::path& file, int width, int height, const std::string& remedy);
+
+template <>
+Image<std::uint8_t> read_grey(const std::filesystem::path& file, int width, int height, const std::string& remedy);
+template <>
+Image<std::uint16_t> read_grey(const std::filesystem::path& file, int width, int height, const std::string& remedy);
+
+/// All planes of an asset. The first plane at fault is the one that is told of, whatever the number of threads.
+template <class Texel>
+std::vector<Image<Texel>> read_grey_pictures(const std::filesystem::path& folder, const std::vector<std::string>& files,
+                                             int width, int height, const std::string& remedy) {
+  std::vector<Image<Texel>> pictures(files.size());
+  std::vector<std::exception_ptr> faults(files.size());
+  tbb::parallel_for(std::size_t{0}, pictures.size(), [&](std::size_t k) {
+    try {
+      pictures[k] = read_grey<Texel>(folder / files[k], width, height, remedy);
+    } catch (...) {
+      faults[k] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& fault : faults)
+    if (fault) std::rethrow_exception(fault);
+  return pictures;
+}
+
+}  // namespace kiln
