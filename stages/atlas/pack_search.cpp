@@ -126,8 +126,9 @@ void PackSearch::start_lowering() {
 void PackSearch::advance(double share) {
   const auto until = static_cast<std::int64_t>(share * static_cast<double>(bounds_.work));
   while (!ended_ && work() < until) {
+    // Rows are whole numbers, and the found height is one divided by the zoom: half a row is more than its rounding.
     const bool better =
-        aim_ == Aim::raise_scale ? height_.top <= grid_.top_row() : height_.top < found_->height * grid_.zoom;
+        aim_ == Aim::raise_scale ? height_.top <= grid_.top_row() : height_.top < found_->height * grid_.zoom - 0.5;
     if (better) {
       keep_found();
       changes_in_vain_ = 0;

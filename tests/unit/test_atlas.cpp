@@ -409,6 +409,19 @@ TEST(Packing, AtAGivenScaleTakesTheLeastHeightOrSquare) {
   EXPECT_THROW(pack_charts(cut.charts, settings), WrongUsage);
 }
 
+/// A search that takes the height found for lower than itself, by a rounding, never ends.
+TEST(Packing, EndsAtAnyScale) {
+  const ChartSet cut = cut_into_charts(analyse_surface(shapes::torus(8)), {});
+  PackSettings settings;
+  settings.rotations = 2;
+  settings.height = 0;
+  for (int step = 0; step < 40; ++step) {
+    settings.texels_per_unit = 100 + 3.7 * step;
+    settings.width = 450 + 11 * step;
+    EXPECT_GT(pack_charts(cut.charts, settings).height, 0);
+  }
+}
+
 TEST(Packing, PutsACrowdDownOnceAndWell) {
   // 300 right triangles in three sizes, legs to the axes: two make a square, of which five by thirty fit.
   std::vector<Chart> charts(300);
