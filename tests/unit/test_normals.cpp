@@ -430,6 +430,10 @@ TEST(Normals, SamplesFitWhatLookupsShow) {
   const TriangleMesh high = dented_sphere(), low = shapes::cube_sphere(6);
   const NormalsResult one = make_normals(high, low, {.size = 96});
   EXPECT_GT(one.map_error.mean_degrees, 0.5);
+  NormalsSettings fitted;
+  fitted.size = 96;
+  fitted.fit = true;
+  EXPECT_LT(make_normals(high, low, fitted).map_error.mean_degrees, 0.97 * one.map_error.mean_degrees);
   for (const int samples : {4, 16, 64}) {
     const NormalsResult many = make_normals(high, low, {.size = 96, .samples = samples});
     EXPECT_EQ(many.position.values(), one.position.values()) << "the receivers are the centres' points";
