@@ -9,7 +9,6 @@
 #include <random>
 #include <string>
 #include <tbb/global_control.h>
-#include <unistd.h>
 #include <vector>
 
 #include "asset/prt_asset.h"
@@ -26,6 +25,7 @@
 #include "relight/prt_renderer.h"
 #include "relight/relight.h"
 #include "relight/render_settings.h"
+#include "scratch.h"
 #include "sh/light_spec.h"
 #include "shapes.h"
 
@@ -34,20 +34,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-class Scratch {
- public:
-  Scratch() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / ("kiln-" + std::string(test->name()) + "-" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-  }
-  ~Scratch() { fs::remove_all(folder_); }
-  const fs::path& folder() const { return folder_; }
-
- private:
-  fs::path folder_;
-};
 
 /// Transfer vectors of a texel, by column and row.
 using Transfer = std::function<Eigen::VectorXd(int, int)>;

@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <random>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 #include "asset/prt_asset.h"
@@ -27,6 +26,7 @@
 #include "relight/prt_renderer.h"
 #include "relight/relight.h"
 #include "relight/render_settings.h"
+#include "scratch.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 #include "sh/light_spec.h"
@@ -37,21 +37,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-/// A folder that goes with the test.
-class Scratch {
- public:
-  Scratch() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / ("kiln-" + std::string(test->name()) + "-" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-  }
-  ~Scratch() { fs::remove_all(folder_); }
-  const fs::path& folder() const { return folder_; }
-
- private:
-  fs::path folder_;
-};
 
 /// A coefficient stack to be written; planes as in ranges.json, values in the planes' own units.
 struct Stack {
