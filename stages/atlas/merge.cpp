@@ -13,27 +13,11 @@
 
 #include "atlas/relax.h"
 #include "atlas/stretch.h"
+#include "mesh/mesh_components.h"
 
 namespace kiln {
 
 namespace {
-
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = find(a);
-    b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 /// Place of a face in a chart, whose faces ascend.
 std::uint32_t slot_of(const Chart& chart, std::uint32_t face) {
@@ -83,12 +67,12 @@ std::vector<Eigen::Vector2d> aligned_uvs(const Chart& here, const Chart& there, 
 
 /// Keeps one vertex of each class, with the mean of their uvs, and sorts the faces. The vertices `tracked` are told
 /// their new numbers.
-Chart compact(Chart chart, UnionFind& classes, std::vector<std::uint32_t>* tracked = nullptr) {
+Chart compact(Chart chart, DisjointSets& classes, std::vector<std::uint32_t>* tracked = nullptr) {
   std::vector<std::uint32_t> new_index(chart.vertices.size(), no_index);
   Chart result;
   std::vector<double> members;
   for (std::uint32_t v = 0; v < chart.vertices.size(); ++v) {
-    std::uint32_t& index = new_index[classes.find(v)];  // the least of its class, so met first
+    std::uint32_t& index = new_index[classes.root(v)];  // the least of its class, so met first
     if (index == no_index) {
       index = static_cast<std::uint32_t>(result.vertices.size());
       result.vertices.push_back(chart.vertices[v]);
@@ -107,11 +91,11 @@ Chart compact(Chart chart, UnionFind& classes, std::vector<std::uint32_t>* track
   for (const std::uint32_t i : order) {
     result.faces.push_back(chart.faces[i]);
     Triangle t = chart.triangles[i];
-    for (std::uint32_t& corner : t) corner = new_index[classes.find(corner)];
+    for (std::uint32_t& corner : t) corner = new_index[classes.root(corner)];
     result.triangles.push_back(t);
   }
   if (tracked != nullptr)
-    for (std::uint32_t& v : *tracked) v = new_index[classes.find(v)];
+    for (std::uint32_t& v : *tracked) v = new_index[classes.root(v)];
   return result;
 }
 
@@ -137,7 +121,7 @@ GluedChart glued_chart(const Disks& disks, const Disks::Run& run, const Chart& h
       both.triangles.push_back(t);
     }
   }
-  UnionFind classes(both.vertices.size());
+  DisjointSets classes(both.vertices.size());
   GluedChart result;
   for (const auto& [a, b] : pairs) {
     classes.join(a, b + offset);
@@ -362,7 +346,7 @@ Chart chart_of_disk(const Disks& disks, std::uint32_t id) {
     chart.vertices.insert(chart.vertices.end(), t.begin(), t.end());
     chart.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
-  UnionFind classes(chart.vertices.size());
+  DisjointSets classes(chart.vertices.size());
   for (const std::uint32_t face : chart.faces)
     for (std::uint32_t h = 3 * face; h < 3 * face + 3; ++h) {
       if (disks.on_border(h)) continue;
