@@ -46,10 +46,13 @@ ProgressFunction part_of(const ProgressFunction& progress, std::size_t part, std
 }
 
 /// Every `step`-th receiver's transfer.
-TransferVectors thin_out(const TransferVectors& transfer, std::size_t step) {
-  TransferVectors thinned((transfer.receivers + step - 1) / step, transfer.coefficients);
-  for (int i = 0; i < transfer.coefficients; ++i)
-    for (std::size_t r = 0; r < thinned.receivers; ++r) thinned.plane(i)[r] = transfer.plane(i)[r * step];
+std::vector<TransferVectors> thin_out(const std::vector<TransferVectors>& channels, std::size_t step) {
+  std::vector<TransferVectors> thinned;
+  for (const TransferVectors& channel : channels) {
+    TransferVectors& some = thinned.emplace_back((channel.receivers + step - 1) / step, channel.coefficients);
+    for (int i = 0; i < channel.coefficients; ++i)
+      for (std::size_t r = 0; r < some.receivers; ++r) some.plane(i)[r] = channel.plane(i)[r * step];
+  }
   return thinned;
 }
 
@@ -66,7 +69,7 @@ BakeResult bake(const TexelReceivers& receivers, const Occluders& occluders, con
     integration.put(slab, integration.sum(slab, {}, checkpoints, part_of(progress, slab, integration.slabs())).sums,
                     transfer);
   BakeResult result = describe(integration, before, stopwatch);
-  result.transfer = std::move(transfer);
+  result.channels.push_back(std::move(transfer));
   return result;
 }
 
@@ -80,7 +83,7 @@ BakeResult bake_shard(OutputSet& outputs, const Shard& shard, const TexelReceive
     write_sums(outputs.add(slab_name(slab)),
                integration.sum(slab, shard, checkpoints, part_of(progress, slab, integration.slabs())));
   BakeResult result = describe(integration, before, stopwatch);
-  result.transfer = TransferVectors(0, coefficient_count(settings.bands));
+  result.channels.emplace_back(0, coefficient_count(settings.bands));
   return result;
 }
 
@@ -132,13 +135,13 @@ BakeResult merge_shards(const std::vector<fs::path>& folders, const TexelReceive
   }
   BakeResult result = describe(integration, stopwatch);
   result.renderer = renderer;
-  result.transfer = std::move(transfer);
+  result.channels.push_back(std::move(transfer));
   return result;
 }
 
-BakeVerification verify(const BakeResult& result, const TransferVectors& stored, const TexelReceivers& receivers,
-                        const Occluders& occluders, const BakeSettings& settings, int seed, int threads,
-                        const ProgressFunction& progress) {
+BakeVerification verify(const BakeResult& result, const std::vector<TransferVectors>& stored,
+                        const TexelReceivers& receivers, const Occluders& occluders, const BakeSettings& settings,
+                        int seed, int threads, const ProgressFunction& progress) {
   BakeVerification verification;
 
   // Step 1: the other backend, over the very same directions.
@@ -150,11 +153,10 @@ BakeVerification verify(const BakeResult& result, const TransferVectors& stored,
   other_settings.sampling = result.sampling;
   const BakeResult other_result =
       bake(receivers, occluders, other_settings, seed, threads, {}, [&](double fraction) { progress(0.5 * fraction); });
-  const TransferVectors& other_transfer = other_result.transfer;
   verification.other_backend = other_result.renderer;
   const bool rays_are_other = other == BakeBackend::embree;
-  verification.backend_difference =
-      rays_are_other ? relative_l2(result.transfer, other_transfer) : relative_l2(other_transfer, result.transfer);
+  verification.backend_difference = rays_are_other ? relative_l2(result.channels, other_result.channels)
+                                                   : relative_l2(other_result.channels, result.channels);
 
   // Step 2: many rays, from some of the texels.
   const std::size_t all = receivers.texels.size();
@@ -169,10 +171,10 @@ BakeVerification verify(const BakeResult& result, const TransferVectors& stored,
   const std::unique_ptr<TransferEngine> rays = make_engine(BakeBackend::embree, occluders, settings, threads);
   rays->set_receivers({positions, normals}, settings.bands);
   rays->add(many, [&](double fraction) { progress(0.5 + 0.5 * fraction); });
-  const TransferVectors reference = rays->sums().transfer();
+  const std::vector<TransferVectors> reference = {rays->sums().transfer()};
   verification.reference_directions = settings.verify_directions;
   verification.reference_texels = positions.size();
-  verification.integration_error = relative_l2(thin_out(result.transfer, step), reference);
+  verification.integration_error = relative_l2(thin_out(result.channels, step), reference);
   verification.error = relative_l2(thin_out(stored, step), reference);
   verification.relighting_error = expected_relighting_error(thin_out(stored, step), reference);
   return verification;

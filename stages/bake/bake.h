@@ -17,7 +17,8 @@
 namespace kiln {
 
 struct BakeResult {
-  TransferVectors transfer;  ///< of every receiver, bands^2 coefficients
+  /// Of every receiver, bands^2 coefficients: one for all colours, or one for each of red, green and blue.
+  std::vector<TransferVectors> channels;
   BakeBackend backend = BakeBackend::embree;
   std::string renderer;  ///< what did the work
   bool software_renderer = false;
@@ -36,7 +37,8 @@ struct BakeResult {
 BakeResult bake(const TexelReceivers& receivers, const Occluders& occluders, const BakeSettings& settings, int seed,
                 int threads, const Checkpoints& checkpoints = {}, const ProgressFunction& progress = no_progress);
 
-/// Integrates one shard's directions alone and writes the sums into `outputs`; `transfer` of the result is empty.
+/// Integrates one shard's directions alone and writes the sums into `outputs`; the channels of the result are of no
+/// receivers.
 BakeResult bake_shard(OutputSet& outputs, const Shard& shard, const TexelReceivers& receivers,
                       const Occluders& occluders, const BakeSettings& settings, int seed, int threads,
                       const Checkpoints& checkpoints = {}, const ProgressFunction& progress = no_progress);
@@ -61,8 +63,8 @@ struct BakeVerification {
 
 /// Compares `result` with the other backend (embree, or egl if embree baked it), and it and the planes read back
 /// (`stored`) with settings.verify_directions rays from settings.verify_texels of the texels.
-BakeVerification verify(const BakeResult& result, const TransferVectors& stored, const TexelReceivers& receivers,
-                        const Occluders& occluders, const BakeSettings& settings, int seed, int threads,
-                        const ProgressFunction& progress = no_progress);
+BakeVerification verify(const BakeResult& result, const std::vector<TransferVectors>& stored,
+                        const TexelReceivers& receivers, const Occluders& occluders, const BakeSettings& settings,
+                        int seed, int threads, const ProgressFunction& progress = no_progress);
 
 }  // namespace kiln

@@ -67,7 +67,7 @@ Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene&
   }
   const Seams seams(scene.atlas, scene.receivers.width, scene.receivers.height);
   const PlaneSeams done =
-      write_planes(outputs, {result.transfer}, scene.receivers, settings.bits, files, seams, settings.seams);
+      write_planes(outputs, result.channels, scene.receivers, settings.bits, files, seams, settings.seams);
   outputs.remove_stale(vertex_mesh_name);
   return {{"edges", seams.edges().size()},
           {"seam_mismatch_mean_before", done.before.mean},
@@ -114,7 +114,8 @@ Json describe_bake(const BakeScene& scene, const BakeResult& result) {
                   {"texels", scene.receivers.texels.size()},
                   {"directions", result.directions},
                   {"texel_directions_per_second", texel_directions / result.seconds},
-                  {"coefficients", result.transfer.coefficients},
+                  {"coefficients", result.channels.front().coefficients},
+                  {"channels", result.channels.size()},
                   {"occluder_triangles", scene.occluders.mesh.triangles.size()},
                   {"occluders_closed", scene.occluders.closed}};
   if (result.choice)
@@ -138,22 +139,22 @@ Json describe_bake(const BakeScene& scene, const BakeResult& result) {
 
 Json save_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeResult& result,
                const BakeSettings& settings, const CommandLine& command) {
-  TransferVectors stored;
+  std::vector<TransferVectors> stored;
   Json places;  // what they are and how many
   if (settings.per_vertex) {
     const std::vector<std::uint32_t> sources =
-        write_vertex_planes(outputs, {result.transfer}, scene.receivers, scene.vertex_mesh, settings.bits);
-    stored = read_vertex_planes(outputs.staging(), scene.receivers, sources).front();
+        write_vertex_planes(outputs, result.channels, scene.receivers, scene.vertex_mesh, settings.bits);
+    stored = read_vertex_planes(outputs.staging(), scene.receivers, sources);
     places = {{"vertices", sources.size()}};
     places.update(scene.vertex_metrics);
   } else {
     const Json seams = write_textured(outputs, paths, scene, result, settings);
-    stored = read_planes(outputs.staging(), scene.receivers).front();
+    stored = read_planes(outputs.staging(), scene.receivers);
     places = {{"width", scene.receivers.width}, {"height", scene.receivers.height}, {"seams", seams}};
   }
 
   Json metrics = describe_bake(scene, result);
-  metrics["quantisation_error"] = relative_l2(stored, result.transfer);
+  metrics["quantisation_error"] = relative_l2(stored, result.channels);
   metrics.update(places);
   if (settings.verify_directions > 0) {
     const BakeVerification v = verify(result, stored, scene.receivers, scene.occluders, settings, command.seed(),

@@ -106,7 +106,7 @@ void run(const BakeScene& scene, const std::vector<Series>& list, const Truth& t
       settings.directions = directions;
       BakeResult result;
       const Cost cost = cost_of([&] { result = bake(scene.receivers, scene.occluders, settings, seed, threads); });
-      const TransferVectors some = truth.sampled(result.transfer);
+      const TransferVectors some = truth.sampled(result.channels.front());
       const double pairs = static_cast<double>(scene.receivers.texels.size()) * result.directions;
       std::printf("%s,%d,%.3f,%.3f,%.6f,%.6f,%.2f\n", series.setting.c_str(), result.directions, cost.wall, cost.cpu,
                   relative_l2(some, truth.transfer()), expected_relighting_error(some, truth.transfer()),

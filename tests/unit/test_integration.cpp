@@ -71,9 +71,9 @@ TEST_P(Cuts, SlabsGiveTheSameBits) {
     integration.put(slab, integration.sum(slab, {}, {}, no_progress).sums, transfer);
   if (GetParam() == BakeBackend::beams)
     // Other neighbours share a beam, and round a ray that passes an edge another way. Slabs have one size, always.
-    EXPECT_LT(relative_l2(transfer, whole().transfer), 1e-4);
+    EXPECT_LT(relative_l2(transfer, whole().channels.front()), 1e-4);
   else
-    EXPECT_EQ(transfer.values, whole().transfer.values);
+    EXPECT_EQ(transfer.values, whole().channels.front().values);
 }
 
 TEST_P(Cuts, ShardsAddUpToTheSameBits) {
@@ -87,7 +87,7 @@ TEST_P(Cuts, ShardsAddUpToTheSameBits) {
   const auto merge = [&](const std::vector<fs::path>& parts, const BakeSettings& settings, int seed) {
     return merge_shards(parts, content.receivers, content.occluders, settings, seed, 2);
   };
-  EXPECT_EQ(merge(folders, content.settings, 7).transfer.values, whole().transfer.values);
+  EXPECT_EQ(merge(folders, content.settings, 7).channels.front().values, whole().channels.front().values);
   BakeSettings by_error = content.settings;
   by_error.max_error = "0.05";
   std::vector<fs::path> by_error_folders;
@@ -100,7 +100,7 @@ TEST_P(Cuts, ShardsAddUpToTheSameBits) {
   const BakeResult merged = merge(by_error_folders, by_error, 7);
   const BakeResult at_once = bake(content.receivers, content.occluders, by_error, 7, 2);
   EXPECT_EQ(merged.directions, at_once.directions);
-  EXPECT_EQ(merged.transfer.values, at_once.transfer.values);
+  EXPECT_EQ(merged.channels.front().values, at_once.channels.front().values);
   EXPECT_THROW(merge({folders[0], folders[1]}, content.settings, 7), BadInput);
   EXPECT_THROW(merge({folders[0], folders[1], folders[1]}, content.settings, 7), BadInput);
   EXPECT_THROW(merge(folders, content.settings, 8), BadInput);
@@ -120,13 +120,13 @@ TEST_P(Cuts, NothingToTestIsStillABake) {
   }
   const BakeResult result = bake(open.receivers, open.occluders, open.settings, 7, 2);
   EXPECT_EQ(result.unoccluded, open.receivers.texels.size());
-  EXPECT_NEAR(result.transfer.plane(0)[5], 0.28209479, 1e-7);
+  EXPECT_NEAR(result.channels.front().plane(0)[5], 0.28209479, 1e-7);
   const fs::path shard = folder / "open";
   OutputSet outputs(shard);
   bake_shard(outputs, {1, 1}, open.receivers, open.occluders, open.settings, 7, 2);
   outputs.commit();
-  EXPECT_EQ(merge_shards({shard}, open.receivers, open.occluders, open.settings, 7, 2).transfer.values,
-            result.transfer.values);
+  EXPECT_EQ(merge_shards({shard}, open.receivers, open.occluders, open.settings, 7, 2).channels.front().values,
+            result.channels.front().values);
 }
 
 TEST_P(Cuts, AnInterruptedBakeGoesOnToTheSameBits) {
@@ -151,7 +151,7 @@ TEST_P(Cuts, AnInterruptedBakeGoesOnToTheSameBits) {
   }
   EXPECT_EQ(interruptions, 2);
   EXPECT_LT(result.work.pairs, content.receivers.texels.size() * 300);  // the rest alone
-  EXPECT_EQ(result.transfer.values, whole().transfer.values);
+  EXPECT_EQ(result.channels.front().values, whole().channels.front().values);
 
   BakeSettings other = content.settings;
   other.directions = 301;
@@ -237,7 +237,7 @@ TEST(ErrorDriven, StopsAtAnErrorThatRaysConfirm) {
   settings.backend = BakeBackend::embree;
   BakeSettings truth_settings = settings;
   truth_settings.directions = 16384;  // about a tenth of the errors below
-  const TransferVectors truth = bake(content.receivers, content.occluders, truth_settings, 99, 2).transfer;
+  const TransferVectors truth = bake(content.receivers, content.occluders, truth_settings, 99, 2).channels.front();
   int before = 0;
   for (const char* target : {"0.03", "0.01"}) {
     settings.max_error = target;
@@ -248,7 +248,7 @@ TEST(ErrorDriven, StopsAtAnErrorThatRaysConfirm) {
     EXPECT_EQ(result.directions % block_directions, 0);
     EXPECT_GT(result.directions, before);
     before = result.directions;
-    const double error = relative_l2(result.transfer, truth);
+    const double error = relative_l2(result.channels.front(), truth);
     EXPECT_LT(error, std::stod(target));
     // It does not take far more than it needs: on the safe side by 2 at most.
     EXPECT_GT(error, 0.3 * result.choice->estimated_error);

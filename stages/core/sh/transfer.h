@@ -32,8 +32,14 @@ struct TransferVectors {
 /// ||a - b|| / ||b|| over all receivers and coefficients; `b` is the reference. Sums in float64.
 double relative_l2(const TransferVectors& a, const TransferVectors& b);
 
+/// The same over all channels together.
+double relative_l2(std::span<const TransferVectors> a, std::span<const TransferVectors> b);
+
 /// Expected relighting error sqrt(sum d'Sd / sum t'St) with d = a - b, t = b, under lighting_prior.
 double expected_relighting_error(const TransferVectors& a, const TransferVectors& b);
+
+/// The same over all channels together.
+double expected_relighting_error(std::span<const TransferVectors> a, std::span<const TransferVectors> b);
 
 /// Diagonal of the second moment of lighting coefficients, by band: (l + 1)^-2. Photographed environments have power
 /// spectra that fall about as the square of the frequency (Dror, Willsky and Adelson, "Statistical characterization of
