@@ -96,6 +96,17 @@ OptionSet& OptionSet::text(std::string name, std::string& value, std::string hel
   return *this;
 }
 
+OptionSet& OptionSet::checked_text(std::string name, std::string& value, std::string value_range, std::string help,
+                                   std::function<void(const std::string&)> check) {
+  auto set = [&value, check = std::move(check)](const std::string& text) {
+    check(text);
+    value = text;
+  };
+  options_.push_back(
+      {std::move(name), std::move(help), std::move(value_range), false, set, [&value] { return Json(value); }});
+  return *this;
+}
+
 OptionSet& OptionSet::choice_by_index(std::string name, std::vector<std::string> words,
                                       std::function<void(std::size_t)> set, std::function<std::size_t()> get,
                                       std::string help) {

@@ -58,6 +58,10 @@ class OptionSet {
   /// Any text.
   OptionSet& text(std::string name, std::string& value, std::string help);
 
+  /// Text that `check` throws WrongUsage for where it does not hold; `value_range` says what may stand there.
+  OptionSet& checked_text(std::string name, std::string& value, std::string value_range, std::string help,
+                          std::function<void(const std::string&)> check);
+
   /// One of several words, each standing for a value of an enumeration.
   template <class Enum>
   OptionSet& choice(std::string name, Enum& value, std::vector<std::pair<std::string, Enum>> words, std::string help) {

@@ -77,6 +77,12 @@ void check_present(const std::filesystem::path& file, const std::string& expecte
   if (std::filesystem::file_size(file, error) == 0) fail_reading(file, "an empty file", expected);
 }
 
+std::string lower_extension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  for (char& letter : extension) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  return extension;
+}
+
 /// The checksum of PNG (Portable Network Graphics specification, second edition, annex D).
 std::uint32_t crc32(std::string_view bytes) {
   static constexpr auto table = [] {
@@ -124,23 +130,45 @@ PngHeader check_png(const std::filesystem::path& file) {
   }
 }
 
-/// Reads through OpenImageIO, as T, bottom row first.
-template <class T>
-Image<T> read_image(const std::filesystem::path& file, const std::string& expected) {
+std::unique_ptr<OIIO::ImageInput> open_image(const std::filesystem::path& file, const std::string& expected) {
   keep_to_one_thread();
   OIIO::ImageSpec configuration;
   configuration.attribute("oiio:UnassociatedAlpha", 1);
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string(), &configuration);
+  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string(), &configuration);
   if (!input) fail_reading(file, "cannot be understood (" + OIIO::geterror() + ")", expected);
   const OIIO::ImageSpec& spec = input->spec();
   if (spec.depth > 1 || spec.deep) fail_reading(file, "not a flat picture", expected);
+  return input;
+}
+
+/// All pixels as T, bottom row first.
+template <class T>
+Image<T> read_pixels(const std::filesystem::path& file, OIIO::ImageInput& input, const std::string& expected) {
+  const OIIO::ImageSpec& spec = input.spec();
   Image<T> image(spec.width, spec.height, spec.nchannels);
   const auto row_bytes = static_cast<OIIO::stride_t>(sizeof(T)) * spec.width * spec.nchannels;
   auto* bytes = reinterpret_cast<char*>(image.values().data());
-  if (!input->read_image(0, 0, 0, spec.nchannels, type_of<T>(), bytes + row_bytes * (spec.height - 1), OIIO::AutoStride,
-                         -row_bytes))
-    fail_reading(file, "damaged (" + input->geterror() + ")", expected);
+  if (!input.read_image(0, 0, 0, spec.nchannels, type_of<T>(), bytes + row_bytes * (spec.height - 1), OIIO::AutoStride,
+                        -row_bytes))
+    fail_reading(file, "damaged (" + input.geterror() + ")", expected);
   return image;
+}
+
+template <class T>
+Image<T> read_image(const std::filesystem::path& file, const std::string& expected) {
+  return read_pixels<T>(file, *open_image(file, expected), expected);
+}
+
+/// Of grey, grey and alpha, RGB or RGBA.
+template <class T>
+Image<T> three_channels(const Image<T>& image) {
+  if (image.channels() == 3) return image;
+  Image<T> result(image.width(), image.height(), 3);
+  const bool grey = image.channels() < 3;
+  for (int j = 0; j < image.height(); ++j)
+    for (int i = 0; i < image.width(); ++i)
+      for (int c = 0; c < 3; ++c) result.at(i, j, c) = image.at(i, j, grey ? 0 : c);
+  return result;
 }
 
 template <class T>
@@ -184,12 +212,25 @@ Image<std::uint16_t> read_png16(const std::filesystem::path& file) { return read
 Image<float> read_float_image(const std::filesystem::path& file) {
   const std::string expected = "an OpenEXR or Radiance HDR picture";
   check_present(file, expected);
-  std::string extension = file.extension().string();
-  for (char& letter : extension) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  const std::string extension = lower_extension(file);
   if (extension != ".exr" && extension != ".hdr")
     fail_reading(file, extension.empty() ? "a file without an extension" : "a file that ends in " + extension,
                  expected);
   return read_image<float>(file, expected);
+}
+
+ColorPicture read_color_picture(const std::filesystem::path& file) {
+  const std::string expected = "a PNG, JPEG, OpenEXR or other picture";
+  check_present(file, expected);
+  if (lower_extension(file) == ".png") check_png(file);
+  const std::unique_ptr<OIIO::ImageInput> input = open_image(file, expected);
+  ColorPicture picture;
+  picture.is_float = input->spec().format.is_floating_point();
+  if (input->spec().format == OIIO::TypeDesc::UINT8)
+    picture.pixels = three_channels(read_pixels<std::uint8_t>(file, *input, expected));
+  else
+    picture.pixels = three_channels(read_pixels<float>(file, *input, expected));
+  return picture;
 }
 
 }  // namespace kiln

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <variant>
 
 #include "image/image.h"
 
@@ -21,5 +22,15 @@ Image<std::uint16_t> read_png16(const std::filesystem::path& file);
 
 /// Reads EXR or HDR (Radiance) as floats. Throws BadInput.
 Image<float> read_float_image(const std::filesystem::path& file);
+
+/// A picture of three channels, red, green and blue.
+struct ColorPicture {
+  std::variant<Image<std::uint8_t>, Image<float>> pixels;  ///< bytes of 0 to 255; floats as in the file
+  bool is_float = false;  ///< the file has floating-point values; of 16-bit integers the floats are 0 to 1
+};
+
+/// Reads a PNG, JPEG, EXR or HDR, or whatever else OpenImageIO reads, without any conversion of values. Grey becomes
+/// three equal channels; alpha is left out. Throws BadInput.
+ColorPicture read_color_picture(const std::filesystem::path& file);
 
 }  // namespace kiln

@@ -110,8 +110,6 @@ Soup read_soup(const std::filesystem::path& file, const std::string& extension) 
   if (!whole)
     throw BadInput(name, "is truncated or damaged", "a whole " + extension.substr(1) + " file", remedy_export);
   if (soup.colors.size() != soup.points.size()) soup.colors.clear();
-  for (Eigen::Vector3f& color : soup.colors)
-    color = color.allFinite() ? Eigen::Vector3f(color.cwiseMax(0).cwiseMin(1)) : Eigen::Vector3f::Zero();
   return soup;
 }
 
@@ -190,6 +188,20 @@ TriangleMesh to_mesh(const Soup& soup, const std::vector<Triangle>& triangles) {
   return mesh;
 }
 
+/// Brings colours to 0 to 1; returns how many lay outside.
+int clamp_colors(const std::string& name, std::vector<Eigen::Vector3f>& colors) {
+  int clamped = 0;
+  for (std::size_t i = 0; i < colors.size(); ++i) {
+    if (!colors[i].allFinite())
+      throw BadInput(name, "a colour of a vertex that is not a finite number", "red, green and blue of 0 to 1",
+                     remedy_export);
+    const Eigen::Vector3f inside = colors[i].cwiseMax(0).cwiseMin(1);
+    clamped += inside != colors[i];
+    colors[i] = inside;
+  }
+  return clamped;
+}
+
 }  // namespace
 
 TriangleMesh load_mesh(const std::filesystem::path& file, MeshRepairs* repairs_out,
@@ -217,7 +229,9 @@ TriangleMesh load_mesh(const std::filesystem::path& file, MeshRepairs* repairs_o
     read.unused_vertices = static_cast<int>(soup.points.size() - mesh.positions.size());
   }
 
+  const int clamped_colors = clamp_colors(name, mesh.colors);
   MeshRepairs repairs = repair_mesh(mesh, settings);
+  repairs.clamped_colors = clamped_colors;
   if (mesh.triangles.empty()) throw BadInput(name, "has no triangle with an area", expected_mesh, remedy_export);
   if (extension == ".stl") repairs.merged_vertices = 0;  // the format has each vertex once a triangle
   repairs.triangulated_polygons = read.triangulated_polygons;

@@ -307,8 +307,8 @@ void make_manifold_again(TriangleMesh& mesh) {
 
 }  // namespace
 
-const std::array<std::pair<const char*, int MeshRepairs::*>, 11>& MeshRepairs::kinds() {
-  static const std::array<std::pair<const char*, int MeshRepairs::*>, 11> all = {
+const std::array<std::pair<const char*, int MeshRepairs::*>, 12>& MeshRepairs::kinds() {
+  static const std::array<std::pair<const char*, int MeshRepairs::*>, 12> all = {
       {{"merged_vertices", &MeshRepairs::merged_vertices},
        {"unused_vertices", &MeshRepairs::unused_vertices},
        {"triangulated_polygons", &MeshRepairs::triangulated_polygons},
@@ -319,6 +319,7 @@ const std::array<std::pair<const char*, int MeshRepairs::*>, 11>& MeshRepairs::k
        {"nonmanifold_vertices", &MeshRepairs::nonmanifold_vertices},
        {"unorientable_edges", &MeshRepairs::unorientable_edges},
        {"inside_out_components", &MeshRepairs::inside_out_components},
+       {"clamped_colors", &MeshRepairs::clamped_colors},
        {"filled_holes", &MeshRepairs::filled_holes}}};
   return all;
 }

@@ -24,6 +24,7 @@ struct MeshRepairs {
   int nonmanifold_vertices = 0;   ///< where several fans met, not counting the ends of edges that were cut
   int unorientable_edges = 0;     ///< cut, as a Moebius strip cannot be wound consistently
   int inside_out_components = 0;  ///< closed, of negative volume and inside no other: turned
+  int clamped_colors = 0;         ///< of vertices, outside 0 to 1: clamped to that
   int filled_holes = 0;           ///< closed because MeshRepairSettings asks for it
 
   // Found, not mended.
@@ -31,7 +32,7 @@ struct MeshRepairs {
   int border_loops = 0;  ///< that are left: holes and rims
 
   /// A name for each kind of repair, as results call it.
-  static const std::array<std::pair<const char*, int MeshRepairs::*>, 11>& kinds();
+  static const std::array<std::pair<const char*, int MeshRepairs::*>, 12>& kinds();
 
   /// Whether the mesh was clean; filled holes are no fault of it.
   bool none() const;

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <variant>
+
+#include "image/image.h"
+#include "material/material_settings.h"
+
+namespace kiln {
+
+/// A picture as a texture of linear colours, each 0 to 1.
+class ColorTexture {
+ public:
+  /// Reads PNG, JPEG, EXR and what else OpenImageIO reads. `encoding` is that of integers; floating-point pictures are
+  /// linear and lie in 0 to 1, or are clamped to that. Throws BadInput, also for values that are not numbers.
+  ColorTexture(const std::filesystem::path& file, ColorEncoding encoding);
+
+  /// Bilinear between linear values, outside the unit square repeated, or, with `clamp`, the edge's texels. uv (0, 0)
+  /// is the picture's lower left corner.
+  Eigen::Vector3f at(const Eigen::Vector2f& uv, bool clamp = false) const;
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+  /// Whether all pixels are grey.
+  bool is_grey() const { return is_grey_; }
+
+  /// How many pixels had to be clamped.
+  std::size_t clamped_pixels() const { return clamped_pixels_; }
+
+ private:
+  Eigen::Vector3f texel(int i, int j) const;
+
+  int width_ = 0, height_ = 0;
+  bool is_grey_ = true;
+  std::size_t clamped_pixels_ = 0;
+  std::array<float, 256> linear_of_byte_{};
+  std::variant<Image<std::uint8_t>, Image<float>> pixels_;
+};
+
+}  // namespace kiln

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "material/color_texture.h"
+#include "mesh/triangle_mesh.h"
+
+namespace kiln {
+
+/// The share of light, linear red, green and blue, each 0 to 1, that a mesh's diffuse surface reflects. Copies share
+/// what is large. May be asked by several threads at once.
+class SurfaceAlbedo {
+ public:
+  /// Where it comes from.
+  enum class Source { none, constant, vertex_colors, materials, texture };
+
+  /// One material of a textured mesh: its colour times its texture.
+  struct Material {
+    Eigen::Vector3f color = Eigen::Vector3f::Ones();
+    std::shared_ptr<const ColorTexture> texture;  ///< null: none
+    Eigen::Vector2f texture_scale{1, 1};
+    Eigen::Vector2f texture_offset = Eigen::Vector2f::Zero();
+    bool texture_clamp = false;
+  };
+
+  /// Triangles with materials, and with the texture coordinates of their corners.
+  struct Textured {
+    std::vector<Material> materials;
+    std::vector<std::uint32_t> material_of;           ///< one per triangle
+    std::vector<std::array<Eigen::Vector2f, 3>> uvs;  ///< one per triangle, or none without textures
+  };
+
+  /// White, which nobody asked for.
+  SurfaceAlbedo() = default;
+
+  static SurfaceAlbedo constant(const Eigen::Vector3f& linear, Source source = Source::constant);
+
+  /// Linear colours of vertices, interpolated linearly over `triangles`.
+  static SurfaceAlbedo of_vertices(std::vector<Eigen::Vector3f> linear, std::vector<Triangle> triangles);
+
+  static SurfaceAlbedo of_materials(Textured textured, Source source);
+
+  /// At a point of a triangle: u is the weight of the second corner, v that of the third (as in SurfacePoint).
+  Eigen::Vector3f at(std::uint32_t triangle, float u, float v) const;
+
+  /// Whether it is the same everywhere, and then what.
+  bool is_constant() const { return vertices_ == nullptr && textured_ == nullptr; }
+  const Eigen::Vector3f& constant_value() const { return constant_; }
+
+  /// Whether red, green and blue are the same everywhere.
+  bool is_grey() const { return is_grey_; }
+
+  Source source() const { return source_; }
+
+  /// "none", "constant", "vertex colors", "materials" or "texture".
+  std::string source_name() const;
+
+ private:
+  struct Vertices {
+    std::vector<Eigen::Vector3f> linear;
+    std::vector<Triangle> triangles;
+  };
+
+  Source source_ = Source::none;
+  bool is_grey_ = true;
+  Eigen::Vector3f constant_ = Eigen::Vector3f::Ones();
+  std::shared_ptr<const Vertices> vertices_;
+  std::shared_ptr<const Textured> textured_;
+};
+
+}  // namespace kiln
