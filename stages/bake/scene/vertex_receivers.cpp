@@ -12,6 +12,7 @@
 #include "base/errors.h"
 #include "mesh/draco_file.h"
 #include "mesh/mesh_file.h"
+#include "mesh/morton_order.h"
 #include "raycast/ray_scene.h"
 
 namespace kiln {
@@ -25,46 +26,11 @@ constexpr float largest_detour = 4;
 /// Fraction of the diagonal that is sought through at least: positions are quantised to 16 bits.
 constexpr float smallest_search = 1e-4f;
 
-/// Every third bit of 63, the lowest 21 bits of `value`.
-std::uint64_t spread_bits(std::uint64_t value) {
-  value = (value | value << 32) & 0x1f00000000ffffull;
-  value = (value | value << 16) & 0x1f0000ff0000ffull;
-  value = (value | value << 8) & 0x100f00f00f00f00full;
-  value = (value | value << 4) & 0x10c30c30c30c30c3ull;
-  return (value | value << 2) & 0x1249249249249249ull;
-}
-
-/// The indices of `positions` along the Morton curve through their bounding cube (Morton, "A computer oriented geodetic
-/// data base", 1966); those in the same of its 2^63 cells by index.
-std::vector<std::uint32_t> morton_order(const std::vector<Eigen::Vector3f>& positions) {
-  Eigen::Vector3f lowest = positions.front(), highest = positions.front();
-  for (const Eigen::Vector3f& p : positions) {
-    lowest = lowest.cwiseMin(p);
-    highest = highest.cwiseMax(p);
-  }
-  constexpr double top = (1 << 21) - 1;
-  const double side = (highest - lowest).cast<double>().maxCoeff();
-  const double scale = side > 0 ? top / side : 0;
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> codes;
-  codes.reserve(positions.size());
-  for (const Eigen::Vector3f& p : positions) {
-    const Eigen::Vector3d place = (p.cast<double>() - lowest.cast<double>()) * scale;
-    std::uint64_t code = 0;
-    for (int axis = 0; axis < 3; ++axis)
-      code |= spread_bits(static_cast<std::uint64_t>(std::clamp(place[axis], 0.0, top))) << axis;
-    codes.emplace_back(code, static_cast<std::uint32_t>(codes.size()));
-  }
-  std::sort(codes.begin(), codes.end());
-  std::vector<std::uint32_t> order;
-  order.reserve(codes.size());
-  for (const auto& entry : codes) order.push_back(entry.second);
-  return order;
-}
-
 /// Points and normals by vertex, listed along the curve.
 TexelReceivers pack(const std::vector<Eigen::Vector3f>& positions, const std::vector<Eigen::Vector3f>& normals) {
-  TexelReceivers receivers{static_cast<int>(positions.size()), 1, morton_order(positions), {}, {}};
-  for (std::uint32_t vertex : receivers.texels) {
+  TexelReceivers receivers{static_cast<int>(positions.size()), 1, {}, {}, {}};
+  for (const auto& [code, vertex] : morton_order(positions)) {
+    receivers.texels.push_back(vertex);
     receivers.positions.push_back(positions[vertex]);
     receivers.normals.push_back(normals[vertex]);
   }
