@@ -1,5 +1,6 @@
 #include "base/command_line.h"
 #include "image/image_file.h"
+#include "material/load_albedo.h"
 #include "mesh/draco_file.h"
 #include "mesh/mesh_file.h"
 #include "normals/normals.h"
@@ -13,7 +14,8 @@ int main(int argc, char** argv) {
     NormalsSettings settings;
     command.input("HIGH", high_file, "The high mesh: OBJ, PLY, STL, OFF or DRC");
     command.input("ATLAS", atlas_file, "The low mesh with its atlas, a Draco file of kiln-atlas");
-    command.output(folder, "The folder for normal.png, position.exr, coverage.png, match.png and normals.json");
+    command.output(folder,
+                   "The folder for normal.png, position.exr, coverage.png, match.png, albedo.png and normals.json");
     command.options("Normals", normals_options(settings));
     command.parse(argc, argv);
 
@@ -21,16 +23,24 @@ int main(int argc, char** argv) {
     const AssetHints hints = read_asset_hints(folder_of(atlas_file));
     const TriangleMesh high = load_mesh(high_file, nullptr, {.fill_hole_edges = hints.fill_hole_edges});
     const TriangleMesh atlas = load_atlas(atlas_file);
+    const LoadedAlbedo material = load_albedo(high_file, high, settings.material);
+    if (const std::string warning = material.warning(); !warning.empty()) command.say(warning);
+    command.also_read(material.files);
     OutputSet outputs(folder);
 
     // Run.
-    const NormalsResult result = make_normals(high, atlas, settings, hints, command.progress("normals"));
+    const NormalsResult result =
+        make_normals(high, atlas, settings, hints, command.progress("normals"), material.albedo);
 
     // Save.
     write_png(outputs.add("normal.png"), result.normal);
     write_exr(outputs.add("position.exr"), result.position);
     write_png(outputs.add("coverage.png"), result.coverage);
     write_png(outputs.add("match.png"), result.match);
+    if (result.albedo_map)
+      write_png(outputs.add("albedo.png"), result.albedo_map->picture);
+    else
+      outputs.remove_stale("albedo.png");
     command.finish(outputs, command.result(result.seconds, result.to_json()));
   });
 }

@@ -32,10 +32,9 @@ SurfacePoint sample_at(const std::vector<double>& areas_up_to, int k, int count)
   return point;
 }
 
-}  // namespace
-
-MapError measure_map_error(const TriangleMesh& high, const TriangleMesh& atlas, const Image<float>& map,
-                           NormalSpace space, int samples) {
+/// Calls visit(k, point of the high mesh, point of the atlas mesh) for points spread over the high mesh, in parallel.
+template <class Visit>
+void for_each_sample(const TriangleMesh& high, const TriangleMesh& atlas, int samples, const Visit& visit) {
   std::vector<double> areas_up_to(high.triangles.size());
   double area = 0;
   for (std::size_t t = 0; t < high.triangles.size(); ++t) {
@@ -44,38 +43,72 @@ MapError measure_map_error(const TriangleMesh& high, const TriangleMesh& atlas, 
     };
     areas_up_to[t] = area += (at(1) - at(0)).cross(at(2) - at(0)).norm();
   }
-  if (!(area > 0)) return {};
+  if (!(area > 0)) return;
 
   const RayScene low(atlas);
-  const std::vector<TangentFrame> frames =
-      space == NormalSpace::tangent ? tangent_frames(atlas) : std::vector<TangentFrame>{};
   constexpr float anywhere = std::numeric_limits<float>::infinity();
-  std::vector<double> degrees(static_cast<std::size_t>(samples));
   tbb::parallel_for(tbb::blocked_range<int>(0, samples, 512), [&](const tbb::blocked_range<int>& part) {
     for (int k = part.begin(); k < part.end(); ++k) {
       const SurfacePoint at_high = sample_at(areas_up_to, k, samples);
-      const Eigen::Vector3f point = position_at(high, at_high), wanted = normal_at(high, at_high);
-      SurfacePoint at_low = low.closest_facing_point(point, wanted, anywhere);
+      const Eigen::Vector3f point = position_at(high, at_high);
+      SurfacePoint at_low = low.closest_facing_point(point, normal_at(high, at_high), anywhere);
       if (!at_low.found()) at_low = low.closest_point(point, anywhere);
-      const TexelSource source{at_low.triangle, at_low.u, at_low.v};
-      const Footprint footprint(interpolate(atlas, atlas.uvs, source), map.width(), map.height());
-      Eigen::Vector3f shown;
-      for (int channel = 0; channel < 3; ++channel) shown[channel] = static_cast<float>(footprint.lookup(map, channel));
-      if (space == NormalSpace::tangent)
-        shown = to_object_space(shown, interpolate(atlas, atlas.normals, source), interpolate(atlas, frames, source));
-      const Eigen::Vector3d a = shown.cast<double>(), b = wanted.cast<double>();
-      // The arc cosine has no digits left for small angles.
-      degrees[static_cast<std::size_t>(k)] = std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::acos(-1.0);
+      visit(static_cast<std::size_t>(k), at_high, TexelSource{at_low.triangle, at_low.u, at_low.v});
     }
+  });
+}
+
+Eigen::Vector3f lookup(const Image<float>& map, const TriangleMesh& atlas, const TexelSource& source) {
+  const Footprint footprint(interpolate(atlas, atlas.uvs, source), map.width(), map.height());
+  Eigen::Vector3f value;
+  for (int channel = 0; channel < 3; ++channel) value[channel] = static_cast<float>(footprint.lookup(map, channel));
+  return value;
+}
+
+double percentile_95(std::vector<double>& values) {
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+}  // namespace
+
+MapError measure_map_error(const TriangleMesh& high, const TriangleMesh& atlas, const Image<float>& map,
+                           NormalSpace space, int samples) {
+  const std::vector<TangentFrame> frames =
+      space == NormalSpace::tangent ? tangent_frames(atlas) : std::vector<TangentFrame>{};
+  std::vector<double> degrees(static_cast<std::size_t>(samples), 0);
+  for_each_sample(high, atlas, samples, [&](std::size_t k, const SurfacePoint& at_high, const TexelSource& source) {
+    Eigen::Vector3f shown = lookup(map, atlas, source);
+    if (space == NormalSpace::tangent)
+      shown = to_object_space(shown, interpolate(atlas, atlas.normals, source), interpolate(atlas, frames, source));
+    const Eigen::Vector3d a = shown.cast<double>(), b = normal_at(high, at_high).cast<double>();
+    // The arc cosine has no digits left for small angles.
+    degrees[k] = std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::acos(-1.0);
   });
 
   MapError error;
   for (const double angle : degrees) error.mean_degrees += angle;
   error.mean_degrees /= samples;
-  const auto place = degrees.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(degrees.size()));
-  std::nth_element(degrees.begin(), place, degrees.end());
-  error.percentile_95_degrees = *place;
+  error.percentile_95_degrees = percentile_95(degrees);
   error.largest_degrees = *std::max_element(degrees.begin(), degrees.end());
+  return error;
+}
+
+AlbedoError measure_albedo_error(const TriangleMesh& high, const SurfaceAlbedo& albedo, const TriangleMesh& atlas,
+                                 const Image<float>& map, int samples) {
+  std::vector<Eigen::Vector3d> differences(static_cast<std::size_t>(samples), Eigen::Vector3d::Zero());
+  for_each_sample(high, atlas, samples, [&](std::size_t k, const SurfacePoint& at_high, const TexelSource& source) {
+    differences[k] = (lookup(map, atlas, source) - albedo.at(at_high.triangle, at_high.u, at_high.v)).cast<double>();
+  });
+  AlbedoError error;
+  std::vector<double> largest;
+  for (const Eigen::Vector3d& difference : differences) {
+    error.rms += difference.squaredNorm();
+    largest.push_back(difference.cwiseAbs().maxCoeff());
+  }
+  error.rms = std::sqrt(error.rms / (3.0 * samples));
+  error.percentile_95 = percentile_95(largest);
   return error;
 }
 

@@ -4,6 +4,7 @@
 
 #include "detail/normal_space.h"
 #include "image/image.h"
+#include "material/surface_albedo.h"
 #include "mesh/triangle_mesh.h"
 
 namespace kiln {
@@ -20,5 +21,15 @@ struct MapError {
 /// unit vectors in `space`, gutters filled; `atlas` has normals and uvs.
 MapError measure_map_error(const TriangleMesh& high, const TriangleMesh& atlas, const Image<float>& map,
                            NormalSpace space, int samples = 200'000);
+
+/// Differences between the high mesh's albedo and what the low mesh shows with its map, linear.
+struct AlbedoError {
+  double rms = 0;            ///< over points and channels
+  double percentile_95 = 0;  ///< of the largest channel's difference
+};
+
+/// At the points of measure_map_error; `map` has three linear channels, gutters filled.
+AlbedoError measure_albedo_error(const TriangleMesh& high, const SurfaceAlbedo& albedo, const TriangleMesh& atlas,
+                                 const Image<float>& map, int samples = 200'000);
 
 }  // namespace kiln

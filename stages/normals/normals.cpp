@@ -12,6 +12,7 @@
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "image/gutter.h"
+#include "image/srgb.h"
 #include "mesh/uv_raster.h"
 #include "normals/texel_match.h"
 #include "raycast/ray_scene.h"
@@ -123,7 +124,7 @@ Image<std::uint8_t> picture_of(const Image<std::uint8_t>& ways) {
 }  // namespace
 
 NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, const NormalsSettings& settings,
-                           const AssetHints& hints, const ProgressFunction& progress) {
+                           const AssetHints& hints, const ProgressFunction& progress, const SurfaceAlbedo& albedo) {
   const Stopwatch stopwatch;
   if (high.triangles.empty() || high.normals.size() != high.positions.size())
     throw std::invalid_argument("make_normals: a high mesh with normals is needed");
@@ -153,8 +154,8 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   const MatchLimits limits{static_cast<float>(distance), static_cast<float>(surface_tolerance * diagonal)};
 
   // A high point and normal for each texel.
-  const TexelMatches matches = match_texels(high, scene, atlas, raster, limits, settings.samples, settings.fit,
-                                            [&](double fraction) { progress(0.9 * fraction); });
+  TexelMatches matches = match_texels({high, scene, albedo}, atlas, raster, limits, settings.samples, settings.fit,
+                                      [&](double fraction) { progress(0.9 * fraction); });
   const std::vector<std::uint8_t> covered = coverage_of(raster);
   result.position = matches.position;
   fill_gutters(result.position, covered);
@@ -170,6 +171,10 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   std::transform(covered.begin(), covered.end(), result.coverage.values().begin(),
                  [](std::uint8_t c) { return static_cast<std::uint8_t>(c != 0 ? 255 : 0); });
   result.match = picture_of(matches.way);
+  result.albedo = albedo;
+  if (!albedo.is_constant())
+    result.albedo_map =
+        make_albedo_map(std::move(matches.albedo), coverage_of(matches.known), covered, seams, settings.seams);
   result.seconds = stopwatch.seconds();
   progress(1);
 
@@ -195,15 +200,25 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   result.seam_after = seams.mismatch_degrees(shown, settings.space);
   result.seam_change_degrees_rms = angles_between(kept, map, raster).rms;
   result.map_error = measure_map_error(high, atlas, shown, settings.space);
+  if (result.albedo_map)
+    result.albedo_map->error =
+        measure_albedo_error(high, albedo, atlas, linear_from_srgb_bytes(result.albedo_map->picture));
   result.measuring_seconds = stopwatch.seconds() - result.seconds;
   return result;
 }
 
 Json NormalsResult::to_json() const {
+  const Eigen::Vector3f& constant = albedo.constant_value();
+  Json albedo_json = {{"source", albedo.source_name()}};
+  if (albedo_map)
+    albedo_json.update(albedo_map->to_json());
+  else
+    albedo_json["constant"] = {constant.x(), constant.y(), constant.z()};
   return {{"space", space == NormalSpace::object ? "object" : "tangent"},
           {"width", normal.width()},
           {"height", normal.height()},
           {"covered_texels", covered_texels},
+          {"albedo", albedo_json},
           {"found_by_ray_outwards", found_by_ray_outwards},
           {"found_by_ray_inwards", found_by_ray_inwards},
           {"found_by_nearest_point", found_by_nearest_point},

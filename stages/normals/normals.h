@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
-#include <vector>
 
 #include "base/options.h"
 #include "base/progress.h"
@@ -10,7 +10,9 @@
 #include "detail/detail_maps.h"
 #include "detail/seams.h"
 #include "image/image.h"
+#include "material/surface_albedo.h"
 #include "mesh/triangle_mesh.h"
+#include "normals/albedo_map.h"
 #include "normals/map_error.h"
 #include "normals/normals_settings.h"
 
@@ -21,6 +23,9 @@ struct NormalsResult {
   Image<float> position;         ///< object-space point of the high mesh, 3 channels, gutters filled
   Image<std::uint8_t> coverage;  ///< 255 where covered, else 0
   Image<std::uint8_t> match;     ///< 3 channels: how each texel's point was found, a colour of texel_way_colours
+
+  SurfaceAlbedo albedo;                 ///< of the high mesh
+  std::optional<AlbedoMap> albedo_map;  ///< where that is not constant
 
   NormalSpace space = NormalSpace::object;
   std::int64_t covered_texels = 0;
@@ -49,8 +54,10 @@ struct NormalsResult {
 /// For every texel of the atlas the point of the high mesh that it stands for (match_surface), and the high mesh's
 /// normal there. `high` has normals; `atlas` is atlas.drc decoded, with normals and uvs (throws std::invalid_argument
 /// otherwise). Progress is 1 when the maps are made, before they are measured. `hints` replace settings that are left
-/// automatic. Throws WrongUsage where the texture is too small for the atlas to cover a texel.
+/// automatic. `albedo` is that of `high`. Throws WrongUsage where the texture is too small for the atlas to cover a
+/// texel.
 NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, const NormalsSettings& settings,
-                           const AssetHints& hints = {}, const ProgressFunction& progress = no_progress);
+                           const AssetHints& hints = {}, const ProgressFunction& progress = no_progress,
+                           const SurfaceAlbedo& albedo = {});
 
 }  // namespace kiln

@@ -22,6 +22,7 @@ OptionSet normals_options(NormalsSettings& settings) {
       "cage", settings.cage, 0, 1,
       "How far rays look for the high mesh, outwards and inwards, as a fraction of its bounding box's diagonal; "
       "0 is twice the Hausdorff distance in simplify.json beside the atlas, or twice a measured one without it");
+  add_material_options(options, settings.material);
   return options;
 }
 

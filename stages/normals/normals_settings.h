@@ -3,6 +3,7 @@
 #include "base/options.h"
 #include "detail/normal_space.h"
 #include "detail/seam_choice.h"
+#include "material/material_settings.h"
 
 namespace kiln {
 
@@ -12,6 +13,7 @@ struct NormalsSettings {
   int samples = 1;                          ///< per texel: 1, 4, 16 or 64
   bool fit = false;                         ///< of one sample: what makes lookups between centres nearest
   SeamChoice seams = SeamChoice::equalise;
+  MaterialSettings material = {};  ///< of the high mesh
   double cage = 0;  ///< how far rays go each way, as a fraction of the high mesh's bounding box diagonal; 0: automatic
 };
 

@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <tbb/parallel_for.h>
 #include <vector>
 
@@ -27,24 +29,28 @@ constexpr int band_samples = 1 << 20;
 /// Weight of a texel's centre, as a fraction of a texel's samples: holds texels that hardly any sample sees.
 constexpr float keep_centre = 0.02f;
 
+Eigen::Vector3f albedo_at(const SurfaceAlbedo& albedo, const SurfacePoint& point) {
+  return albedo.at(point.triangle, point.u, point.v);
+}
+
 /// What one texel row adds to the metrics; rows are added up in order, so that sums do not depend on threads.
 struct RowSums {
   double distance = 0, largest_distance = 0;
 };
 
-RowSums match_centres(int j, const TriangleMesh& high, const RayScene& scene, const TriangleMesh& atlas,
-                      const UvRaster& raster, const MatchLimits& limits, TexelMatches& matches,
-                      std::vector<std::uint32_t>& triangles) {
+RowSums match_centres(int j, const HighSurface& high, const TriangleMesh& atlas, const UvRaster& raster,
+                      const MatchLimits& limits, TexelMatches& matches, std::vector<std::uint32_t>& triangles) {
   RowSums sums;
   for (int i = 0; i < raster.width; ++i) {
     const TexelSource& source = raster.at(i, j);
     if (!source.covered()) continue;
     const Eigen::Vector3f low_point = interpolate(atlas, atlas.positions, source);
     const Eigen::Vector3f low_normal = interpolate(atlas, atlas.normals, source).normalized();
-    const SurfaceMatch match = match_surface(high, scene, low_point, low_normal, limits);
-    const Eigen::Vector3f high_point = position_at(high, match.point);
+    const SurfaceMatch match = match_surface(high.mesh, high.scene, low_point, low_normal, limits);
+    const Eigen::Vector3f high_point = position_at(high.mesh, match.point);
     Pixel(matches.position.pixel(i, j).data()) = high_point;
-    Pixel(matches.normal_object.pixel(i, j).data()) = normal_at(high, match.point);
+    Pixel(matches.normal_object.pixel(i, j).data()) = normal_at(high.mesh, match.point);
+    if (!high.albedo.is_constant()) Pixel(matches.albedo.pixel(i, j).data()) = albedo_at(high.albedo, match.point);
     TexelWay way = TexelWay::disagreeing;
     if (match.agrees)
       way = match.way == MatchWay::ray_outwards  ? TexelWay::ray_outwards
@@ -127,15 +133,65 @@ UvRaster rasterise_band(const TriangleMesh& atlas, const Band& band, int width, 
   return raster;
 }
 
+/// The albedo of a texture's samples, gathered as normals are, and the range of every texel's own samples.
+class AlbedoSamples {
+ public:
+  AlbedoSamples(int width, int height, int side)
+      : fit_(width, height, side),
+        lowest_(width, height, 3, std::numeric_limits<float>::infinity()),
+        highest_(width, height, 3, -std::numeric_limits<float>::infinity()) {}
+
+  BilinearFit& fit() { return fit_; }
+
+  /// The samples of one texel, whose normals `normals` are. Threads may add different texels.
+  void add(int i, int j, const SurfaceAlbedo& albedo, const TexelSamples& texel, const TexelPoints& normals,
+           BilinearFit::Rows& rows) {
+    TexelPoints colors;
+    colors.present = normals.present;
+    colors.count = normals.count;
+    Pixel low(lowest_.pixel(i, j).data()), high(highest_.pixel(i, j).data());
+    for (int k = 0; k < TexelPoints::most; ++k) {
+      if (colors.present[static_cast<std::size_t>(k)] == 0) continue;
+      const Eigen::Vector3f color = albedo_at(albedo, texel.place(k));
+      colors.vectors.row(k) = color;
+      low = low.cwiseMin(color);
+      high = high.cwiseMax(color);
+    }
+    rows.add(i, j, colors);
+  }
+
+  /// The texels whose lookups fit best, from those at centres, kept in the range of the samples that see them.
+  void solve(Image<float>& texels) const {
+    fit_.solve(texels, keep_centre);
+    const int width = texels.width(), height = texels.height();
+    tbb::parallel_for(0, height, [&](int j) {
+      for (int i = 0; i < width; ++i)
+        for (int c = 0; c < 3; ++c) {
+          float low = std::numeric_limits<float>::infinity(), high = -low;
+          for (int y = std::max(j - 1, 0); y <= std::min(j + 1, height - 1); ++y)
+            for (int x = std::max(i - 1, 0); x <= std::min(i + 1, width - 1); ++x) {
+              low = std::min(low, lowest_.at(x, y, c));
+              high = std::max(high, highest_.at(x, y, c));
+            }
+          if (low <= high) texels.at(i, j, c) = std::clamp(texels.at(i, j, c), low, high);
+        }
+    });
+  }
+
+ private:
+  BilinearFit fit_;
+  Image<float> lowest_, highest_;
+};
+
 }  // namespace
 
-TexelMatches match_texels(const TriangleMesh& high, const RayScene& scene, const TriangleMesh& atlas,
-                          const UvRaster& raster, const MatchLimits& limits, int samples, bool fit_one,
-                          const ProgressFunction& progress) {
+TexelMatches match_texels(const HighSurface& high, const TriangleMesh& atlas, const UvRaster& raster,
+                          const MatchLimits& limits, int samples, bool fit_one, const ProgressFunction& progress) {
   const int width = raster.width, height = raster.height;
   TexelMatches matches;
   matches.position = Image<float>(width, height, 3);
   matches.normal_object = Image<float>(width, height, 3);
+  if (!high.albedo.is_constant()) matches.albedo = Image<float>(width, height, 3);
   matches.way = Image<std::uint8_t>(width, height, 1);
   matches.known = raster;
   std::vector<std::uint32_t> triangles;  // that centres found
@@ -148,7 +204,7 @@ TexelMatches match_texels(const TriangleMesh& high, const RayScene& scene, const
   for (int begin = 0; begin < height; begin += group_rows) {
     const int end = std::min(begin + group_rows, height);
     tbb::parallel_for(begin, end, [&](int j) {
-      rows[static_cast<std::size_t>(j)] = match_centres(j, high, scene, atlas, raster, limits, matches, triangles);
+      rows[static_cast<std::size_t>(j)] = match_centres(j, high, atlas, raster, limits, matches, triangles);
     });
     progress(centres_part * end / height);
   }
@@ -164,8 +220,10 @@ TexelMatches match_texels(const TriangleMesh& high, const RayScene& scene, const
     const RingTexel& texel = ring[k];
     matches.known.texels[texel.texel] = texel.nearest;
     const Eigen::Vector3f low_normal = interpolate(atlas, atlas.normals, texel.nearest).normalized();
-    Pixel(matches.normal_object.values().data() + 3 * static_cast<std::size_t>(texel.texel)) =
-        normal_at(high, match_surface(high, scene, texel.low_point, low_normal, limits).point);
+    const SurfacePoint point = match_surface(high.mesh, high.scene, texel.low_point, low_normal, limits).point;
+    const std::size_t first = 3 * static_cast<std::size_t>(texel.texel);
+    Pixel(matches.normal_object.values().data() + first) = normal_at(high.mesh, point);
+    if (!high.albedo.is_constant()) Pixel(matches.albedo.values().data() + first) = albedo_at(high.albedo, point);
   });
   matches.known.covered_texels += static_cast<std::int64_t>(ring.size());
   if (samples <= 1) {
@@ -175,12 +233,14 @@ TexelMatches match_texels(const TriangleMesh& high, const RayScene& scene, const
 
   // Samples.
   const int side = static_cast<int>(std::lround(std::sqrt(samples)));
-  const SurfaceWalk walk(high);
+  const SurfaceWalk walk(high.mesh);
   const std::vector<Band> bands = bands_of(atlas, width, height, samples);
   BilinearFit fit(width, height, side);
-  const auto sample_band = [&](const Band& band, BilinearFit::Rows& rows_fit) {
+  std::optional<AlbedoSamples> albedo;
+  if (!high.albedo.is_constant()) albedo.emplace(width, height, side);
+  const auto sample_band = [&](const Band& band, BilinearFit::Rows& rows_fit, BilinearFit::Rows* albedo_rows) {
     const UvRaster fine = rasterise_band(atlas, band, width, height, side);
-    TexelSamples texel(high, scene, walk, atlas, limits, samples);
+    TexelSamples texel(high.mesh, high.scene, walk, atlas, limits, samples);
     for (int j = band.begin; j < band.end; ++j)
       for (int i = 0; i < width; ++i) {
         const std::size_t index =
@@ -204,19 +264,28 @@ TexelMatches match_texels(const TriangleMesh& high, const RayScene& scene, const
           for (int x = 0; x < side; ++x)
             if (const TexelSource& source = fine.at(i * side + x, (j - band.begin) * side + y); source.covered())
               texel.add(y * side + x, source);
-        rows_fit.add(i, j, texel.finish());
+        const TexelPoints& normals = texel.finish();
+        rows_fit.add(i, j, normals);
+        if (albedo_rows != nullptr) albedo->add(i, j, high.albedo, texel, normals, *albedo_rows);
       }
   };
   constexpr std::size_t group = 8;
   for (std::size_t begin = 0; begin < bands.size(); begin += group) {
     const std::size_t end = std::min(begin + group, bands.size());
-    std::vector<BilinearFit::Rows> sums;
-    for (std::size_t k = begin; k < end; ++k) sums.emplace_back(fit, bands[k].begin, bands[k].end);
-    tbb::parallel_for(begin, end, [&](std::size_t k) { sample_band(bands[k], sums[k - begin]); });
+    std::vector<BilinearFit::Rows> sums, albedo_sums;
+    for (std::size_t k = begin; k < end; ++k) {
+      sums.emplace_back(fit, bands[k].begin, bands[k].end);
+      if (albedo) albedo_sums.emplace_back(albedo->fit(), bands[k].begin, bands[k].end);
+    }
+    tbb::parallel_for(begin, end, [&](std::size_t k) {
+      sample_band(bands[k], sums[k - begin], albedo ? &albedo_sums[k - begin] : nullptr);
+    });
     for (const BilinearFit::Rows& part : sums) fit.join(part);
+    for (const BilinearFit::Rows& part : albedo_sums) albedo->fit().join(part);
     progress(centres_part + (1 - centres_part) * static_cast<double>(end) / static_cast<double>(bands.size()));
   }
   fit.solve(matches.normal_object, keep_centre);
+  if (albedo) albedo->solve(matches.albedo);
   return matches;
 }
 

@@ -106,6 +106,9 @@ void TexelSamples::try_triangle(std::uint32_t triangle) {
       const Floats normal = (of_a * n0[axis] + of_b * n1[axis] + of_c * n2[axis]) * scale;
       store(found, take ? normal : load<Floats>(found));
     }
+    for (int lane = 0; lane < 4; ++lane)
+      if (take[lane] != 0)
+        places_[static_cast<std::size_t>(k + lane)] = {triangle, of_b[lane] * scale[lane], of_c[lane] * scale[lane], 0};
     store(&pending_[static_cast<std::size_t>(k)], pending & ~take);
   }
 }
@@ -120,6 +123,7 @@ void TexelSamples::find(int sample) {
   }
   triangle_ = met.triangle;
   found_.vectors.row(sample) = normal_at(high_, met);
+  places_[static_cast<std::size_t>(sample)] = met;
   pending_[static_cast<std::size_t>(sample)] = 0;
 }
 

@@ -39,6 +39,9 @@ class TexelSamples {
   /// High normals, of unit length, of the samples that were added.
   const TexelPoints& finish();
 
+  /// After finish(): the point of the high mesh that a sample which was added stands for; without its distance.
+  const SurfacePoint& place(int sample) const { return places_[static_cast<std::size_t>(sample)]; }
+
  private:
   /// A low triangle: a value at its first corner, and from there to the others.
   struct Corners {
@@ -66,6 +69,7 @@ class TexelSamples {
   TexelPoints::Components points_ = TexelPoints::Components::Zero(), directions_ = TexelPoints::Components::Zero();
   std::array<std::int32_t, TexelPoints::most> pending_{};  ///< -1 or 0
   TexelPoints found_;
+  std::array<SurfacePoint, TexelPoints::most> places_;
 };
 
 }  // namespace kiln

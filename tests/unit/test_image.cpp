@@ -1,3 +1,4 @@
+#include <OpenImageIO/imageio.h>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -177,6 +178,40 @@ TEST_F(ImageFile, BadFilesAreRefused) {
   }
   expect_refusal([&] { read_float_image(folder_ / "absent.hdr"); }, "no such file");
   expect_refusal([&] { read_float_image(folder_ / "sixteen.png"); }, ".png");
+}
+
+TEST_F(ImageFile, JpegsAreReadWholeOrNotAtAll) {
+  constexpr int side = 64;
+  Image<std::uint8_t> picture(side, side, 3);
+  for (int j = 0; j < side; ++j)
+    for (int i = 0; i < side; ++i) {
+      picture.at(i, j, 0) = static_cast<std::uint8_t>(4 * i);
+      picture.at(i, j, 1) = static_cast<std::uint8_t>(4 * j);
+      picture.at(i, j, 2) = 128;
+    }
+  const std::string name = (folder_ / "a.jpg").string();
+  OIIO::ImageSpec spec(side, side, 3, OIIO::TypeDesc::UINT8);
+  spec.attribute("CompressionQuality", 100);
+  const auto output = OIIO::ImageOutput::create(name);
+  ASSERT_TRUE(output && output->open(name, spec));
+  constexpr OIIO::stride_t row_bytes = 3 * side;
+  ASSERT_TRUE(output->write_image(OIIO::TypeDesc::UINT8, picture.values().data() + row_bytes * (side - 1),
+                                  OIIO::AutoStride, -row_bytes));
+  output->close();
+
+  const ColorPicture read = read_color_picture(name);
+  const auto& pixels = std::get<Image<std::uint8_t>>(read.pixels);
+  ASSERT_EQ(pixels.values().size(), picture.values().size());
+  for (std::size_t k = 0; k < picture.values().size(); ++k)
+    EXPECT_NEAR(pixels.values()[k], picture.values()[k], 6) << k;  // slow changes lose little at the best quality
+
+  const std::string whole = read_text(name);
+  for (const double part : {0.99, 0.6, 0.01}) {
+    std::ofstream(name, std::ios::binary) << whole.substr(0, static_cast<std::size_t>(part * whole.size()));
+    EXPECT_THROW(read_color_picture(name), BadInput) << part;
+  }
+  std::ofstream(name, std::ios::binary) << "no picture";
+  EXPECT_THROW(read_color_picture(name), BadInput);
 }
 
 TEST_F(ImageFile, UnwritablePlacesAreRefused) {

@@ -105,6 +105,10 @@ void CommandLine::parse(int argc, char** argv) {
     for (const fs::path& path : *list) require_exists(path);
 }
 
+void CommandLine::also_read(const std::vector<fs::path>& files) {
+  also_read_.insert(also_read_.end(), files.begin(), files.end());
+}
+
 ProgressFunction CommandLine::progress(const std::string& label) const {
   return [bar = std::make_shared<ProgressBar>(label, quiet_)](double fraction) { (*bar)(fraction); };
 }
@@ -124,6 +128,7 @@ Json CommandLine::result(double seconds, const Json& metrics) const {
   for (const fs::path* path : inputs_) add(*path);
   for (const auto* list : input_lists_)
     for (const fs::path& path : *list) add(path);
+  for (const fs::path& path : also_read_) add(path);
   Json result = {{"stage", stage_},  {"version", KILN_VERSION}, {"settings", settings},
                  {"inputs", inputs}, {"seconds", seconds},      {"peak_memory_bytes", peak_memory_bytes()}};
   result.update(metrics);

@@ -31,6 +31,9 @@ class CommandLine {
   void input_option(const std::string& name, std::filesystem::path& path, const std::string& help);
   void input_option(const std::string& name, std::vector<std::filesystem::path>& paths, const std::string& help);
 
+  /// After parse(): files that inputs or settings name; their hashes go into the result like those of inputs.
+  void also_read(const std::vector<std::filesystem::path>& files);
+
   /// The settings of the stage, under a heading of --help.
   void options(const std::string& heading, const OptionSet& options);
 
@@ -72,6 +75,7 @@ class CommandLine {
   int seed_ = 1;
   std::vector<const std::filesystem::path*> inputs_;
   std::vector<const std::vector<std::filesystem::path>*> input_lists_;
+  std::vector<std::filesystem::path> also_read_;
   std::vector<OptionSet> option_sets_;
   std::shared_ptr<void> thread_limit_;
 };

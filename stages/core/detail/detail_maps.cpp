@@ -10,6 +10,7 @@
 #include "base/outputs.h"
 #include "image/gutter.h"
 #include "image/image_file.h"
+#include "image/srgb.h"
 #include "mesh/tangent_space.h"
 
 namespace kiln {
@@ -57,9 +58,8 @@ void convert_covered(Image<float>& image, const TriangleMesh& atlas, const UvRas
   throw BadInput(file.string(), found, expected, "run kiln-normals on this atlas again");
 }
 
-NormalSpace read_space(const std::filesystem::path& file) {
+NormalSpace read_space(const std::filesystem::path& file, const nlohmann::json& result) {
   const std::string expected = "the result of kiln-normals";
-  const nlohmann::json result = nlohmann::json::parse(read_text(file), nullptr, false);
   if (!result.is_object() || !result.contains("settings") || !result["settings"].is_object() ||
       !result["settings"].contains("space"))
     refuse(file, "no settings.space in it", expected);
@@ -75,7 +75,33 @@ std::string size_text(const Image<T>& image) {
          std::to_string(image.channels()) + (image.channels() == 1 ? " channel" : " channels");
 }
 
+/// The map, or the constant that stands in the record: three linear values. A record of an older kiln-normals has
+/// neither, and then the surface is white.
+void read_albedo(const std::filesystem::path& folder, const nlohmann::json& record, DetailMaps& maps) {
+  const nlohmann::json albedo = record.value("albedo", nlohmann::json::object());
+  if (!albedo.is_object() || (!albedo.empty() && !albedo.contains("source")))
+    refuse(folder / "normals.json", "albedo " + albedo.dump(), "the result of kiln-normals");
+  if (albedo.empty()) return;
+  if (albedo.contains("constant")) {
+    const nlohmann::json& values = albedo["constant"];
+    const auto is_share = [](const nlohmann::json& v) { return v.is_number() && v >= 0 && v <= 1; };
+    if (!values.is_array() || values.size() != 3 || !std::all_of(values.begin(), values.end(), is_share))
+      refuse(folder / "normals.json", "a constant albedo of " + values.dump(), "three numbers of 0 to 1");
+    for (int c = 0; c < 3; ++c) maps.constant_albedo[c] = values[static_cast<std::size_t>(c)];
+    return;
+  }
+  const Image<std::uint8_t> encoded = read_png8(folder / "albedo.png");
+  if (encoded.width() != maps.width || encoded.height() != maps.height || encoded.channels() != 3)
+    refuse(folder / "albedo.png", size_text(encoded),
+           std::to_string(maps.width) + " x " + std::to_string(maps.height) + " texels of 3 channels");
+  maps.albedo = linear_from_srgb_bytes(encoded);
+}
+
 }  // namespace
+
+Eigen::Vector3f DetailMaps::albedo_at(int i, int j) const {
+  return albedo.values().empty() ? constant_albedo : Eigen::Map<const Eigen::Vector3f>(albedo.pixel(i, j).data());
+}
 
 std::vector<std::uint8_t> coverage_of(const UvRaster& raster) {
   std::vector<std::uint8_t> covered(raster.texels.size());
@@ -130,7 +156,9 @@ Image<float> decode_normals(const Image<std::uint16_t>& encoded, NormalSpace spa
 DetailMaps load_detail_maps(const std::filesystem::path& folder, const TriangleMesh& atlas) {
   if (!std::filesystem::is_directory(folder))
     throw BadInput(folder.string(), "no such folder", "the output folder of kiln-normals", "check the path");
-  const NormalSpace space = read_space(folder / "normals.json");
+  const std::filesystem::path record_file = folder / "normals.json";
+  const nlohmann::json record = nlohmann::json::parse(read_text(record_file), nullptr, false);
+  const NormalSpace space = read_space(record_file, record);
   const Image<std::uint8_t> coverage = read_png8(folder / "coverage.png");
   const Image<std::uint16_t> encoded = read_png16(folder / "normal.png");
   DetailMaps maps;
@@ -146,6 +174,8 @@ DetailMaps load_detail_maps(const std::filesystem::path& folder, const TriangleM
     refuse(folder / "normal.png", size_text(encoded), expected);
   if (maps.position.width() != maps.width || maps.position.height() != maps.height || maps.position.channels() != 3)
     refuse(folder / "position.exr", size_text(maps.position), expected);
+
+  read_albedo(folder, record, maps);
 
   // Made from this very atlas.
   if (atlas.normals.size() != atlas.positions.size() || atlas.uvs.size() != atlas.positions.size())

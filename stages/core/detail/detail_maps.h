@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
 #include <vector>
@@ -18,6 +19,11 @@ struct DetailMaps {
   std::vector<std::uint8_t> covered;  ///< 1 or 0 per texel, rows from the bottom
   Image<float> position;              ///< 3 channels, object space; gutters filled
   Image<float> normal_object;         ///< 3 channels, unit vectors in object space; gutters filled
+  Image<float> albedo;                ///< 3 channels, linear, gutters filled; empty where it is constant
+  Eigen::Vector3f constant_albedo = Eigen::Vector3f::Ones();  ///< linear, where there is no map of it
+
+  /// Linear, of a texel.
+  Eigen::Vector3f albedo_at(int i, int j) const;
 };
 
 /// 1 per covered texel, else 0, rows from the bottom.

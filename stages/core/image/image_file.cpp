@@ -130,6 +130,27 @@ PngHeader check_png(const std::filesystem::path& file) {
   }
 }
 
+/// Walks the segments of a JPEG (ITU-T T.81, annex B) to its coded data, behind which an end-of-image marker must
+/// stand. libjpeg fills what is missing with grey.
+void check_jpeg(const std::filesystem::path& file) {
+  const std::string expected = "a whole JPEG";
+  const std::string bytes = read_text(file);
+  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(bytes[at]); };
+  constexpr unsigned char marker = 0xff, start_of_image = 0xd8, end_of_image = 0xd9, start_of_scan = 0xda;
+  if (bytes.size() < 2 || byte(0) != marker || byte(1) != start_of_image) fail_reading(file, "not a JPEG", expected);
+  for (std::size_t at = 2; at + 4 <= bytes.size();) {
+    const unsigned char kind = byte(at + 1);
+    if (byte(at) != marker) fail_reading(file, "a damaged JPEG", expected);
+    at += 2 + (std::size_t{byte(at + 2)} << 8 | byte(at + 3));
+    if (kind != start_of_scan) continue;
+    // In coded data 0xff is followed by 0 or a restart marker.
+    constexpr char end[] = {static_cast<char>(marker), static_cast<char>(end_of_image)};
+    if (bytes.find(end, at, sizeof end) == std::string::npos) break;
+    return;
+  }
+  fail_reading(file, "a truncated JPEG", expected);
+}
+
 std::unique_ptr<OIIO::ImageInput> open_image(const std::filesystem::path& file, const std::string& expected) {
   keep_to_one_thread();
   OIIO::ImageSpec configuration;
@@ -222,7 +243,9 @@ Image<float> read_float_image(const std::filesystem::path& file) {
 ColorPicture read_color_picture(const std::filesystem::path& file) {
   const std::string expected = "a PNG, JPEG, OpenEXR or other picture";
   check_present(file, expected);
-  if (lower_extension(file) == ".png") check_png(file);
+  const std::string extension = lower_extension(file);
+  if (extension == ".png") check_png(file);
+  if (extension == ".jpg" || extension == ".jpeg") check_jpeg(file);
   const std::unique_ptr<OIIO::ImageInput> input = open_image(file, expected);
   ColorPicture picture;
   picture.is_float = input->spec().format.is_floating_point();

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "image/image.h"
+
 namespace kiln {
 
 /// The sRGB value (IEC 61966-2-1), 0 to 1, of a linear one, which is clamped to that.
@@ -12,5 +14,9 @@ float linear_from_srgb(float srgb);
 
 /// round(255 * value), of a value clamped to 0 .. 1.
 std::uint8_t byte_from_unit(float value);
+
+/// A picture of linear values as sRGB bytes, and back.
+Image<std::uint8_t> srgb_bytes(const Image<float>& linear);
+Image<float> linear_from_srgb_bytes(const Image<std::uint8_t>& bytes);
 
 }  // namespace kiln
