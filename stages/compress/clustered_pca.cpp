@@ -3,7 +3,6 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <random>
 #include <tbb/parallel_for.h>
 
@@ -65,19 +64,22 @@ double assign(const Eigen::MatrixXf& vectors, const PcaModel& model, std::span<s
   for (int c = 0; c < model.clusters(); ++c) means.col(c) = model.means[static_cast<std::size_t>(c)];
   const int tried = std::min(tried_subspaces, model.clusters());
   const Eigen::MatrixXf distances = mean_distances(vectors, means);
-  std::vector<int> order(static_cast<std::size_t>(model.clusters()));
+  std::vector<std::pair<float, int>> nearest(static_cast<std::size_t>(tried));  // nearest first; of equals the first
   double sum = 0;
   for (Eigen::Index k = 0; k < vectors.cols(); ++k) {
-    const auto nearer = [&](int a, int b) {
-      return distances(a, k) != distances(b, k) ? distances(a, k) < distances(b, k) : a < b;
-    };
-    std::iota(order.begin(), order.end(), 0);
-    std::partial_sort(order.begin(), order.begin() + tried, order.end(), nearer);
+    std::size_t found = 0;
+    for (int c = 0; c < model.clusters(); ++c) {
+      const float distance = distances(c, k);
+      if (found == nearest.size() && distance >= nearest.back().first) continue;
+      std::size_t place = found < nearest.size() ? found++ : found - 1;
+      for (; place > 0 && distance < nearest[place - 1].first; --place) nearest[place] = nearest[place - 1];
+      nearest[place] = {distance, c};
+    }
     const Eigen::VectorXf x = vectors.col(k);
     std::uint8_t& id = ids[static_cast<std::size_t>(k)];
     float least = has_present ? subspace_distance(x, model, id) : std::numeric_limits<float>::infinity();
     for (int t = 0; t < tried; ++t) {
-      const auto cluster = static_cast<std::size_t>(order[static_cast<std::size_t>(t)]);
+      const auto cluster = static_cast<std::size_t>(nearest[static_cast<std::size_t>(t)].second);
       const float distance = subspace_distance(x, model, cluster);
       if (distance < least) {
         least = distance;

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t sampled_texels = 65536;  // that steps are chosen on
 constexpr int planes_per_lookup = 4;
+constexpr double rounding_allowance = 1.25;  // error of a stored model over what the model leaves, where that is free
 constexpr double reach = 0.97;  // a model that leaves more of the target than this has no room for rounding
 
 std::uint64_t size_of(const EncodedFiles& files) {
@@ -39,8 +40,9 @@ class Search {
   CompressResult run() {
     const bool free = settings_.clusters == 0 && settings_.components == 0;
     const CompressCandidate eight = plain(8);
-    const std::optional<double> asked = target_error(settings_);
-    result_.target_error = asked.value_or(asset_.bits == 8 ? rounding_error() : eight.error);
+    result_.plain = eight;
+    if (asset_.bits == 8) result_.plain.error = rounding_error();
+    result_.target_error = target_error(settings_).value_or(result_.plain.error);
     if (settings_.components > source_.length())
       throw WrongUsage(fmt::format("pca: found {}; expected at most {}, the length of a transfer vector",
                                    settings_.components, source_.length()));
@@ -94,17 +96,16 @@ class Search {
   }
 
   /// The largest step that stays within the target, on the sample; 0 where none does.
-  double step_for(const TexelModel& model) const {
+  double step_for(const TexelModel& model, double target) const {
     const auto error_at = [&](double step) {
       const TexelModel rounded{rounded_model(model.model, source_, all_, step), model.ids, {}};
       return error_of(stored_residual(source_, rounded, sample_, step));
     };
-    const double room =
-        result_.target_error * std::sqrt(source_.squared_norm() / static_cast<double>(source_.covered().size()));
+    const double room = target * std::sqrt(source_.squared_norm() / static_cast<double>(source_.covered().size()));
     // All the error a step's rounding can make is step^2 / 12 per component; start from there, in steps of factors.
     double high = room * std::sqrt(12.0 / std::max(1, model.model.components)) * 4, low = 0;
     for (double step = high; step > high / 4096; step /= 2)
-      if (error_at(step) <= result_.target_error) {
+      if (error_at(step) <= target) {
         low = step;
         break;
       } else {
@@ -113,20 +114,22 @@ class Search {
     if (low == 0) return 0;
     for (int k = 0; k < 5 && high > low; ++k) {
       const double middle = std::sqrt(low * high);
-      (error_at(middle) <= result_.target_error ? low : high) = middle;
+      (error_at(middle) <= target ? low : high) = middle;
     }
     return low;
   }
 
   /// Tries a model: as coarse as the target allows, measured on all texels. Says whether it is the cheapest so far.
-  bool attempt(const TexelModel& model, CompressScheme scheme) {
-    double step = step_for(model);
+  bool attempt(const TexelModel& model, CompressScheme scheme) { return attempt(model, scheme, result_.target_error); }
+
+  bool attempt(const TexelModel& model, CompressScheme scheme, double target) {
+    double step = step_for(model, target);
     if (step == 0) return false;
     for (int k = 0; k < 8; ++k, step *= 0.98) {
       const StoredPca stored = store_pca(source_, model, all_, step);
       CompressCandidate candidate = describe(stored, scheme, step);
       candidate.error = error_of(stored_residual(source_, stored.decoded, source_.covered(), step));
-      if (candidate.error > result_.target_error && k < 7) continue;  // the sample was too kind
+      if (candidate.error > target && k < 7) continue;  // the sample was too kind
       candidate.bytes = size_of(encode_pca(stored, source_, PngEffort::quick));
       return consider(candidate, &model);
     }
@@ -146,6 +149,12 @@ class Search {
     return candidate;
   }
 
+  /// A model that leaves more than the target: tried as coarse as fits what it leaves, to show what more error would
+  /// save.
+  void attempt_lacking(const TexelModel& model, CompressScheme scheme, double left) {
+    attempt(model, scheme, rounding_allowance * left);
+  }
+
   void note_lacking(double error) { least_error_ = std::min(least_error_.value_or(error), error); }
 
   /// With one basis: the fewest components that leave less than the target, and more as long as that saves bytes.
@@ -163,6 +172,10 @@ class Search {
     }
     int fewest = 1;
     while (fewest < length && !feasible(fewest)) ++fewest;
+    for (const int n : {fewest / 2, fewest / 4})
+      if (n > 0)
+        attempt_lacking(texel_model(source_, all_.model(n), owners_), CompressScheme::pca,
+                        error_of(all_.residual[static_cast<std::size_t>(n)]));
     if (!feasible(fewest)) return;
     int missed = 0;
     for (int n = fewest, further = 1; n <= length && missed < 2; n += further, further = std::min(4, 2 * further)) {
@@ -179,7 +192,8 @@ class Search {
   /// for rounding.
   void raise_target(double left) {
     const bool fixed = settings_.clusters > 0 && settings_.components > 0;
-    if (fixed && settings_.max_error == "auto") result_.target_error = std::max(result_.target_error, 1.25 * left);
+    if (fixed && settings_.max_error == "auto")
+      result_.target_error = std::max(result_.target_error, rounding_allowance * left);
   }
 
   /// Says whether the model leaves room, and if so what came of it.
@@ -188,11 +202,12 @@ class Search {
     const ClusteredPca clustered = clustered_pca(source_, all_, clusters, components, settings_.seed);
     const double left = error_of(clustered.residual);
     raise_target(left);
+    const TexelModel model = texel_model(source_, clustered, owners_);
     if (left > reach * result_.target_error) {
       note_lacking(left);
+      attempt_lacking(model, CompressScheme::clustered_pca, left);
       return Outcome::lacks;
     }
-    const TexelModel model = texel_model(source_, clustered, owners_);
     return attempt(model, CompressScheme::clustered_pca) ? Outcome::best : Outcome::worse;
   }
 
@@ -205,18 +220,20 @@ class Search {
     return place->second;
   }
 
-  /// The fewest components that leave less than the target with so many clusters; none where the most do not.
+  /// The fewest components that leave less than the target with so many clusters; none where the most do not. From
+  /// below, as time grows with components.
   std::optional<int> fewest_components(int clusters, int most) {
-    if (attempt_once(clusters, most) == Outcome::lacks) return std::nullopt;
-    int low = 1, high = most;
-    while (low < high) {
-      const int middle = (low + high) / 2;
-      if (attempt_once(clusters, middle) == Outcome::lacks)
-        low = middle + 1;
-      else
-        high = middle;
+    int low = 0, high = std::min(4, most);  // low lacks, high may
+    while (attempt_once(clusters, high) == Outcome::lacks) {
+      if (high == most) return std::nullopt;
+      low = high;
+      high = std::min(2 * high, most);
     }
-    return low;
+    while (high - low > 1) {
+      const int middle = (low + high) / 2;
+      (attempt_once(clusters, middle) == Outcome::lacks ? low : high) = middle;
+    }
+    return high;
   }
 
   /// Fewer clusters and fewer components leave more, so what lacks with many clusters lacks with few. Bytes first fall

@@ -40,6 +40,8 @@ struct CompressCandidate {
 struct CompressResult {
   double seconds = 0;
   double target_error = 0;
+  CompressCandidate plain;  ///< planes of 8 bits; its error against what they are rounded from: of an 8-bit input
+                            ///< step^2 / 12
   std::vector<CompressCandidate> tried;  ///< sizes by PngEffort::quick
   CompressCandidate chosen;              ///< with its files' true size
   double border_share = 0;  ///< of covered texels, those with a neighbour above or right in another cluster

@@ -181,6 +181,7 @@ Json save_compressed(OutputSet& outputs, const fs::path& input, const PrtAsset& 
           {"lookups_in", (asset.planes.size() + 3) / 4},
           {"lookups_out", result.chosen.lookups},
           {"border_share", result.border_share},
+          {"plain", result.plain.to_json()},
           {"chosen", chosen},
           {"candidates", tried}};
 }

@@ -28,9 +28,9 @@ std::vector<LightSpec> parse_lights(const std::vector<std::string>& texts) {
   return specs;
 }
 
-/// Draws the asset under one light into an EXR, and returns what kiln-render says of it.
-Json render(const AssetFolder& asset, const std::string& light, const ReportSettings& settings,
-            const ComparisonRun& run, const fs::path& file) {
+/// Draws a baked or compressed folder under one light into an EXR, and returns what kiln-render says of it.
+Json render(const fs::path& folder, const std::string& light, const ReportSettings& settings, const ComparisonRun& run,
+            const fs::path& file) {
   std::string printed;
   ProcessSettings process;
   process.on_output_line = [&](const std::string& line) { printed += line; };
@@ -38,7 +38,7 @@ Json render(const AssetFolder& asset, const std::string& light, const ReportSett
   const std::string size = std::to_string(settings.picture_size);
   const ProcessEnd end =
       run_process({(program_folder() / "kiln-render").string(),
-                   asset.prt().string(),
+                   folder.string(),
                    "-o",
                    file.string(),
                    "--light=" + light,
@@ -68,8 +68,8 @@ Json render(const AssetFolder& asset, const std::string& light, const ReportSett
   if (end.exit_status == static_cast<int>(ExitCode::machine_lacks))
     throw MachineLacks("kiln-render cannot draw on this machine; it has said why");
   if (end.exit_status == static_cast<int>(ExitCode::bad_input))
-    throw BadInput(asset.prt().string(), "could not be drawn by kiln-render, which has said why",
-                   "a whole output of kiln-bake", "run kiln-bake again");
+    throw BadInput(folder.string(), "could not be drawn by kiln-render, which has said why",
+                   "a whole output of kiln-bake or kiln-compress", "run that again");
   if (end.exit_status == static_cast<int>(ExitCode::wrong_usage))
     throw WrongUsage("kiln-render refuses its settings and has said why");
   if (!end.succeeded()) throw std::runtime_error(fmt::format("kiln-render failed (exit status {})", end.exit_status));
@@ -79,22 +79,30 @@ Json render(const AssetFolder& asset, const std::string& light, const ReportSett
 bool is_whole(float coverage) { return coverage > 0.9999f; }
 
 /// The difference over the pixels that both cover wholly: elsewhere the background would be compared.
-void compare(LightComparison& comparison, std::size_t& compared_pixels) {
-  std::vector<float> asset, reference;
-  for (int j = 0; j < comparison.asset.height(); ++j)
-    for (int i = 0; i < comparison.asset.width(); ++i) {
-      const std::span<const float> a = comparison.asset.pixel(i, j), b = comparison.reference.pixel(i, j);
+ImageDifference compare(const Image<float>& picture, const Image<float>& reference, std::size_t& compared_pixels) {
+  std::vector<float> ours, theirs;
+  for (int j = 0; j < picture.height(); ++j)
+    for (int i = 0; i < picture.width(); ++i) {
+      const std::span<const float> a = picture.pixel(i, j), b = reference.pixel(i, j);
       if (!is_whole(a[3]) || !is_whole(b[3])) continue;
-      asset.insert(asset.end(), a.begin(), a.begin() + 3);
-      reference.insert(reference.end(), b.begin(), b.begin() + 3);
+      ours.insert(ours.end(), a.begin(), a.begin() + 3);
+      theirs.insert(theirs.end(), b.begin(), b.begin() + 3);
     }
-  compared_pixels = asset.size() / 3;
+  compared_pixels = ours.size() / 3;
   const auto as_image = [&](std::vector<float>& values) {
     Image<float> image(static_cast<int>(compared_pixels), 1, 3);
     image.values() = std::move(values);
     return image;
   };
-  comparison.difference = compare_images(as_image(asset), as_image(reference));
+  return compare_images(as_image(ours), as_image(theirs));
+}
+
+/// Both of the asset's pictures have the size that was asked for.
+Image<float> read_rendered(const fs::path& file, const ReportSettings& settings) {
+  Image<float> picture = read_float_image(file);
+  if (picture.width() != settings.picture_size || picture.height() != settings.picture_size || picture.channels() != 4)
+    throw std::runtime_error("kiln-render drew another size or number of channels than asked");
+  return picture;
 }
 
 double silhouette_difference(const LightComparison& comparison) {
@@ -119,15 +127,17 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   const Stopwatch render_watch;
   for (std::size_t k = 0; k < lights.size(); ++k) {
     const fs::path file = run.scratch / fmt::format("light_{}.exr", k);
-    const Json said = render(asset, lights[k], settings, run, file);
+    const Json said = render(asset.prt(), lights[k], settings, run, file);
     comparison.renderer = said.at("renderer").get<std::string>();
     comparison.software_renderer = said.at("software_renderer").get<bool>();
     LightComparison& light = comparison.lights.emplace_back();
     light.light = lights[k];
-    light.asset = read_float_image(file);
-    if (light.asset.width() != settings.picture_size || light.asset.height() != settings.picture_size ||
-        light.asset.channels() != 4)
-      throw std::runtime_error("kiln-render drew another size or number of channels than asked");
+    light.asset = read_rendered(file, settings);
+    if (asset.compressed.empty()) continue;
+    render(asset.compressed, lights[k], settings, run, file);
+    light.compressed = read_rendered(file, settings);
+    std::size_t pixels = 0;
+    light.compressed_difference = compare(light.compressed, light.asset, pixels);
   }
   comparison.render_seconds = render_watch.seconds();
 
@@ -155,8 +165,9 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   comparison.reference_seconds = reference_watch.seconds();
 
   for (std::size_t k = 0; k < lights.size(); ++k) {
-    comparison.lights[k].reference = std::move(references[k]);
-    compare(comparison.lights[k], comparison.compared_pixels);
+    LightComparison& light = comparison.lights[k];
+    light.reference = std::move(references[k]);
+    light.difference = compare(light.asset, light.reference, comparison.compared_pixels);
   }
   comparison.silhouette_difference = silhouette_difference(comparison.lights.front());
   return comparison;

@@ -17,7 +17,9 @@ struct LightComparison {
   std::string light;
   Image<float> asset;
   Image<float> reference;
-  ImageDifference difference;  ///< of the asset from the reference, over the pixels that both cover wholly
+  ImageDifference difference;             ///< of the asset from the reference, over the pixels that both cover wholly
+  Image<float> compressed;                ///< the asset as kiln-compress stored it; empty where there is none
+  ImageDifference compressed_difference;  ///< of that from the asset, over the same pixels
 };
 
 struct Comparison {

@@ -70,13 +70,27 @@ constexpr Known known_metrics[] = {
     {"relighting_error", "expected relighting error", Unit::share},
     {"relative_l2", "difference, relative L², worst light", Unit::share},
     {"root_mean_square", "difference, RMS radiance, worst light", Unit::plain},
+    {"compressed_relative_l2", "difference by compression, relative L², worst light", Unit::share},
+    {"compress.error", "expected relighting error against the baked planes", Unit::share},
+    {"target_error", "error asked for, expected relighting error", Unit::share},
+    {"bytes_in", "bytes of the baked planes", Unit::plain},
+    {"bytes_out", "bytes", Unit::plain},
+    {"bytes_per_texel_in", "bytes per covered texel, baked", Unit::plain},
+    {"bytes_per_texel_out", "bytes per covered texel", Unit::plain},
+    {"lookups_in", "texture lookups, baked", Unit::plain},
+    {"lookups_out", "texture lookups", Unit::plain},
+    {"border_share", "texels at borders of clusters", Unit::share},
     {"silhouette_difference", "silhouette difference", Unit::share},
 };
 
+std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
+
+/// With its stage, else by its last part.
 const Known* find_known(const std::string& key) {
-  const auto found = std::find_if(std::begin(known_metrics), std::end(known_metrics),
-                                  [&](const Known& known) { return known.key == key; });
-  return found == std::end(known_metrics) ? nullptr : found;
+  for (const std::string& name : {key, last_part(key)})
+    for (const Known& known : known_metrics)
+      if (known.key == name) return &known;
+  return nullptr;
 }
 
 Unit unit_of(const std::string& key) {
@@ -116,7 +130,7 @@ std::string rounded(double value, int digits) {
 
 std::string metric_label(const std::string& key) {
   if (const Known* known = find_known(key)) return std::string(known->label);
-  std::string text = key;
+  std::string text = last_part(key);
   std::replace(text.begin(), text.end(), '_', ' ');
   return text;
 }

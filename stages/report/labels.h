@@ -7,7 +7,7 @@
 namespace kiln {
 
 /// A metric's name for people: "found_by_nearest_point" is "found by nearest point"; the common ones have words of
-/// their own.
+/// their own. Keys here and below may have their stage before them, "compress.error".
 std::string metric_label(const std::string& key);
 
 /// A metric's value with its unit, chosen by its key: shares in percent, seconds, bytes, counts with thin spaces. HTML.

@@ -8,7 +8,7 @@ int main(int argc, char** argv) {
   return run_program("kiln-report", [&] {
     // Parse.
     CommandLine command("kiln-report", "Gathers what the stages say of an asset, and shows it beside its original.");
-    std::filesystem::path folder, page_file, high_file;
+    std::filesystem::path folder, page_file, high_file, compressed;
     std::vector<std::string> budgets;
     ReportSettings settings;
     command.input("ASSET-FOLDER", folder,
@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
     command.output(page_file, "The report, one HTML file; metrics.json and report.json are written beside it");
     command.input_option("high", high_file,
                          "The high mesh to compare with (default: the one that simplify.json names)");
+    command.input_option("compressed", compressed, "The asset as kiln-compress stored it, to show beside it");
     command.options("Pictures", report_options(settings));
     command.app()
         .add_option("--budget", budgets,
@@ -27,7 +28,7 @@ int main(int argc, char** argv) {
     command.parse(argc, argv);
 
     // Load.
-    const AssetFolder asset = load_asset_folder(folder);
+    const AssetFolder asset = load_asset_folder(folder, compressed);
     if (high_file.empty()) high_file = recorded_high_mesh(asset);
 
     // Run.

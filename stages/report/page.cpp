@@ -9,6 +9,7 @@
 #include "report/page_style.h"
 #include "report/page_tables.h"
 #include "report/pictures.h"
+#include "report/tradeoff.h"
 #include "sh/basis.h"
 
 namespace kiln {
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double difference_gain = 8;
+constexpr double difference_gain = 8, compressed_gain = 32;
 constexpr int crop_margin = 12;  // pixels
 constexpr int texture_pixels = 640;
 constexpr int pyramid_bands = 6;  // more bands have rows too long to be seen
@@ -158,6 +159,41 @@ std::string relit_section(const AssetFolder& asset, const Report& report, const 
   return html + "</section>\n";
 }
 
+/// The compressed asset beside the plain one under the light that shows most of it, and what else was tried.
+std::string compression_section(const AssetFolder& asset, const Report& report, const fs::path& scratch) {
+  if (asset.compressed.empty()) return "";
+  const Json& record = asset.record("compress");
+  const Tradeoff tradeoff = read_tradeoff(asset.stage_record("compress"));
+  const auto worst =
+      std::max_element(report.comparison.lights.begin(), report.comparison.lights.end(),
+                       [](const LightComparison& a, const LightComparison& b) {
+                         return a.compressed_difference.relative_l2 < b.compressed_difference.relative_l2;
+                       });
+  const Crop crop = crop_of(*worst);
+  const std::string name = light_label(worst->light);
+  std::string html = fmt::format(
+      "<section><h2>Compressed</h2>\n<p class=note>The same asset as kiln-compress stores it: {}, {} bytes per covered "
+      "texel in place of {}, {} texture lookups in place of {}; expected relighting error {}. Pictures under the "
+      "light that tells both apart most.</p>\n<div class=trio>\n",
+      tradeoff.chosen.name(), rounded(tradeoff.chosen.bytes_per_texel, 3),
+      metric_value("bytes_per_texel_in", record.at("bytes_per_texel_in")), tradeoff.chosen.lookups,
+      metric_value("lookups_in", record.at("lookups_in")), metric_value("relighting_error", tradeoff.chosen.error));
+  html += figure(image(cropped(shown_radiance(worst->asset), crop), "Plain: " + name, scratch), "<b>Plain planes</b>");
+  html += figure(image(cropped(shown_radiance(worst->compressed), crop), "Compressed: " + name, scratch),
+                 "<b>Compressed</b>");
+  html += figure(image(cropped(shown_difference(worst->compressed, worst->asset, compressed_gain), crop),
+                       "Difference of the compressed: " + name, scratch),
+                 fmt::format("<b>Difference × {:g}</b> · RMS {} · relative L² {} · largest {}", compressed_gain,
+                             rounded(worst->compressed_difference.root_mean_square, 3),
+                             metric_value("relative_l2", worst->compressed_difference.relative_l2),
+                             rounded(worst->compressed_difference.largest, 3)));
+  html +=
+      "</div>\n<h3>What was tried</h3>\n<p class=note>Each way as coarse as its error allows; sizes but that of the "
+      "chosen one by a quick look, some percent too high.</p>\n";
+  return html + tradeoff_plot(tradeoff) + "<details><summary>As a table</summary>\n" + tradeoff_table(tradeoff) +
+         "</details></section>\n";
+}
+
 /// Which texels found their point of the high mesh in which way, and which colour stands for it.
 std::string match_figure(const fs::path& file, const fs::path& scratch) {
   std::string legend;
@@ -256,7 +292,8 @@ std::string page_html(const AssetFolder& asset, const Report& report, const Json
          "content='width=device-width, initial-scale=1'>\n<title>" +
          escaped(asset.name) + " · Kiln report</title>\n<style>\n" + page_style() +
          "</style>\n</head>\n<body><main>\n" + header(asset, report, metrics) +
-         relit_section(asset, report, metrics, scratch) + budgets_section(report) + textures_section(asset, scratch) +
+         relit_section(asset, report, metrics, scratch) + budgets_section(report) +
+         compression_section(asset, report, scratch) + textures_section(asset, scratch) +
          coefficients_section(asset, scratch) + verification_section(asset) + stages_section(metrics) +
          footer(metrics) + "</main></body>\n</html>\n";
 }

@@ -16,24 +16,22 @@ struct StageColour {
   const char* colour;
 };
 constexpr std::array stage_colours = {StageColour{"simplify", "#7a5c3e"}, StageColour{"atlas", "#5f6b3a"},
-                                      StageColour{"normals", "#3f6b6b"}, StageColour{"bake", "#8c4a2f"},
-                                      StageColour{"report", "#5a5568"}};
-
-std::string last_part(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+                                      StageColour{"normals", "#3f6b6b"},  StageColour{"bake", "#8c4a2f"},
+                                      StageColour{"compress", "#7d4a66"}, StageColour{"report", "#5a5568"}};
 
 std::string row(const std::string& label, const std::string& value) {
   return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", escaped(label), value);
 }
 
-/// The rows of one object; an inner object's as "outer: inner", where they are not zero.
-std::string metric_rows(const Json& metrics) {
+/// The rows of a stage's metrics; an inner object's as "outer: inner", where they are not zero.
+std::string metric_rows(const std::string& stage, const Json& metrics) {
   std::string html;
   for (const auto& [key, value] : metrics.items()) {
     if (key == "stage" || key == "version" || key == "settings" || key == "inputs" || key == "seconds" ||
-        key == "verification" || value.is_array())
+        key == "verification" || key == "plain" || key == "chosen" || value.is_array())
       continue;
     if (!value.is_object()) {
-      html += row(metric_label(key), metric_value(key, value));
+      html += row(metric_label(stage + "." + key), metric_value(key, value));
       continue;
     }
     for (const auto& [inner_key, inner] : value.items())
@@ -71,7 +69,7 @@ std::string budgets_section(const Report& report) {
       "<table><thead><tr><th>Metric<th><th class=number>Value<th "
       "class=number>Limit<th>Used<th>Verdict</thead><tbody>\n";
   for (const BudgetVerdict& verdict : report.budgets) {
-    const std::string key = last_part(verdict.budget.metric);
+    const std::string& key = verdict.budget.metric;
     const char* tone = verdict.met ? "good" : "bad";
     html += fmt::format(
         "<tr><td><code>{}</code><td class=note>{}<td class=number>{}<td class=number>{} {}<td><div class='meter {}'><i "
@@ -106,8 +104,10 @@ std::string verification_section(const AssetFolder& asset) {
 std::string stages_section(const Json& metrics) {
   std::string bar, cards;
   double total = 0;
-  for (const StageColour& stage : stage_colours) total += metrics.at(stage.stage).at("seconds").get<double>();
+  for (const StageColour& stage : stage_colours)
+    if (metrics.contains(stage.stage)) total += metrics.at(stage.stage).at("seconds").get<double>();
   for (const auto& [stage, colour] : stage_colours) {
+    if (!metrics.contains(stage)) continue;  // compress is on request
     const Json& result = metrics.at(stage);
     const double seconds = result.at("seconds").get<double>();
     const std::string time = metric_value("seconds", result.at("seconds"));
@@ -119,7 +119,7 @@ std::string stages_section(const Json& metrics) {
         "<div class=card><h3><i style='background:{}'></i>{}<span>{}</span></h3>\n<dl "
         "class=rows>\n{}</dl>\n<details><summary>Settings</summary><dl "
         "class=rows>\n{}</dl></details></div>\n",
-        colour, stage, time, metric_rows(result), settings_rows(result.value("settings", Json::object())));
+        colour, stage, time, metric_rows(stage, result), settings_rows(result.value("settings", Json::object())));
   }
   return "<section><h2>Stages</h2>\n<p class=note>Each stage's own work, without reading and writing files, and what "
          "it measured on what it "

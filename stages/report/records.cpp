@@ -21,15 +21,23 @@ Json load_json(const fs::path& file, const std::string& stage) {
   return json;
 }
 
+StageRecord load_record(const fs::path& file, const std::string& stage) {
+  Json json = load_json(file, stage);
+  if (json.value("stage", Json()) != stage || !json.value("seconds", Json()).is_number())
+    throw BadInput(file.string(), "has no stage and seconds", "the record of kiln-" + stage,
+                   "run kiln-" + stage + " again");
+  return {stage, file, std::move(json)};
+}
+
 }  // namespace
 
-const Json& AssetFolder::record(const std::string& stage) const {
+const StageRecord& AssetFolder::stage_record(const std::string& stage) const {
   for (const StageRecord& record : records)
-    if (record.stage == stage) return record.json;
+    if (record.stage == stage) return record;
   throw std::logic_error("no record of stage " + stage);
 }
 
-AssetFolder load_asset_folder(const fs::path& folder) {
+AssetFolder load_asset_folder(const fs::path& folder, const fs::path& compressed) {
   if (!fs::is_directory(folder))
     throw BadInput(folder.string(), "is not a folder", "the folder of a baked asset", "run kiln build");
   AssetFolder asset;
@@ -38,13 +46,10 @@ AssetFolder load_asset_folder(const fs::path& folder) {
   const fs::path whole = fs::weakly_canonical(folder);
   asset.name = (whole.filename().empty() ? whole.parent_path() : whole).filename().string();
   for (const auto& [stage, file] : {std::pair("simplify", "simplify.json"), std::pair("atlas", "atlas.json"),
-                                    std::pair("normals", "normals/normals.json"), std::pair("bake", "prt/bake.json")}) {
-    Json json = load_json(folder / file, stage);
-    if (json.value("stage", Json()) != stage || !json.value("seconds", Json()).is_number())
-      throw BadInput((folder / file).string(), "has no stage and seconds", std::string("the record of kiln-") + stage,
-                     std::string("run kiln-") + stage + " again");
-    asset.records.push_back({stage, folder / file, std::move(json)});
-  }
+                                    std::pair("normals", "normals/normals.json"), std::pair("bake", "prt/bake.json")})
+    asset.records.push_back(load_record(folder / file, stage));
+  asset.compressed = compressed;
+  if (!compressed.empty()) asset.records.push_back(load_record(compressed / "compress.json", "compress"));
 
   const fs::path ranges_file = asset.prt() / "ranges.json";
   const Json ranges = load_json(ranges_file, "bake");

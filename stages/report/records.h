@@ -28,18 +28,21 @@ struct CoefficientPlane {
 struct AssetFolder {
   std::filesystem::path folder;
   std::string name;                  ///< of the asset: the folder's
-  std::vector<StageRecord> records;  ///< simplify, atlas, normals, bake
+  std::vector<StageRecord> records;  ///< simplify, atlas, normals, bake; compress where there is `compressed`
   int bands = 0;
   int channels = 0;
   int bits = 0;
   std::vector<CoefficientPlane> planes;
+  std::filesystem::path compressed;  ///< what kiln-compress made of it; empty: nothing
 
   std::filesystem::path prt() const { return folder / "prt"; }
-  const Json& record(const std::string& stage) const;
+  const StageRecord& stage_record(const std::string& stage) const;
+  const Json& record(const std::string& stage) const { return stage_record(stage).json; }
 };
 
-/// Reads the stages' records and ranges.json. Throws BadInput where one is missing or is not what its stage writes.
-AssetFolder load_asset_folder(const std::filesystem::path& folder);
+/// Reads the stages' records and ranges.json, and the record in `compressed`, an output folder of kiln-compress, unless
+/// that is empty. Throws BadInput where one is missing or is not what its stage writes.
+AssetFolder load_asset_folder(const std::filesystem::path& folder, const std::filesystem::path& compressed = {});
 
 /// The high mesh that the simplification started from, as its record names it. Throws BadInput where that is no longer
 /// there.

@@ -13,28 +13,36 @@ std::size_t Report::missed_budgets() const {
 
 Json Report::to_json() const {
   Json lights = Json::array();
-  double relative_l2 = 0, root_mean_square = 0;
+  double relative_l2 = 0, root_mean_square = 0, compressed_relative_l2 = 0;
+  bool is_compressed = false;
   for (const LightComparison& light : comparison.lights) {
     lights.push_back({{"light", light.light},
                       {"relative_l2", light.difference.relative_l2},
                       {"root_mean_square", light.difference.root_mean_square},
                       {"largest", light.difference.largest}});
     relative_l2 = std::max(relative_l2, light.difference.relative_l2);
+    if (light.compressed.width() > 0) {
+      is_compressed = true;
+      lights.back()["compressed_relative_l2"] = light.compressed_difference.relative_l2;
+      compressed_relative_l2 = std::max(compressed_relative_l2, light.compressed_difference.relative_l2);
+    }
     root_mean_square = std::max(root_mean_square, light.difference.root_mean_square);
   }
   Json verdicts = Json::array();
   for (const BudgetVerdict& verdict : budgets) verdicts.push_back(kiln::to_json(verdict));
-  return {{"relative_l2", relative_l2},
-          {"root_mean_square", root_mean_square},
-          {"silhouette_difference", comparison.silhouette_difference},
-          {"compared_pixels", comparison.compared_pixels},
-          {"renderer", comparison.renderer},
-          {"software_renderer", comparison.software_renderer},
-          {"render_seconds", comparison.render_seconds},
-          {"reference_seconds", comparison.reference_seconds},
-          {"lights", lights},
-          {"budgets", verdicts},
-          {"budgets_missed", missed_budgets()}};
+  Json json = {{"relative_l2", relative_l2},
+               {"root_mean_square", root_mean_square},
+               {"silhouette_difference", comparison.silhouette_difference},
+               {"compared_pixels", comparison.compared_pixels},
+               {"renderer", comparison.renderer},
+               {"software_renderer", comparison.software_renderer},
+               {"render_seconds", comparison.render_seconds},
+               {"reference_seconds", comparison.reference_seconds},
+               {"lights", lights},
+               {"budgets", verdicts},
+               {"budgets_missed", missed_budgets()}};
+  if (is_compressed) json["compressed_relative_l2"] = compressed_relative_l2;
+  return json;
 }
 
 Json all_metrics(const AssetFolder& asset, const Json& report_result) {

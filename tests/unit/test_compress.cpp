@@ -300,6 +300,30 @@ TEST(Compress, MoreErrorNeverCostsMore) {
   }
 }
 
+TEST(Compress, ShowsWhatMoreErrorWouldSave) {
+  const PrtAsset asset = make_asset(64, 64, 3, 1, noise(9));  // of 16 bits
+  CompressSettings settings;
+  settings.clusters = 1;
+  settings.max_error = "0.003";
+  const CompressResult result = compress(asset, settings);
+  EXPECT_NEAR(result.plain.error, relighting_error(with_eight_bits(asset), TransferSource(asset)),
+              1e-6 * result.plain.error);
+  const PrincipalComponents all = principal_components(TransferSource(asset));
+  int beyond = 0;
+  for (const CompressCandidate& candidate : result.tried) {
+    EXPECT_EQ(candidate.feasible, candidate.error <= 0.003);
+    if (candidate.feasible) continue;
+    ++beyond;
+    EXPECT_LT(candidate.bytes, result.chosen.bytes);
+    // What the model leaves, and at most a quarter more for rounding.
+    const double left =
+        std::sqrt(all.residual[static_cast<std::size_t>(candidate.components)] / TransferSource(asset).squared_norm());
+    EXPECT_GE(candidate.error, left);
+    EXPECT_LE(candidate.error, 1.25 * left);
+  }
+  EXPECT_GE(beyond, 1);
+}
+
 TEST(Compress, GivesTheSameFilesWithAnyThreads) {
   const PrtAsset asset = make_asset(128, 100, 2, 3, noise(12));
   CompressSettings settings;

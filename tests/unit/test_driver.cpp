@@ -104,7 +104,51 @@ TEST(Pipeline, BakeMakesOnePlanePerCoefficient) {
   EXPECT_EQ(std::find(outputs.begin(), outputs.end(), "made/second/prt/coeff_0_16.png"), outputs.end());
 }
 
+bool passes(const std::vector<MakeRule>& rules, const std::string& asset, const std::string& stage) {
+  return std::any_of(rules.begin(), rules.end(),
+                     [&](const MakeRule& rule) { return rule.asset == asset && rule.run.name == stage; });
+}
+
+bool contains(const std::vector<fs::path>& paths, const char* path) {
+  return std::find(paths.begin(), paths.end(), path) != paths.end();
+}
+
+TEST(Pipeline, CompressesOnRequest) {
+  EXPECT_FALSE(passes(make_rules(pipeline_of(two_assets)), "first", "compress"));
+  const Pipeline pipeline = pipeline_of(R"(
+defaults:
+  compress: {max-error: 0.01}
+budgets:
+  compress.error: {max: 0.01}
+assets:
+  small: {mesh: a.obj}
+  smaller: {mesh: a.obj, compress: {clusters: 64}}
+  plain: {mesh: a.obj, compress: false}
+)");
+  const std::vector<MakeRule> rules = make_rules(pipeline);
+  // Between the bake, whose record it waits for, and the report, which is told of it.
+  const StageRun& compress = run_of(rules, "smaller", "compress");
+  EXPECT_EQ(compress.command, (std::vector<std::string>{"kiln-compress", "out/smaller/prt/", "-o", "out/smaller/small/",
+                                                        "--max-error", "0.01", "--clusters", "64"}));
+  EXPECT_TRUE(contains(compress.inputs, "out/smaller/prt/bake.json"));
+  const StageRun& report = run_of(rules, "smaller", "report");
+  EXPECT_TRUE(contains(report.inputs, "out/smaller/small/compress.json"));
+  EXPECT_EQ(value_after(report.command, "--compressed"), "out/smaller/small/");
+  EXPECT_EQ(value_after(run_of(rules, "small", "compress").command, "--clusters"), "");
+  // An asset that does without is not held to a budget for all.
+  EXPECT_FALSE(passes(rules, "plain", "compress"));
+  EXPECT_EQ(value_after(run_of(rules, "plain", "report").command, "--compressed"), "");
+  EXPECT_EQ(pipeline.assets[0].budgets, std::vector<std::string>{"compress.error<=0.01"});
+  EXPECT_TRUE(pipeline.assets[2].budgets.empty());
+  EXPECT_TRUE(passes(make_rules(pipeline_of("assets:\n  a: {mesh: x.obj, compress: true}\n")), "a", "compress"));
+}
+
 TEST(Pipeline, RefusalsNameTheLine) {
+  EXPECT_NE(refusal("assets:\n  a:\n    mesh: x.obj\n    compress: much\n").find("pipeline.yaml:4: 'much'"),
+            std::string::npos);
+  EXPECT_NE(refusal("assets:\n  a:\n    mesh: x.obj\n    budgets:\n      compress.error: {max: 1}\n")
+                .find("pipeline.yaml:5: a budget for 'compress.error', and no compress of asset 'a'"),
+            std::string::npos);
   EXPECT_NE(refusal("assets:\n  a:\n    mesh: x.obj\n    bake: {directions: -3}\n")
                 .find("pipeline.yaml:4: '-3' for directions of bake"),
             std::string::npos);

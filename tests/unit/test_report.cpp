@@ -11,6 +11,7 @@
 #include "report/pictures.h"
 #include "report/reference.h"
 #include "report/report_settings.h"
+#include "report/tradeoff.h"
 #include "sh/directions.h"
 
 namespace kiln {
@@ -146,6 +147,68 @@ TEST(Labels, Numbers) {
   EXPECT_EQ(metric_value("anything", nullptr), "not finite");
   EXPECT_EQ(escaped("<a href=\"x\">&"), "&lt;a href=&quot;x&quot;&gt;&amp;");
   EXPECT_EQ(light_label("-60,20"), "Directional, azimuth −60°, elevation 20°");
+}
+
+StageRecord compress_record() {
+  const auto way = [](const char* scheme, int clusters, int components, double error, int bytes, bool feasible) {
+    return Json{{"scheme", scheme}, {"clusters", clusters}, {"components", components}, {"lookups", 2},
+                {"error", error},   {"bytes", bytes},       {"feasible", feasible}};
+  };
+  Json json = {{"texels", 100}, {"target_error", 0.01}};
+  json["plain"] = way("planes", 1, 25, 0.001, 10000, true);
+  json["chosen"] = way("clustered-pca", 256, 4, 0.01, 1000, true);
+  // The input's own planes have no error, and no place on a logarithmic axis.
+  json["candidates"] = {way("planes", 1, 25, 0, 10000, true), way("clustered-pca", 256, 4, 0.01, 1100, true),
+                        way("pca", 1, 8, 0.1, 100, false)};
+  return {"compress", "small/compress.json", json};
+}
+
+/// The number behind `name` in the first element after `mark`.
+double attribute(const std::string& svg, const std::string& mark, const std::string& name) {
+  const std::size_t element = svg.find(mark), place = svg.find(name + "='", element);
+  return element == std::string::npos || place == std::string::npos ? std::nan("")
+                                                                    : std::stod(svg.substr(place + name.size() + 2));
+}
+
+TEST(Tradeoff, EqualFactorsAreEqualDistances) {
+  const std::string svg = tradeoff_plot(read_tradeoff(compress_record()));
+  // Plain, chosen and the basis of 8 components: ten times the error and a tenth of the bytes each. Marks are placed by
+  // a corner (path, rect) or their centre (circle).
+  const std::size_t diamond = svg.find("<path class='planes ");
+  ASSERT_NE(diamond, std::string::npos);
+  double plain_x = 0, plain_y = 0;
+  ASSERT_EQ(std::sscanf(svg.c_str() + svg.find(" d='M", diamond) + 5, "%lf %lf", &plain_x, &plain_y), 2);
+  plain_y += 7;  // 1.4 half widths of 5
+  const std::string chosen = "<rect class='several chosen'";
+  const double chosen_x = attribute(svg, chosen, "x") + 7.5, chosen_y = attribute(svg, chosen, "y") + 7.5;
+  const double last_x = attribute(svg, "<circle class='one beyond'", "cx"),
+               last_y = attribute(svg, "<circle class='one beyond'", "cy");
+  EXPECT_GT(chosen_x, plain_x + 100);
+  EXPECT_GT(chosen_y, plain_y + 50);                         // downwards: fewer bytes
+  EXPECT_NEAR(chosen_x - plain_x, last_x - chosen_x, 0.21);  // coordinates have one decimal
+  EXPECT_NEAR(chosen_y - plain_y, last_y - chosen_y, 0.21);
+  // The chosen one is drawn once, with its files' bytes; the input's own planes are not.
+  EXPECT_EQ(svg.find("<rect class='several '", svg.find("<rect class='several '") + 1), std::string::npos);
+  EXPECT_NE(svg.find("256 clusters, 4 components: 10.0 bytes per covered texel, error 1.00 %"), std::string::npos);
+  EXPECT_EQ(svg.find("error 0 %"), std::string::npos);
+}
+
+TEST(Tradeoff, RefusesOtherRecords) {
+  StageRecord record = compress_record();
+  record.json["candidates"][1].erase("bytes");
+  EXPECT_THROW(read_tradeoff(record), BadInput);
+  record = compress_record();
+  record.json["texels"] = 0;
+  EXPECT_THROW(read_tradeoff(record), BadInput);
+  record.json = Json::object();
+  EXPECT_THROW(read_tradeoff(record), BadInput);
+}
+
+TEST(Labels, AStageMayStandBeforeTheKey) {
+  EXPECT_EQ(metric_label("simplify.hausdorff"), metric_label("hausdorff"));
+  EXPECT_NE(metric_label("compress.error"), metric_label("bake.verification.error"));
+  EXPECT_EQ(metric_label("atlas.some_thing"), "some thing");
+  EXPECT_EQ(metric_value("compress.error", 0.01), "1.00&#8239;%");
 }
 
 TEST(ReportSettings, LightsAreCutAtSemicolons) {

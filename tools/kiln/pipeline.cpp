@@ -25,7 +25,11 @@ struct Setting {
   std::string text;
   int line = 0;
 };
-using Settings = std::map<Stage, std::map<std::string, Setting>>;
+struct StageBlock {
+  std::map<std::string, Setting> settings;
+  bool on = true;  ///< of a stage on request
+};
+using Settings = std::map<Stage, StageBlock>;
 
 /// Lowest and highest by metric.
 struct Limits {
@@ -113,9 +117,19 @@ class Reader {
   /// The blocks of `map` that are named after stages.
   Settings settings(const YAML::Node& map) const {
     Settings result;
-    for (const Stage stage : all_stages)
-      if (const YAML::Node block = map[stage_name(stage)]; block && !block.IsNull())
-        result[stage] = stage_settings(stage, block);
+    for (const Stage stage : all_stages) {
+      const YAML::Node block = map[stage_name(stage)];
+      if (!block.IsDefined()) continue;
+      const bool is_switch = is_on_request(stage) && block.IsScalar();
+      require(!is_switch || block.Scalar() == "true" || block.Scalar() == "false", block,
+              is_switch ? fmt::format("'{}'", block.Scalar()) : "",
+              fmt::format("true, false or settings of {}", stage_name(stage)));
+      StageBlock& entry = result[stage];
+      if (is_switch)
+        entry.on = block.Scalar() == "true";
+      else if (!block.IsNull())
+        entry.settings = stage_settings(stage, block);
+    }
     return result;
   }
 
@@ -216,16 +230,31 @@ class Reader {
     // An asset's own settings replace the defaults, and rule out the defaults that rival them.
     const Settings own = settings(body);
     for (const Stage stage : all_stages) {
-      StageSettings& merged = result.settings[stage];
-      if (const auto block = defaults.find(stage); block != defaults.end())
-        for (const auto& [name, setting] : block->second) merged[name] = setting.text;
-      if (const auto block = own.find(stage); block != own.end())
-        for (const auto& [name, setting] : block->second) {
+      bool passes = !is_on_request(stage);
+      StageSettings merged;
+      if (const auto block = defaults.find(stage); block != defaults.end()) {
+        passes |= block->second.on;
+        for (const auto& [name, setting] : block->second.settings) merged[name] = setting.text;
+      }
+      if (const auto block = own.find(stage); block != own.end()) {
+        if (is_on_request(stage)) passes = block->second.on;
+        for (const auto& [name, setting] : block->second.settings) {
           merged.erase(rival_of(stage, name));
           merged[name] = setting.text;
         }
+      }
+      if (passes) result.settings[stage] = std::move(merged);
     }
+    // Budgets for all assets leave those out that do not pass their stage.
+    for (const Stage stage : all_stages)
+      if (!result.settings.contains(stage))
+        std::erase_if(budgets, [&](const auto& budget) { return budget.first.starts_with(stage_name(stage) + "."); });
     if (const YAML::Node block = body["budgets"]) add_budgets(block, budgets);
+    for (const Stage stage : all_stages)
+      for (const auto& [metric, limits] : budgets)
+        require(result.settings.contains(stage) || !metric.starts_with(stage_name(stage) + "."), body["budgets"],
+                fmt::format("a budget for '{}', and no {} of asset '{}'", metric, stage_name(stage), result.name),
+                fmt::format("'{}: true' or its settings beside it", stage_name(stage)));
     for (const auto& [metric, limits] : budgets) {
       if (!limits.lowest.empty()) result.budgets.push_back(metric + ">=" + limits.lowest);
       if (!limits.highest.empty()) result.budgets.push_back(metric + "<=" + limits.highest);

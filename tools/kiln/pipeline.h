@@ -16,9 +16,9 @@ struct Asset {
   std::filesystem::path mesh;     ///< a mesh file; empty: `member` of `archive`
   std::filesystem::path archive;  ///< a tar file, compressed or not
   std::string member;
-  bool on_request = false;  ///< built only when named
-  std::map<Stage, StageSettings> settings;
-  std::vector<std::string> budgets;  ///< "simplify.hausdorff<=0.012"
+  bool on_request = false;                  ///< built only when named
+  std::map<Stage, StageSettings> settings;  ///< a stage on request is in here where the asset passes it
+  std::vector<std::string> budgets;         ///< "simplify.hausdorff<=0.012"
 };
 
 struct Pipeline {

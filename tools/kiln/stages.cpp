@@ -4,6 +4,7 @@
 
 #include "atlas/atlas_settings.h"
 #include "bake/bake_settings.h"
+#include "compress/compress_settings.h"
 #include "normals/normals_settings.h"
 #include "report/report_settings.h"
 #include "simplify/simplify_settings.h"
@@ -43,6 +44,8 @@ OptionSet bind(Stage stage, std::shared_ptr<void>& storage) {
       return bind(storage, normals_options);
     case Stage::bake:
       return bind(storage, bake_options);
+    case Stage::compress:
+      return bind(storage, compress_options);
     case Stage::report:
       return bind(storage, report_options);
   }
@@ -88,11 +91,15 @@ std::string stage_name(Stage stage) {
       return "normals";
     case Stage::bake:
       return "bake";
+    case Stage::compress:
+      return "compress";
     case Stage::report:
       return "report";
   }
   return "";
 }
+
+bool is_on_request(Stage stage) { return stage == Stage::compress; }
 
 StageOptions::StageOptions(Stage stage) : options_(bind(stage, storage_)) {}
 
@@ -151,9 +158,25 @@ std::vector<StageRun> stage_runs(const AssetPlan& plan) {
                 {"kiln-render"},
                 {plan.mesh, simplify_record, atlas_record, normals_record, bake_record},
                 {folder / "report.json", report, folder / "metrics.json"}};
+  std::vector<StageRun> runs = {simplify, cut, match, bake};
+  if (plan.settings.contains(Stage::compress)) {
+    const fs::path small = folder / "small", compress_record = small / "compress.json";
+    const std::string small_folder = small.string() + "/";
+    // What else it writes is its own choice: planes, or weights with pca.json.
+    StageRun compress{"compress",
+                      {"kiln-compress", prt_folder, "-o", small_folder},
+                      {},
+                      {bake_record},
+                      {compress_record, small / "atlas.drc", small / "normal.png"}};
+    append_settings(compress.command, plan, Stage::compress);
+    runs.push_back(compress);
+    tell.command.insert(tell.command.end(), {"--compressed", small_folder});
+    tell.inputs.push_back(compress_record);
+  }
   append_settings(tell.command, plan, Stage::report);
   for (const std::string& budget : plan.budgets) tell.command.insert(tell.command.end(), {"--budget", budget});
-  return {simplify, cut, match, bake, tell};
+  runs.push_back(tell);
+  return runs;
 }
 
 }  // namespace kiln

@@ -10,10 +10,14 @@
 
 namespace kiln {
 
-/// The stages that every asset passes, in this order.
-enum class Stage { simplify, atlas, normals, bake, report };
+/// The stages that an asset passes, in this order.
+enum class Stage { simplify, atlas, normals, bake, compress, report };
 
-inline constexpr Stage all_stages[] = {Stage::simplify, Stage::atlas, Stage::normals, Stage::bake, Stage::report};
+inline constexpr Stage all_stages[] = {Stage::simplify, Stage::atlas,    Stage::normals,
+                                       Stage::bake,     Stage::compress, Stage::report};
+
+/// Whether an asset passes the stage only where pipeline.yaml has a block for it.
+bool is_on_request(Stage stage);
 
 /// As pipeline.yaml and the executables call it.
 std::string stage_name(Stage stage);
@@ -48,13 +52,13 @@ struct StageRun {
 
 /// What one asset is made of and how.
 struct AssetPlan {
-  std::filesystem::path mesh;    ///< the high mesh
-  std::filesystem::path folder;  ///< the asset's, in the output folder
-  std::map<Stage, StageSettings> settings;
-  std::vector<std::string> budgets;  ///< as kiln-report takes them: "simplify.hausdorff<=0.012"
+  std::filesystem::path mesh;               ///< the high mesh
+  std::filesystem::path folder;             ///< the asset's, in the output folder
+  std::map<Stage, StageSettings> settings;  ///< a stage on request runs where it is in here
+  std::vector<std::string> budgets;         ///< as kiln-report takes them: "simplify.hausdorff<=0.012"
 };
 
-/// The runs of all stages, in order.
+/// The runs of the stages, in order.
 std::vector<StageRun> stage_runs(const AssetPlan& plan);
 
 }  // namespace kiln
