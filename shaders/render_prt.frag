@@ -1,13 +1,16 @@
-#ifdef CLUSTERED
-#include "common_prt_pca.glsl"
-#else
+// Textured PRT, plain or compressed.
 #include "common_prt.glsl"
-#endif
+#include "render_albedo.glsl"
+#include "render_contributions.glsl"
 
 in vec2 surface_uv;
+in vec4 surface_contributions_low;
+in vec4 surface_contributions_high;
 
 layout(location = 0) out vec4 radiance_and_coverage;
 
 void main() {
-  radiance_and_coverage = vec4(prt_exit_radiance(surface_uv), 1.0);
+  float contributions[PRT_SAMPLES];
+  unpack_contributions(surface_contributions_low, surface_contributions_high, contributions);
+  radiance_and_coverage = vec4(surface_albedo(surface_uv) * prt_exit_radiance(surface_uv, contributions), 1.0);
 }

@@ -1,32 +1,37 @@
 #include "relight/render_settings.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/errors.h"
-#include "relight/environment.h"
+#include "base/numbers.h"
 
 namespace kiln {
-
-OptionSet light_options(LightSettings& settings) {
-  OptionSet options;
-  options.text("ambient", settings.ambient, "Radiance from everywhere (a furnace): one number or R,G,B")
-      .number("environment-rotation", settings.environment_rotation_degrees, -360, 360,
-              "Turns the environment about +Y, degrees: what was at azimuth a comes to a + this")
-      .choice("window", settings.window,
-              {{"hann", LightWindow::hann},
-               {"lanczos", LightWindow::lanczos},
-               {"dering", LightWindow::dering},
-               {"none", LightWindow::none}},
-              "Weights the bands of all lights, which tames ringing and blurs a little; ambient light stays as it is. "
-              "dering is the weakest that leaves no negative light");
-  return options;
-}
 
 OptionSet render_options(RenderSettings& settings) {
   OptionSet options;
   options
+      .choice("technique", settings.technique,
+              {{"auto", TechniqueChoice::automatic},
+               {"phong", TechniqueChoice::phong},
+               {"normal-map", TechniqueChoice::normal_map},
+               {"vertex-prt", TechniqueChoice::vertex_prt},
+               {"textured-prt", TechniqueChoice::textured_prt},
+               {"compressed", TechniqueChoice::compressed},
+               {"all", TechniqueChoice::all}},
+              "How to shade; auto is what the asset was made for, all a sheet of every technique it can be drawn by")
+      .integer_or_auto("incident-samples", settings.incident_samples, 1, most_incident_samples,
+                       "Points around each asset at which the incident light is computed; auto: 6 if a light is a "
+                       "sphere, else 1")
+      .choice("shading", settings.shading, {{"forward", Shading::forward}, {"deferred", Shading::deferred}},
+              "deferred lights only what is visible, after all is drawn: faster where many surfaces lie behind one "
+              "another")
+      .number("specular", settings.specular, 0, 1, "Reflectance of the highlight of phong and normal-map")
+      .number("shininess", settings.shininess, 1, 10000, "Power of its cosine")
       .text("camera", settings.camera, "Where the camera stands: AZIMUTH,ELEVATION in degrees (0,0 is +Z; 90,0 is +X)")
       .number("field-of-view", settings.field_of_view_degrees, 1, 120, "Of the camera, vertical, degrees")
+      .integer("frames", settings.frames, 1, 3600,
+               "More than 1: a turntable of so many pictures, NAME_000.png and so on, the camera once around")
       .integer("width", settings.width, 1, 8192, "Of the picture, pixels")
       .integer("height", settings.height, 1, 8192, "Of the picture, pixels")
       .integer("supersample", settings.supersample, 1, 8,
@@ -41,38 +46,36 @@ OptionSet render_options(RenderSettings& settings) {
   return options;
 }
 
-std::vector<LightSpec> light_specs(const LightSettings& settings) {
-  std::vector<LightSpec> specs;
-  for (const std::string& text : settings.lights) specs.push_back(parse_light_spec(text));
-  if (settings.ambient != "none")
-    specs.push_back({.kind = LightSpec::Kind::ambient, .colour = parse_colour("ambient", settings.ambient, 0, 1e6)});
-  if (specs.empty() && settings.environment.empty()) specs.emplace_back();
-  return specs;
-}
-
-LightCoefficients all_lights(const LightSettings& settings, int bands) {
-  LightCoefficients light = light_coefficients(light_specs(settings), bands, LightWindow::none);
-  if (!settings.environment.empty())
-    light = add_lights(light, load_environment(settings.environment, bands, settings.environment_rotation_degrees));
-  apply_window(light, settings.window);
-  return light;
-}
-
-PrtView view_of(const RenderSettings& settings, const BoundingBox& box) {
+std::vector<SceneView> views_of(const RenderSettings& settings, const BoundingBox& box) {
   const std::vector<double> angles = parse_numbers("camera", settings.camera, -360, 360);
   if (angles.size() != 2 || std::abs(angles[1]) > 90)
     throw WrongUsage("camera: found '" + settings.camera + "'; expected AZIMUTH,ELEVATION, an elevation of -90 to 90");
-  CameraSettings camera;
-  camera.azimuth_degrees = angles[0];
-  camera.elevation_degrees = angles[1];
-  camera.field_of_view_degrees = settings.field_of_view_degrees;
-  PrtView view;
-  view.camera = make_camera(box, camera, settings.width, settings.height);
+  SceneView view;
   view.width = settings.width;
   view.height = settings.height;
   view.supersample = settings.supersample;
-  view.albedo = parse_colour("albedo", settings.albedo, 0, 1);
-  return view;
+  view.look.albedo = parse_colour("albedo", settings.albedo, 0, 1);
+  view.look.specular = static_cast<float>(settings.specular);
+  view.look.shininess = static_cast<float>(settings.shininess);
+  view.shading = settings.shading;
+  CameraSettings camera;
+  camera.elevation_degrees = angles[1];
+  camera.field_of_view_degrees = settings.field_of_view_degrees;
+  std::vector<SceneView> views;
+  // Twice, so that the frame that needs the most distance sets that of all.
+  for (int pass = settings.frames > 1 ? 0 : 1; pass < 2; ++pass) {
+    views.clear();
+    for (int frame = 0; frame < settings.frames; ++frame) {
+      camera.azimuth_degrees = angles[0] + 360.0 * frame / settings.frames;
+      view.camera = make_camera(box, camera, settings.width, settings.height);
+      views.push_back(view);
+    }
+    for (const SceneView& each : views)
+      if (settings.frames > 1)
+        camera.least_distance =
+            std::max(camera.least_distance, static_cast<double>((each.camera.position - box.centre()).norm()));
+  }
+  return views;
 }
 
 PictureSettings picture_of(const RenderSettings& settings) {
@@ -81,6 +84,28 @@ PictureSettings picture_of(const RenderSettings& settings) {
   picture.tone = settings.tone;
   if (settings.background != "none") picture.background = parse_colour("background", settings.background, 0, 1e6);
   return picture;
+}
+
+Technique technique_of(const RenderSettings& settings, const PrtAsset& asset) {
+  switch (settings.technique) {
+    case TechniqueChoice::phong:
+      return Technique::phong;
+    case TechniqueChoice::normal_map:
+      return Technique::normal_map;
+    case TechniqueChoice::vertex_prt:
+      return Technique::vertex_prt;
+    case TechniqueChoice::textured_prt:
+      return Technique::textured_prt;
+    case TechniqueChoice::compressed:
+      return Technique::compressed;
+    default:
+      return natural_technique(asset);
+  }
+}
+
+int incident_samples_of(const RenderSettings& settings, bool local_lights) {
+  constexpr int extremes = 6;  // of x, y and z, as in Chapter 2010, 4.3.3
+  return settings.incident_samples > 0 ? settings.incident_samples : local_lights ? extremes : 1;
 }
 
 }  // namespace kiln

@@ -1,32 +1,29 @@
 #pragma once
 
-#include <array>
-#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "asset/prt_asset.h"
 #include "base/options.h"
 #include "mesh/camera.h"
-#include "relight/picture.h"
-#include "relight/prt_renderer.h"
-#include "sh/light_spec.h"
-#include "sh/lights.h"
+#include "relight/draw/scene_renderer.h"
+#include "relight/output/picture.h"
 
 namespace kiln {
 
-/// The lights of a picture; they add up.
-struct LightSettings {
-  std::vector<std::string> lights;          ///< as parse_light_spec takes them; "45,30" where there is no light at all
-  std::string ambient = "none";             ///< radiance from everywhere, one number or R,G,B
-  std::filesystem::path environment;        ///< latitude-longitude EXR or HDR; empty: none
-  double environment_rotation_degrees = 0;  ///< about +Y
-  LightWindow window = LightWindow::hann;
-};
+/// Which technique a picture is drawn by.
+enum class TechniqueChoice { automatic, phong, normal_map, vertex_prt, textured_prt, compressed, all };
 
-/// How an asset is drawn.
+/// How assets are drawn.
 struct RenderSettings {
+  TechniqueChoice technique = TechniqueChoice::automatic;
+  int incident_samples = 0;  ///< points of incident light around each asset; 0: 6 where a light is local, else 1
+  Shading shading = Shading::forward;
+  double specular = 0;  ///< of the Phong techniques: reflectance of the highlight
+  double shininess = 32;
   std::string camera = "20,12";  ///< azimuth and elevation, degrees
   double field_of_view_degrees = 30;
+  int frames = 1;              ///< of a turntable
   int width = 768;             ///< pixels
   int height = 768;            ///< pixels
   int supersample = 2;         ///< samples per pixel along each axis
@@ -37,19 +34,19 @@ struct RenderSettings {
   std::string gl_device = "auto";
 };
 
-OptionSet light_options(LightSettings& settings);
 OptionSet render_options(RenderSettings& settings);
 
-/// The light specifications of `settings`, without the environment. Throws WrongUsage.
-std::vector<LightSpec> light_specs(const LightSettings& settings);
-
-/// All lights of `settings`, windowed; three channels. Throws WrongUsage, BadInput.
-LightCoefficients all_lights(const LightSettings& settings, int bands);
-
-/// How to draw a mesh with that bounding box. Throws WrongUsage.
-PrtView view_of(const RenderSettings& settings, const BoundingBox& box);
+/// How to draw what that box holds, one view for each frame: the camera goes around +Y, always as far away. Throws
+/// WrongUsage.
+std::vector<SceneView> views_of(const RenderSettings& settings, const BoundingBox& box);
 
 /// How to show the radiance. Throws WrongUsage.
 PictureSettings picture_of(const RenderSettings& settings);
+
+/// The one technique that was asked for, of an asset; not of `all`.
+Technique technique_of(const RenderSettings& settings, const PrtAsset& asset);
+
+/// Incident-light sample points.
+int incident_samples_of(const RenderSettings& settings, bool local_lights);
 
 }  // namespace kiln

@@ -22,9 +22,8 @@
 #include "gpu/egl_context.h"
 #include "image/image_file.h"
 #include "mesh/draco_file.h"
-#include "relight/prt_renderer.h"
-#include "relight/relight.h"
-#include "relight/render_settings.h"
+#include "prt_folders.h"
+#include "relight/decode/plane_weights.h"
 #include "scratch.h"
 #include "sh/light_spec.h"
 #include "shapes.h"
@@ -433,9 +432,9 @@ TEST(PcaAsset, GpuAndCpuAgree) {
     render.height = 120;
     render.supersample = 1;
     render.camera = "10,60";
-    PrtView view = view_of(render, bounding_box(read.mesh));
-    view.albedo = albedo;
-    const Image<float> gpu = PrtRenderer(read).render(light, view);
+    SceneView view = views_of(render, bounding_box(read.mesh)).front();
+    view.look.albedo = albedo;
+    const Image<float> gpu = test::drawn(read, light, view);
     const Image<float> cpu = relight_texels(read, light, albedo);
 
     // Decoding first and lighting then gives the CPU's result as well.

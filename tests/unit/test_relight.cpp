@@ -21,10 +21,11 @@
 #include "mesh/camera.h"
 #include "mesh/draco_file.h"
 #include "mesh/uv_raster.h"
-#include "relight/environment.h"
-#include "relight/picture.h"
-#include "relight/prt_renderer.h"
-#include "relight/relight.h"
+#include "prt_folders.h"
+#include "relight/decode/plane_weights.h"
+#include "relight/light/environment.h"
+#include "relight/light/light_settings.h"
+#include "relight/output/picture.h"
 #include "relight/render_settings.h"
 #include "scratch.h"
 #include "sh/basis.h"
@@ -36,101 +37,8 @@ namespace kiln {
 namespace {
 
 namespace fs = std::filesystem;
+using namespace test;
 using nlohmann::json;
-
-/// A coefficient stack to be written; planes as in ranges.json, values in the planes' own units.
-struct Stack {
-  int width = 0, height = 0, bands = 1, channels = 1, bits = 8;
-  std::vector<Image<float>> planes;
-};
-
-template <class Texel>
-void write_plane(const fs::path& file, const Image<float>& plane, double lowest, double highest) {
-  const double white = std::numeric_limits<Texel>::max();
-  Image<Texel> stored(plane.width(), plane.height(), 1);
-  for (std::size_t k = 0; k < plane.values().size(); ++k)
-    stored.values()[k] =
-        highest > lowest ? static_cast<Texel>(std::lround((plane.values()[k] - lowest) / (highest - lowest) * white))
-                         : Texel{0};
-  write_png(file, stored);
-}
-
-/// Writes what kiln-bake would, by the contract.
-void write_asset(const fs::path& folder, const TriangleMesh& mesh, const Stack& stack) {
-  json planes = json::array();
-  for (std::size_t k = 0; k < stack.planes.size(); ++k) {
-    const int channel = static_cast<int>(k) / (stack.bands * stack.bands);
-    const int coefficient = static_cast<int>(k) % (stack.bands * stack.bands);
-    const std::string name =
-        "coeff_" + std::to_string(channel) + (coefficient < 10 ? "_0" : "_") + std::to_string(coefficient) + ".png";
-    const auto [low, high] = std::minmax_element(stack.planes[k].values().begin(), stack.planes[k].values().end());
-    if (stack.bits == 8)
-      write_plane<std::uint8_t>(folder / name, stack.planes[k], *low, *high);
-    else
-      write_plane<std::uint16_t>(folder / name, stack.planes[k], *low, *high);
-    planes.push_back(
-        {{"file", name}, {"channel", channel}, {"coefficient", coefficient}, {"min", *low}, {"max", *high}});
-  }
-  const json ranges = {{"format", "kiln-prt"},   {"version", 1},
-                       {"bands", stack.bands},   {"channels", stack.channels},
-                       {"bits", stack.bits},     {"width", stack.width},
-                       {"height", stack.height}, {"basis", "real-sh-orthonormal"},
-                       {"mesh", "atlas.drc"},    {"normals", "normal.png"},
-                       {"planes", planes}};
-  std::ofstream(folder / "ranges.json") << ranges.dump();
-  save_draco(folder / "atlas.drc", mesh);
-}
-
-/// Unoccluded transfer over the atlas of a convex mesh, the same in all channels; `tints` scales the channels.
-Stack unoccluded_stack(const TriangleMesh& mesh, int width, int height, int bands, int bits,
-                       std::vector<float> tints = {1}) {
-  Stack stack{width, height, bands, static_cast<int>(tints.size()), bits, {}};
-  const ShBasis basis(bands);
-  const UvRaster raster = rasterise_uvs(mesh, width, height);
-  std::vector<std::uint8_t> covered;
-  for (const TexelSource& source : raster.texels) covered.push_back(source.covered());
-  stack.planes.assign(static_cast<std::size_t>(basis.size()), Image<float>(width, height, 1));
-  for (std::size_t k = 0; k < raster.texels.size(); ++k) {
-    if (covered[k] == 0) continue;
-    const std::vector<float> transfer =
-        unoccluded_transfer(basis, interpolate(mesh, mesh.normals, raster.texels[k]).normalized());
-    for (int i = 0; i < basis.size(); ++i) stack.planes[i].values()[k] = transfer[i];
-  }
-  for (Image<float>& plane : stack.planes) fill_gutters(plane, covered);
-  const std::vector<Image<float>> one = stack.planes;
-  stack.planes.clear();
-  for (const float tint : tints)
-    for (Image<float> plane : one) {
-      for (float& value : plane.values()) value *= tint;
-      stack.planes.push_back(std::move(plane));
-    }
-  return stack;
-}
-
-/// Noise in every plane, of a range of its own; one plane is constant (min = max).
-Stack noise_stack(int width, int height, int bands, int channels, int bits) {
-  Stack stack{width, height, bands, channels, bits, {}};
-  std::mt19937 random(7);
-  for (int k = 0; k < channels * bands * bands; ++k) {
-    std::uniform_real_distribution<float> value(-0.1f * static_cast<float>(k % 3),
-                                                0.05f + 0.02f * static_cast<float>(k % 5));
-    Image<float>& plane = stack.planes.emplace_back(width, height, 1, 0.125f);
-    if (k == 2) continue;
-    for (float& texel : plane.values()) texel = value(random);
-  }
-  return stack;
-}
-
-std::unique_ptr<EglContext> software_context() { return std::make_unique<EglContext>("software"); }
-
-PrtView small_view(const TriangleMesh& mesh, double azimuth, double elevation, int supersample = 1) {
-  RenderSettings settings;
-  settings.width = 160;
-  settings.height = 120;
-  settings.supersample = supersample;
-  settings.camera = std::to_string(azimuth) + "," + std::to_string(elevation);
-  return view_of(settings, bounding_box(mesh));
-}
 
 // ---- lights ----
 
@@ -350,9 +258,9 @@ TEST(Relight, FurnaceGivesTheAlbedo) {
   for (const int bits : {8, 16}) {
     write_asset(scratch.folder(), mesh, unoccluded_stack(mesh, 96, 64, 5, bits));
     const PrtAsset asset = load_prt_asset(scratch.folder());
-    PrtView view = small_view(mesh, 20, 12, 2);
-    view.albedo = albedo;
-    const Image<float> picture = PrtRenderer(asset).render(constant_light(5, std::array<float, 3>{1, 1, 1}), view);
+    SceneView view = small_view(mesh, 20, 12, 2);
+    view.look.albedo = albedo;
+    const Image<float> picture = drawn(asset, constant_light(5, std::array<float, 3>{1, 1, 1}), view);
     // t_0 is the same everywhere: min = max, so that nothing is lost to quantisation. What remains is float32.
     double covered = 0;
     for (int j = 0; j < picture.height(); ++j)
@@ -374,10 +282,10 @@ TEST(Relight, DirectionalLightIsTheTruncatedCosine) {
   const auto context = software_context();
   write_asset(scratch.folder(), mesh, unoccluded_stack(mesh, 384, 256, 5, 16));
   const PrtAsset asset = load_prt_asset(scratch.folder());
-  const PrtView view = small_view(mesh, -35, 25);
+  const SceneView view = small_view(mesh, -35, 25);
   const Eigen::Vector3f towards = direction_from_angles(-70, 40);
-  const Image<float> picture = PrtRenderer(asset).render(
-      light_coefficients(std::vector<LightSpec>{parse_light_spec("-70,40")}, 5, LightWindow::none), view);
+  const Image<float> picture =
+      drawn(asset, light_coefficients(std::vector<LightSpec>{parse_light_spec("-70,40")}, 5, LightWindow::none), view);
   int compared = 0;
   for (int j = 0; j < view.height; ++j)
     for (int i = 0; i < view.width; ++i) {
@@ -422,10 +330,10 @@ TEST(Relight, GpuAndCpuAgree) {
       for (const int channels : {1, 3}) {
         write_asset(scratch.folder(), mesh, noise_stack(24, 20, bands, channels, bits));
         const PrtAsset asset = load_prt_asset(scratch.folder());
-        PrtView view = small_view(asset.mesh, 10, 60);
-        view.albedo = albedo;
+        SceneView view = small_view(asset.mesh, 10, 60);
+        view.look.albedo = albedo;
         const LightCoefficients light = light_coefficients(lights, bands, LightWindow::hann);
-        const Image<float> gpu = PrtRenderer(asset).render(light, view);
+        const Image<float> gpu = drawn(asset, light, view);
         const Image<float> cpu = relight_texels(asset, light, albedo);
         double largest = 0, brightest = 0;
         for (int j = 0; j < view.height; ++j)
@@ -467,18 +375,17 @@ TEST(Relight, TilesMakeOnePicture) {
   const auto context = software_context();
   write_asset(scratch.folder(), mesh, unoccluded_stack(mesh, 48, 32, 3, 16));
   const PrtAsset asset = load_prt_asset(scratch.folder());
-  const PrtRenderer renderer(asset);
   const LightCoefficients light =
       light_coefficients(std::vector<LightSpec>{parse_light_spec("70,10")}, 3, LightWindow::hann);
   // The same samples in tiles of 2,045 and of 2,048 a side.
-  PrtView view = small_view(mesh, 20, 12, 5);
+  SceneView view = small_view(mesh, 20, 12, 5);
   view.width = 600;
   view.height = 450;
-  const Image<float> filtered = renderer.render(light, view);
+  const Image<float> filtered = drawn(asset, light, view);
   view.width = 3000;
   view.height = 2250;
   view.supersample = 1;
-  const Image<float> samples = renderer.render(light, view);
+  const Image<float> samples = drawn(asset, light, view);
   int different = 0;
   double covered = 0;
   for (int j = 0; j < filtered.height(); ++j)
@@ -505,9 +412,9 @@ TEST(Relight, ManyPlanesGoThrough) {
   const PrtAsset asset = load_prt_asset(scratch.folder());
   LightCoefficients light = constant_light(24, std::array<float, 3>{0, 0, 0});
   light.channels[2][575] = 1;  // the last plane of all
-  PrtView view = small_view(asset.mesh, 0, 60);
-  view.albedo = {1, 1, 1};
-  const Image<float> gpu = PrtRenderer(asset).render(light, view);
+  SceneView view = small_view(asset.mesh, 0, 60);
+  view.look.albedo = {1, 1, 1};
+  const Image<float> gpu = drawn(asset, light, view);
   const Image<float> cpu = relight_texels(asset, light, {1, 1, 1});
   const auto [low, high] = std::minmax_element(cpu.values().begin(), cpu.values().end());
   EXPECT_GT(*high, 0.01f);
@@ -555,7 +462,7 @@ TEST(Picture, ExrKeepsTheRadiance) {
 TEST(RenderSettings, DefaultsAreTheCameras) {
   const TriangleMesh mesh = shapes::cube_sphere(2);
   const RenderSettings settings;
-  const PrtView view = view_of(settings, bounding_box(mesh));
+  const SceneView view = views_of(settings, bounding_box(mesh)).front();
   const Camera expected = make_camera(bounding_box(mesh), CameraSettings{}, view.width, view.height);
   EXPECT_EQ(view.camera.position, expected.position);
   EXPECT_EQ(view.camera.half_height, expected.half_height);
@@ -566,11 +473,11 @@ TEST(RenderSettings, RefusesWhatIsNoView) {
   for (const char* camera : {"", "20", "20,91", "20,12,3", "a,b"}) {
     RenderSettings settings;
     settings.camera = camera;
-    EXPECT_THROW(view_of(settings, box), WrongUsage) << camera;
+    EXPECT_THROW(views_of(settings, box), WrongUsage) << camera;
   }
   RenderSettings settings;
   settings.albedo = "1.5";
-  EXPECT_THROW(view_of(settings, box), WrongUsage);
+  EXPECT_THROW(views_of(settings, box), WrongUsage);
   settings.background = "0.1,0.2";
   EXPECT_THROW(picture_of(settings), WrongUsage);
   LightSettings lights;

@@ -40,16 +40,29 @@ Image<std::uint16_t> read_grey(const std::filesystem::path& file, int width, int
 
 TriangleMesh read_asset_mesh(const std::filesystem::path& file) {
   TriangleMesh mesh = load_atlas(file);
+  require_drawable(mesh, file);
+  return mesh;
+}
+
+void read_normals(const Fields& fields, PrtAsset& asset) {
+  if (!fields.has("normals")) return;
+  asset.normals_file = fields.safe_path("normals");
+  if (!fields.has("normal_space")) return;
+  const std::string space = fields.text("normal_space", "object or tangent");
+  if (space != "object" && space != "tangent") fields.fail(fields.path("normal_space"), space, "object or tangent");
+  asset.normal_space = space == "tangent" ? NormalSpace::tangent : NormalSpace::object;
+}
+
+void require_drawable(const TriangleMesh& mesh, const std::filesystem::path& file) {
   const auto is_there = [&](std::uint32_t vertex) { return vertex < mesh.positions.size(); };
   for (const Triangle& triangle : mesh.triangles)
     if (!std::all_of(triangle.begin(), triangle.end(), is_there))
-      throw BadInput(file.string(), "has a triangle with a vertex that is not there", "the output of kiln-atlas",
+      throw BadInput(file.string(), "has a triangle with a vertex that is not there", "the mesh of a baked asset",
                      "bake the asset again with kiln-bake");
   const float diagonal = bounding_box(mesh).diagonal();
   if (!(std::isfinite(diagonal) && diagonal > 0))
     throw BadInput(file.string(), "is as large as " + std::to_string(diagonal), "a mesh of finite size above 0",
                    "scale the mesh and start over with kiln-simplify");
-  return mesh;
 }
 
 }  // namespace kiln

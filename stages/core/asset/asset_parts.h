@@ -7,6 +7,8 @@
 #include <tbb/parallel_for.h>
 #include <vector>
 
+#include "asset/fields.h"
+#include "asset/prt_asset.h"
 #include "image/image.h"
 #include "mesh/triangle_mesh.h"
 
@@ -18,6 +20,16 @@ inline constexpr int largest_asset_side = 16384;
 
 /// The mesh of an asset, fit to be drawn. Throws BadInput.
 TriangleMesh read_asset_mesh(const std::filesystem::path& file);
+
+/// The normal map that a folder names, if it does, and its space. Shading by transfer does not read it.
+void read_normals(const Fields& fields, PrtAsset& asset);
+
+/// Throws BadInput unless the mesh of `file` is fit to be drawn: its triangles' vertices are there, and it has a size.
+void require_drawable(const TriangleMesh& mesh, const std::filesystem::path& file);
+
+/// Of an asset baked per vertex: the mesh, and the transfer vectors decoded from its attributes, of which `planes`, as
+/// many as there are coefficients, has one component each. Throws BadInput.
+void read_vertex_transfer(const std::filesystem::path& folder, const Fields& fields, PrtAsset& asset);
 
 /// A grey PNG of 8 or 16 bits and of that size. Throws BadInput.
 template <class Texel>

@@ -114,7 +114,7 @@ PrtAsset load_pca_asset(const fs::path& folder) {
   asset.width = fields.integer("width", 1, largest_asset_side);
   asset.height = fields.integer("height", 1, largest_asset_side);
   asset.mesh_file = fields.safe_path("mesh");
-  if (fields.has("normals")) asset.normals_file = fields.safe_path("normals");
+  read_normals(fields, asset);
   PrtClusters& clusters = asset.clusters.emplace();
   clusters.length = asset.channels * asset.bands * asset.bands;
   clusters.count = fields.integer("clusters", 1, most_clusters);

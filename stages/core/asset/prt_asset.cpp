@@ -13,10 +13,10 @@ using nlohmann::json;
 
 constexpr const char* remedy = "bake the asset again with kiln-bake";
 
-PrtPlane read_plane(const Fields& fields, const PrtAsset& asset, int index) {
+PrtPlane read_plane(const Fields& fields, const PrtAsset& asset, int index, bool in_a_file) {
   const int coefficients = asset.bands * asset.bands;
   PrtPlane plane;
-  plane.file = fields.safe_path("file");
+  if (in_a_file) plane.file = fields.safe_path("file");
   plane.channel = fields.integer("channel", 0, asset.channels - 1);
   plane.coefficient = fields.integer("coefficient", 0, coefficients - 1);
   if (plane.channel != index / coefficients || plane.coefficient != index % coefficients)
@@ -33,9 +33,7 @@ PrtPlane read_plane(const Fields& fields, const PrtAsset& asset, int index) {
 }
 
 /// Fills in everything that stands in ranges.json itself.
-void read_ranges(const fs::path& file, PrtAsset& asset) {
-  const json document = parse_json(file, "kiln-bake", remedy);
-  const Fields fields(file.string(), "", document, remedy);
+void read_ranges(const Fields& fields, PrtAsset& asset) {
   fields.constant("format", "kiln-prt");
   fields.integer("version", 1, 1);
   fields.constant("basis", "real-sh-orthonormal");
@@ -43,11 +41,13 @@ void read_ranges(const fs::path& file, PrtAsset& asset) {
   asset.channels = fields.integer("channels", 1, most_asset_channels);
   asset.bits = fields.integer("bits", 8, 16);
   if (asset.bits != 8 && asset.bits != 16) fields.fail("bits", std::to_string(asset.bits), "8 or 16");
-  asset.width = fields.integer("width", 1, largest_asset_side);
-  asset.height = fields.integer("height", 1, largest_asset_side);
+  const bool textured = !fields.has("vertices");
+  if (textured) {
+    asset.width = fields.integer("width", 1, largest_asset_side);
+    asset.height = fields.integer("height", 1, largest_asset_side);
+  }
   asset.mesh_file = fields.safe_path("mesh");
-  // Shading does not read the normal map, the transfer holds the normals already.
-  if (fields.has("normals")) asset.normals_file = fields.safe_path("normals");
+  read_normals(fields, asset);
 
   const std::size_t count = static_cast<std::size_t>(asset.channels) * asset.bands * asset.bands;
   const std::string expected = "a list of " + std::to_string(count) + " planes";
@@ -55,8 +55,8 @@ void read_ranges(const fs::path& file, PrtAsset& asset) {
   if (!planes.is_array()) fields.fail("planes", "no list", expected);
   if (planes.size() != count) fields.fail("planes", "a list of " + std::to_string(planes.size()), expected);
   for (std::size_t k = 0; k < count; ++k) {
-    const Fields plane(file.string(), "planes[" + std::to_string(k) + "]", planes[k], remedy);
-    asset.planes.push_back(read_plane(plane, asset, static_cast<int>(k)));
+    const Fields plane(fields.file(), "planes[" + std::to_string(k) + "]", planes[k], remedy);
+    asset.planes.push_back(read_plane(plane, asset, static_cast<int>(k), textured));
   }
 }
 
@@ -71,7 +71,13 @@ PrtAsset load_prt_asset(const fs::path& folder) {
                    "the output folder of kiln-bake or kiln-compress", "run kiln-bake, or name its output folder");
   PrtAsset asset;
   asset.ranges_file = ranges;
-  read_ranges(ranges, asset);
+  const json document = parse_json(ranges, "kiln-bake", remedy);
+  const Fields fields(ranges.string(), "", document, remedy);
+  read_ranges(fields, asset);
+  if (fields.has("vertices")) {
+    read_vertex_transfer(folder, fields, asset);
+    return asset;
+  }
   asset.mesh = read_asset_mesh(folder / asset.mesh_file);
   std::vector<std::string> files;
   for (const PrtPlane& plane : asset.planes) files.push_back(plane.file);

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "detail/normal_space.h"
 #include "image/image.h"
 #include "mesh/triangle_mesh.h"
 
@@ -47,11 +48,13 @@ struct PrtClusters {
 
 /// A baked PRT folder, as it is on the disk: the mesh with its atlas, and a picture for every transfer coefficient, or
 /// for every weight where it is compressed. Planes of coefficients are sorted by channel, then coefficient, and there
-/// is one for each; of weights, `coefficient` is the number of the basis vector.
+/// is one for each; of weights, `coefficient` is the number of the basis vector. One that is baked per vertex has
+/// transfer vectors in place of pictures, and width and height are 0.
 struct PrtAsset {
-  std::filesystem::path ranges_file;  ///< where it comes from, for messages
-  std::string mesh_file;              ///< relative to its folder
-  std::string normals_file;           ///< the same; empty: none
+  std::filesystem::path ranges_file;               ///< where it comes from, for messages
+  std::string mesh_file;                           ///< relative to its folder
+  std::string normals_file;                        ///< the same; empty: none
+  NormalSpace normal_space = NormalSpace::object;  ///< of that map
   TriangleMesh mesh;
   int bands = 0;
   int channels = 0;
@@ -61,6 +64,13 @@ struct PrtAsset {
   std::vector<PrtPlane> planes;
   std::variant<std::vector<Image<std::uint8_t>>, std::vector<Image<std::uint16_t>>> pictures;
   std::optional<PrtClusters> clusters;  ///< of a compressed asset alone
+  std::vector<float> vertex_transfer;   ///< of one baked per vertex alone: a vector for each vertex of `mesh`
+
+  /// Numbers of a transfer vector: all channels' coefficients, channel after channel.
+  std::size_t vector_length() const {
+    return static_cast<std::size_t>(channels) * static_cast<std::size_t>(bands) * static_cast<std::size_t>(bands);
+  }
+  bool is_per_vertex() const { return !vertex_transfer.empty(); }
 };
 
 inline constexpr const char* ranges_name = "ranges.json";  ///< of a baked folder

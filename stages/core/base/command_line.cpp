@@ -49,6 +49,11 @@ void CommandLine::input(const std::string& name, fs::path& path, const std::stri
   inputs_.push_back(&path);
 }
 
+void CommandLine::inputs(const std::string& name, std::vector<fs::path>& paths, const std::string& help) {
+  app_.add_option(name, paths, help)->required();
+  input_lists_.push_back(&paths);
+}
+
 void CommandLine::output(fs::path& path, const std::string& help) {
   app_.add_option("-o,--output", path, help)->required();
 }
@@ -62,6 +67,11 @@ void CommandLine::input_option(const std::string& name, std::vector<fs::path>& p
   // One path an option, so that a positional input after it is not swallowed.
   app_.add_option("--" + name, paths, help)->expected(1)->take_all();
   input_lists_.push_back(&paths);
+}
+
+void CommandLine::list_option(const std::string& name, std::vector<std::string>& texts, const std::string& heading,
+                              const std::string& help) {
+  app_.add_option("--" + name, texts, help)->expected(1)->take_all()->type_name("")->group(heading);
 }
 
 void CommandLine::options(const std::string& heading, const OptionSet& options) {

@@ -24,6 +24,9 @@ class CommandLine {
   /// A positional input, an existing file or folder; the hash of a file goes into the result.
   void input(const std::string& name, std::filesystem::path& path, const std::string& help);
 
+  /// One or more of them.
+  void inputs(const std::string& name, std::vector<std::filesystem::path>& paths, const std::string& help);
+
   /// `-o OUTPUT`, required.
   void output(std::filesystem::path& path, const std::string& help);
 
@@ -33,6 +36,10 @@ class CommandLine {
 
   /// After parse(): files that inputs or settings name; their hashes go into the result like those of inputs.
   void also_read(const std::vector<std::filesystem::path>& files);
+
+  /// `--name TEXT`, which may be repeated, under a heading of --help.
+  void list_option(const std::string& name, std::vector<std::string>& texts, const std::string& heading,
+                   const std::string& help);
 
   /// The settings of the stage, under a heading of --help.
   void options(const std::string& heading, const OptionSet& options);

@@ -44,7 +44,7 @@ Camera make_camera(const BoundingBox& box, const CameraSettings& settings, int w
   camera.right = camera.forward.cross(Eigen::Vector3f::UnitY()).normalized();
   camera.up = camera.right.cross(camera.forward);
   // The nearest place from which every corner of the box is in the picture, but not inside its bounding sphere.
-  double distance = 1.05 * radius;
+  double distance = std::max(1.05 * radius, settings.least_distance);
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Vector3f sign((corner & 1) != 0 ? 1.f : -1.f, (corner & 2) != 0 ? 1.f : -1.f,
                                (corner & 4) != 0 ? 1.f : -1.f);

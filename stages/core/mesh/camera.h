@@ -12,6 +12,7 @@ struct CameraSettings {
   double elevation_degrees = 12;      ///< above the horizon
   double field_of_view_degrees = 30;  ///< vertical
   double margin = 1.06;               ///< the box' bounding sphere fills 1/margin of the picture's shorter side
+  double least_distance = 0;          ///< from the box' centre, object units
 };
 
 /// Position and axes in object space; the picture's plane is at distance 1.

@@ -5,10 +5,9 @@
 #include <charconv>
 #include <cmath>
 #include <numbers>
-#include <optional>
-#include <sstream>
 
 #include "base/errors.h"
+#include "base/numbers.h"
 #include "sh/directions.h"
 
 namespace kiln {
@@ -16,13 +15,6 @@ namespace kiln {
 namespace {
 
 constexpr double brightest = 1e6;
-
-std::optional<double> parse_number(std::string_view text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
 
 /// The shortest text that from_chars reads as the same number.
 template <class Number>
@@ -34,33 +26,6 @@ std::string shortest(Number value) {
 [[noreturn]] void fail(std::string_view name, std::string_view found, const std::string& expected) {
   throw WrongUsage(std::string(name) + ": found '" + std::string(found) + "'; expected " + expected);
 }
-
-}  // namespace
-
-std::vector<double> parse_numbers(std::string_view name, std::string_view text, double lowest, double highest) {
-  std::vector<double> numbers;
-  for (std::size_t begin = 0;;) {
-    const std::size_t comma = std::min(text.find(',', begin), text.size());
-    const std::optional<double> number = parse_number(text.substr(begin, comma - begin));
-    if (!number || *number < lowest || *number > highest) {
-      std::ostringstream expected;
-      expected << "numbers between commas, each " << lowest << " to " << highest;
-      fail(name, text, expected.str());
-    }
-    numbers.push_back(*number);
-    if (comma == text.size()) return numbers;
-    begin = comma + 1;
-  }
-}
-
-std::array<float, 3> parse_colour(std::string_view name, std::string_view text, double lowest, double highest) {
-  const std::vector<double> numbers = parse_numbers(name, text, lowest, highest);
-  if (numbers.size() != 1 && numbers.size() != 3) fail(name, text, "one number, or three: R,G,B");
-  const auto number = [&](std::size_t i) { return static_cast<float>(numbers[numbers.size() == 1 ? 0 : i]); };
-  return {number(0), number(1), number(2)};
-}
-
-namespace {
 
 /// How a kind of light is written: its name, and how many numbers come before the colour.
 struct Syntax {
@@ -159,15 +124,25 @@ std::string to_text(const LightSpec& spec) {
   return name + ":" + to_text(spec.colour);
 }
 
-LightCoefficients light_coefficients(const LightSpec& spec, int bands) {
+namespace {
+
+/// Sine of half the angle that a ball covers as seen from `distance`; 1 from inside.
+double sine_of_ball(double radius, double distance) { return distance > radius ? radius / distance : 1; }
+
+}  // namespace
+
+LightCoefficients light_coefficients(const LightSpec& spec, int bands, const Eigen::Vector3d& viewpoint) {
   const Eigen::Vector3f direction = direction_from_angles(spec.azimuth_degrees, spec.elevation_degrees);
   switch (spec.kind) {
     case LightSpec::Kind::directional:
       return directional_light(bands, direction, spec.colour);
     case LightSpec::Kind::cone:
       return cone_light(bands, direction, spec.half_angle_degrees * std::numbers::pi / 180, spec.colour);
-    case LightSpec::Kind::sphere:
-      return sphere_light(bands, Eigen::Vector3d(spec.position.data()).cast<float>(), spec.radius, spec.colour);
+    case LightSpec::Kind::sphere: {
+      const Eigen::Vector3d position(spec.position.data()), away = position - viewpoint;
+      const double ratio = sine_of_ball(spec.radius, away.norm()) / sine_of_ball(spec.radius, position.norm());
+      return scale_light(sphere_light(bands, away.cast<float>(), spec.radius, spec.colour), ratio * ratio);
+    }
     case LightSpec::Kind::hemisphere:
       return hemisphere_light(bands, direction, spec.colour, spec.ground);
     case LightSpec::Kind::ambient:

@@ -16,7 +16,7 @@ struct LightSpec {
   enum class Kind {
     directional,  ///< distant, towards azimuth and elevation; a white surface that faces it gets the radiance `colour`
     cone,         ///< the same from a cone of directions around it (cone_light)
-    sphere,       ///< a glowing ball at `position` (sphere_light)
+    sphere,       ///< a glowing ball at `position` (sphere_light): a local light
     hemisphere,   ///< `colour` from the side of azimuth and elevation, `ground` from the other (hemisphere_light)
     ambient,      ///< the radiance `colour` from everywhere (a furnace)
   };
@@ -42,15 +42,11 @@ LightSpec parse_light_spec(std::string_view text);
 /// A text that parse_light_spec reads as the same light.
 std::string to_text(const LightSpec& spec);
 
-/// Numbers between commas, as in "1,0.9,0.8"; all finite and within `lowest` to `highest`. Throws WrongUsage, which
-/// calls the value `name`, for anything else.
-std::vector<double> parse_numbers(std::string_view name, std::string_view text, double lowest, double highest);
-
-/// One grey number or R,G,B, as parse_numbers has them.
-std::array<float, 3> parse_colour(std::string_view name, std::string_view text, double lowest, double highest);
-
-/// The light in spherical harmonics, three channels (R, G, B), without a window.
-LightCoefficients light_coefficients(const LightSpec& spec, int bands);
+/// The light in spherical harmonics as it comes in at `viewpoint`, three channels (R, G, B), without a window. Only a
+/// ball depends on the place: its own radiance is the same everywhere, so that its irradiance falls with the square of
+/// the distance, and is such that a white surface which faces it has the radiance `colour` at the origin.
+LightCoefficients light_coefficients(const LightSpec& spec, int bands,
+                                     const Eigen::Vector3d& viewpoint = Eigen::Vector3d::Zero());
 
 /// The sum of the lights, three channels, `window` applied.
 LightCoefficients light_coefficients(std::span<const LightSpec> specs, int bands, LightWindow window);

@@ -1,4 +1,4 @@
-#include "relight/relight.h"
+#include "relight/decode/plane_weights.h"
 
 #include <cmath>
 #include <span>
@@ -53,20 +53,39 @@ PlaneWeights basis_weights(const PrtAsset& asset, int cluster, const LightCoeffi
   return weights;
 }
 
-}  // namespace
-
-std::vector<PlaneWeights> cluster_weights(const PrtAsset& asset, const LightCoefficients& light,
-                                          const std::array<float, 3>& albedo) {
+/// Throws unless the asset has colours, and the light those of it.
+void require_light(const PrtAsset& asset, const LightCoefficients& light) {
   if (light.bands != asset.bands || light.channels.size() != 3)
     throw std::invalid_argument("cluster_weights: the light must have the asset's bands and three channels");
   if (asset.channels != 1 && asset.channels != 3)
     throw BadInput(asset.ranges_file.string(), "has " + std::to_string(asset.channels) + " channels, a spectral asset",
                    "1 channel or 3", "bake the asset with 1 channel or 3");
+}
+
+}  // namespace
+
+std::vector<PlaneWeights> cluster_weights(const PrtAsset& asset, const LightCoefficients& light,
+                                          const std::array<float, 3>& albedo) {
+  require_light(asset, light);
   const Eigen::Vector3d tint(albedo[0], albedo[1], albedo[2]);
   if (!asset.clusters) return {coefficient_weights(asset, light, tint)};
   std::vector<PlaneWeights> weights;
   for (int cluster = 0; cluster < asset.clusters->count; ++cluster)
     weights.push_back(basis_weights(asset, cluster, light, tint));
+  return weights;
+}
+
+PlaneWeights vector_weights(const PrtAsset& asset, const LightCoefficients& light, const std::array<float, 3>& albedo) {
+  require_light(asset, light);
+  const int coefficients = asset.bands * asset.bands;
+  PlaneWeights weights;
+  for (int channel = 0; channel < asset.channels; ++channel)
+    for (int i = 0; i < coefficients; ++i) {
+      Eigen::Vector3f scale = Eigen::Vector3f::Zero();
+      for (int colour = 0; colour < 3; ++colour)
+        if (asset.channels == 1 || channel == colour) scale[colour] = albedo[colour] * light.channels[colour][i];
+      weights.scales.push_back(scale);
+    }
   return weights;
 }
 

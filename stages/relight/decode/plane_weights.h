@@ -12,7 +12,8 @@ namespace kiln {
 
 /// What a light makes of an asset's planes: exit radiance (linear RGB) = constant + sum over planes of scale * stored
 /// value (0 to 1). The expansion of the ranges, the light and the albedo are all in it, since all of them are linear:
-/// albedo L (min + s (max - min)) = albedo L min + albedo L (max - min) s. shaders/common_prt.glsl evaluates the same.
+/// albedo L (min + s (max - min)) = albedo L min + albedo L (max - min) s. shaders/common_prt.glsl
+/// evaluates the same.
 struct PlaneWeights {
   Eigen::Vector3f constant = Eigen::Vector3f::Zero();
   std::vector<Eigen::Vector3f> scales;  ///< one per plane, RGB
@@ -29,6 +30,9 @@ struct PlaneWeights {
 /// become colours.
 std::vector<PlaneWeights> cluster_weights(const PrtAsset& asset, const LightCoefficients& light,
                                           const std::array<float, 3>& albedo);
+
+/// The same for transfer vectors as they are, `constant` being 0: one scale for each number of a vector.
+PlaneWeights vector_weights(const PrtAsset& asset, const LightCoefficients& light, const std::array<float, 3>& albedo);
 
 /// Exit radiance of every texel, three channels, rows from the bottom; what the GPU draws, computed by the CPU.
 Image<float> relight_texels(const PrtAsset& asset, const LightCoefficients& light, const std::array<float, 3>& albedo);

@@ -1,12 +1,15 @@
-#include "relight/environment.h"
+#include "relight/light/environment.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
 
 #include "base/errors.h"
 #include "image/image_file.h"
+#include "sh/rotation.h"
 
 namespace kiln {
 
@@ -63,9 +66,38 @@ Image<float> turn(const Image<float>& image, double turns) {
   return turned;
 }
 
+/// The six faces of a folder, rows from the top, as OpenGL has them.
+LightCoefficients load_cube_map(const std::filesystem::path& folder, int bands, double rotation_degrees) {
+  std::array<std::vector<float>, 6> faces;
+  std::array<std::span<const float>, 6> views;
+  int size = 0;
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    const std::string name = std::array{"px", "nx", "py", "ny", "pz", "nz"}[k];
+    std::filesystem::path file = folder / (name + ".exr");
+    if (!std::filesystem::exists(file)) file = folder / (name + ".hdr");
+    if (!std::filesystem::exists(file))
+      throw BadInput(folder.string(), "has no " + name + ".exr or " + name + ".hdr", "six faces of a cube map",
+                     "add the face, or name a latitude-longitude picture");
+    const Image<float> face = read_colours(file);
+    if (k == 0) size = face.width();
+    if (face.width() != size || face.height() != size)
+      throw BadInput(file.string(), "is " + std::to_string(face.width()) + " x " + std::to_string(face.height()),
+                     std::to_string(size) + " x " + std::to_string(size) + ", as all faces are",
+                     "choose another cube map");
+    for (int j = size - 1; j >= 0; --j)
+      for (int i = 0; i < size; ++i)
+        for (int c = 0; c < 3; ++c) faces[k].push_back(face.at(i, j, c));
+    views[k] = faces[k];
+  }
+  const LightCoefficients light = cube_map_light(bands, size, 3, views);
+  const Eigen::AngleAxisd turn(rotation_degrees * std::numbers::pi / 180, Eigen::Vector3d::UnitY());
+  return rotation_degrees == 0 ? light : ShRotation(bands, turn.toRotationMatrix())(light);
+}
+
 }  // namespace
 
 LightCoefficients load_environment(const std::filesystem::path& file, int bands, double rotation_degrees) {
+  if (std::filesystem::is_directory(file)) return load_cube_map(file, bands, rotation_degrees);
   Image<float> colours = read_colours(file);
   int factor = 1;
   while (colours.width() % (2 * factor) == 0 && colours.height() % (2 * factor) == 0 &&

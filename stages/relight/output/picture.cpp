@@ -1,4 +1,4 @@
-#include "relight/picture.h"
+#include "relight/output/picture.h"
 
 #include <algorithm>
 #include <cmath>

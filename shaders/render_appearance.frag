@@ -1,0 +1,17 @@
+// Deferred shading, first pass: what shading needs to know of the nearest surface, and no light yet. PixelFlow's
+// appearance parameters (Lastra, Molnar, Olano and Wang, "Real-time programmable shading", 1995).
+layout(location = 3) uniform float asset_number;  // from 1
+
+in vec2 surface_uv;
+in vec4 surface_contributions_low;
+in vec4 surface_contributions_high;
+
+layout(location = 0) out vec4 uv_and_asset;
+layout(location = 1) out vec4 contributions_low;
+layout(location = 2) out vec4 contributions_high;
+
+void main() {
+  uv_and_asset = vec4(surface_uv, asset_number, 1.0);
+  contributions_low = surface_contributions_low;
+  contributions_high = surface_contributions_high;
+}

@@ -1,0 +1,12 @@
+// How much each incident-light sample point counts at a point of the surface; what common_prt.glsl wants.
+#ifndef PRT_SAMPLES
+#define PRT_SAMPLES 1
+#endif
+
+void unpack_contributions(vec4 low, vec4 high, out float contributions[PRT_SAMPLES]) {
+#if PRT_SAMPLES == 1
+  contributions[0] = 1.0;
+#else
+  for (int k = 0; k < PRT_SAMPLES; ++k) contributions[k] = k < 4 ? low[k] : high[k - 4];
+#endif
+}

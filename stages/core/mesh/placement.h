@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+#include <string_view>
+
+#include "mesh/triangle_mesh.h"
+
+namespace kiln {
+
+/// Where an object stands in a scene: scaled evenly, turned, then moved. Even scales alone, so that angles and
+/// directions of light stay what they are.
+struct Placement {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  double scale = 1;  ///< above 0
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+
+  Eigen::Vector3d to_scene(const Eigen::Vector3d& object) const { return scale * (rotation * object) + translation; }
+  Eigen::Vector3d to_object(const Eigen::Vector3d& scene) const {
+    return rotation.transpose() * (scene - translation) / scale;
+  }
+
+  /// Column-vector matrix from object space to the scene's.
+  Eigen::Matrix4d matrix() const;
+
+  bool turns() const { return !rotation.isIdentity(0); }
+};
+
+/// Reads "X,Y,Z[,AZIMUTH[,SCALE]]": where the object's origin goes, how far it is turned about +Y (degrees; +Z turns
+/// towards +X), and its scale. Throws WrongUsage, which calls the value `name`.
+Placement parse_placement(std::string_view name, std::string_view text);
+
+/// The box around a placed box.
+BoundingBox placed_box(const BoundingBox& box, const Placement& placement);
+
+}  // namespace kiln

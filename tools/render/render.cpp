@@ -1,0 +1,131 @@
+#include "render/render.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <memory>
+
+#include "base/errors.h"
+#include "image/image_file.h"
+#include "relight/draw/scene_renderer.h"
+#include "relight/light/light_file.h"
+#include "relight/output/contact_sheet.h"
+#include "relight/output/picture.h"
+#include "relight/render_metrics.h"
+
+namespace kiln {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Assets of a scene on the GPU, each drawn by a technique of its own.
+struct Uploaded {
+  std::vector<std::unique_ptr<AssetRenderer>> renderers;
+  std::vector<SceneAsset> assets;
+
+  void add(const PrtAsset& asset, const Placement& placement, Technique technique, int incident_samples) {
+    renderers.push_back(std::make_unique<AssetRenderer>(asset, incident_samples));
+    renderers.back()->prepare(technique);
+    assets.push_back({renderers.back().get(), placement, technique});
+  }
+};
+
+/// "picture.png" as "picture_007.png".
+std::string frame_name(const std::string& name, int frame) {
+  const fs::path path(name);
+  return fmt::format("{}_{:03}{}", path.stem().string(), frame, path.extension().string());
+}
+
+/// The asset by every technique that it, and its compressed form, can be drawn by.
+Json write_sheet(OutputSet& outputs, const std::string& name, const RenderScene& scene, const RenderSettings& settings,
+                 const EglContext& context) {
+  const PrtAsset& asset = scene.assets.front();
+  const int samples = incident_samples_of(settings, scene.lights.is_local());
+  const PictureSettings picture = picture_of(settings);
+  std::vector<SheetCell> cells;
+  Json drawn = Json::array(), metrics;
+  for (const Technique technique : all_techniques) {
+    const PrtAsset& source = technique == Technique::compressed && scene.compressed ? *scene.compressed : asset;
+    try {
+      require_technique(technique, source);
+    } catch (const WrongUsage&) {
+      continue;  // a sheet shows what there is
+    }
+    Uploaded uploaded;
+    uploaded.add(source, scene.placements.front(), technique, samples);
+    const SceneView view = views_of(settings, scene_box(uploaded.assets)).front();
+    const Image<float> radiance = render_scene(uploaded.assets, scene.lights, view);
+    const GpuMemory memory = uploaded.renderers.front()->memory(technique);
+    cells.push_back({picture_from_radiance(radiance, picture),
+                     {technique_caption(technique, source),
+                      fmt::format("{:.2f} MB a mesh, {} bytes a vertex", static_cast<double>(memory.per_mesh) / 1e6,
+                                  memory.per_vertex)}});
+    metrics = render_metrics(uploaded.assets, scene.specs, radiance, context);
+    drawn.push_back(metrics["assets"][0]);
+  }
+  write_png(outputs.add(name), contact_sheet(cells));
+  metrics["assets"] = drawn;
+  return metrics;
+}
+
+}  // namespace
+
+RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& light_settings,
+                              const RenderSettings& settings) {
+  const bool sheet = settings.technique == TechniqueChoice::all;
+  if (paths.assets.size() > 1 && (sheet || !paths.compressed.empty()))
+    throw WrongUsage("technique all and --compressed: found several assets; expected one");
+  if (sheet && settings.frames > 1) throw WrongUsage("technique all: found --frames; expected one picture");
+  if (paths.places.size() > paths.assets.size())
+    throw WrongUsage("place: found " + std::to_string(paths.places.size()) + "; expected at most one for each asset");
+  const bool has_lights =
+      !light_settings.lights.empty() || light_settings.ambient != "none" || !light_settings.environment.empty();
+  if (!paths.light_file.empty() && has_lights)
+    throw WrongUsage("light-file: found lights on the command line, too; expected one or the other");
+  const LightSettings given = paths.light_file.empty() ? light_settings : read_light_file(paths.light_file);
+
+  RenderScene scene;
+  scene.specs = light_specs(given);
+  for (std::size_t k = 0; k < paths.assets.size(); ++k)
+    scene.placements.push_back(k < paths.places.size() ? parse_placement("place", paths.places[k]) : Placement{});
+  int bands = 0;
+  for (const fs::path& folder : paths.assets) {
+    scene.assets.push_back(load_prt_asset(folder));
+    bands = std::max(bands, scene.assets.back().bands);
+  }
+  if (!paths.compressed.empty()) {
+    scene.compressed = load_prt_asset(paths.compressed);
+    if (scene.compressed->bands != scene.assets.front().bands)
+      throw BadInput(paths.compressed.string(), "has " + std::to_string(scene.compressed->bands) + " bands",
+                     std::to_string(scene.assets.front().bands) + ", as the asset has",
+                     "name the output of kiln-compress for this asset");
+  }
+  scene.lights = scene_lights(given, bands);
+  return scene;
+}
+
+Json render_to_files(OutputSet& outputs, const std::string& name, const RenderScene& scene,
+                     const RenderSettings& settings, const EglContext& context, const ProgressFunction& progress) {
+  if (settings.technique == TechniqueChoice::all) return write_sheet(outputs, name, scene, settings, context);
+  Uploaded uploaded;
+  const int samples = incident_samples_of(settings, scene.lights.is_local());
+  for (std::size_t k = 0; k < scene.assets.size(); ++k) {
+    const bool other_form = settings.technique == TechniqueChoice::compressed && scene.compressed;
+    const PrtAsset& asset = other_form ? *scene.compressed : scene.assets[k];
+    uploaded.add(asset, scene.placements[k], technique_of(settings, asset), samples);
+  }
+  const PictureSettings picture = picture_of(settings);
+  const std::vector<SceneView> views = views_of(settings, scene_box(uploaded.assets));
+  Json metrics;
+  for (std::size_t frame = 0; frame < views.size(); ++frame) {
+    const Image<float> radiance = render_scene(uploaded.assets, scene.lights, views[frame]);
+    const std::string file = views.size() > 1 ? frame_name(name, static_cast<int>(frame)) : name;
+    write_picture(outputs.add(file), radiance, picture);
+    if (frame == 0) metrics = render_metrics(uploaded.assets, scene.specs, radiance, context);
+    progress(static_cast<double>(frame + 1) / static_cast<double>(views.size()));
+  }
+  metrics["frames"] = views.size();
+  return metrics;
+}
+
+}  // namespace kiln

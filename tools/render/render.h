@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "asset/prt_asset.h"
+#include "base/options.h"
+#include "base/outputs.h"
+#include "base/progress.h"
+#include "gpu/egl_context.h"
+#include "mesh/placement.h"
+#include "relight/light/light_settings.h"
+#include "relight/light/scene_lights.h"
+#include "relight/render_settings.h"
+
+namespace kiln {
+
+/// What kiln-render is given to draw.
+struct RenderPaths {
+  std::vector<std::filesystem::path> assets;
+  std::filesystem::path compressed;  ///< of the only asset; empty: none
+  std::vector<std::string> places;   ///< of the assets, in their order; those without one stand at the origin
+  std::filesystem::path light_file;  ///< empty: none
+};
+
+struct RenderScene {
+  std::vector<PrtAsset> assets;
+  std::vector<Placement> placements;
+  std::optional<PrtAsset> compressed;  ///< another form of the only asset
+  std::vector<LightSpec> specs;
+  SceneLights lights;
+};
+
+/// Throws WrongUsage for options that do not go together, BadInput for bad files.
+RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& lights, const RenderSettings& settings);
+
+/// Draws a picture, a turntable or a sheet of techniques into files of `outputs`, `name` being the picture's, and gives
+/// the metrics.
+Json render_to_files(OutputSet& outputs, const std::string& name, const RenderScene& scene,
+                     const RenderSettings& settings, const EglContext& context, const ProgressFunction& progress);
+
+}  // namespace kiln
