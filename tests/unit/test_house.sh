@@ -7,7 +7,7 @@ fault() { echo "FAULT: $*"; faults=1; }
 
 for folder in "$source_folder"/stages/*/; do
   stage=$(basename "$folder")
-  for other in simplify atlas normals bake compress relight report; do
+  for other in simplify atlas normals bake compress probes relight report; do
     [ "$stage" = "$other" ] && continue
     grep -rnE "#include \"(stages/)?$other/" "$folder" --include=*.h --include=*.cpp && fault "$stage includes $other"
   done

@@ -1,0 +1,83 @@
+#include "probes/probes_settings.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <vector>
+
+#include "base/errors.h"
+
+namespace kiln {
+
+namespace {
+
+constexpr int most_along_axis = 1024;
+
+/// The whole text as one number; none where it is not.
+template <class Number>
+std::optional<Number> number_of(const std::string& text) {
+  Number value{};
+  const char* end = text.data() + text.size();
+  const auto [rest, fault] = std::from_chars(text.data(), end, value);
+  if (fault != std::errc() || rest != end) return std::nullopt;
+  return value;
+}
+
+/// The numbers between separators; none where one is no number.
+template <class Number>
+std::vector<Number> numbers_of(const std::string& text, char separator) {
+  std::vector<Number> numbers;
+  std::istringstream stream(text + separator);
+  for (std::string part; std::getline(stream, part, separator);) {
+    const std::optional<Number> number = number_of<Number>(part);
+    if (!number) return {};
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+}  // namespace
+
+std::array<int, 3> parse_grid(const std::string& text) {
+  const std::vector<int> numbers = numbers_of<int>(text, 'x');
+  const bool good = numbers.size() == 3 && std::all_of(numbers.begin(), numbers.end(), [](int points) {
+                      return points >= 1 && points <= most_along_axis;
+                    });
+  if (!good || static_cast<std::size_t>(numbers[0]) * numbers[1] * numbers[2] > most_grid_points)
+    throw WrongUsage("grid: found '" + text + "'; expected NxMxK, each 1 to " + std::to_string(most_along_axis) +
+                     ", at most " + std::to_string(most_grid_points) + " points in all");
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+std::optional<std::array<float, 6>> parse_box(const std::string& text) {
+  if (text == "auto") return std::nullopt;
+  const std::vector<float> numbers = numbers_of<float>(text, ',');
+  bool good = numbers.size() == 6;
+  for (std::size_t k = 0; good && k < 6; ++k)
+    good = std::isfinite(numbers[k]) && (k < 3 || numbers[k - 3] <= numbers[k]);
+  if (!good)
+    throw WrongUsage("box: found '" + text +
+                     "'; expected auto, or six numbers X0,Y0,Z0,X1,Y1,Z1, none of the first three above its second");
+  std::array<float, 6> box{};
+  std::copy(numbers.begin(), numbers.end(), box.begin());
+  return box;
+}
+
+OptionSet probes_options(ProbesSettings& settings) {
+  OptionSet options;
+  options
+      .checked_text("grid", settings.grid, "NxMxK, each 1 to 1024",
+                    "Points along x, y and z, at the box's borders and evenly between",
+                    [](const std::string& text) { parse_grid(text); })
+      .checked_text("box", settings.box, "auto or X0,Y0,Z0,X1,Y1,Z1",
+                    "The grid's box, object units; auto: that of the meshes and half its longest side around",
+                    [](const std::string& text) { parse_box(text); })
+      .integer("bands", settings.bands, 1, 8, "Bands of spherical harmonics: a matrix has bands^4 entries")
+      .integer("directions", settings.directions, 16, 65536, "Directions that a point looks into")
+      .choice("sampling", settings.sampling, {{"fibonacci", Sampling::fibonacci}, {"stratified", Sampling::stratified}},
+              "How the directions are spread");
+  return options;
+}
+
+}  // namespace kiln
