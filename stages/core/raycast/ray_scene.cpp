@@ -180,6 +180,42 @@ SurfacePoint RayScene::first_hit(const Eigen::Vector3f& origin, const Eigen::Vec
   return {query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar};
 }
 
+void RayScene::first_front_hits(const float (&origin)[3][PacketHits::lanes], const Eigen::Vector3f& direction,
+                                std::uint32_t rays, PacketHits& hits) const {
+  constexpr std::size_t lanes = PacketHits::lanes;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  alignas(64) int valid[lanes];
+  RTCRayHit16 query;
+  for (std::size_t k = 0; k < lanes; ++k) {
+    valid[k] = (rays >> k & 1) != 0 ? -1 : 0;
+    query.ray.org_x[k] = origin[0][k];
+    query.ray.org_y[k] = origin[1][k];
+    query.ray.org_z[k] = origin[2][k];
+    query.ray.tnear[k] = 0;
+    query.ray.dir_x[k] = direction.x();
+    query.ray.dir_y[k] = direction.y();
+    query.ray.dir_z[k] = direction.z();
+    query.ray.time[k] = 0;
+    query.ray.tfar[k] = std::numeric_limits<float>::infinity();
+    query.ray.mask[k] = ~0u;
+    query.ray.id[k] = 0;
+    query.ray.flags[k] = 0;
+    query.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+  }
+  rtcIntersect16(valid, implementation_->scene, &context, &query);
+  for (std::size_t k = 0; k < lanes; ++k) {
+    const bool hit = valid[k] != 0 && query.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
+    const bool front =
+        hit &&
+        query.hit.Ng_x[k] * direction.x() + query.hit.Ng_y[k] * direction.y() + query.hit.Ng_z[k] * direction.z() < 0;
+    hits.triangle[k] = front ? query.hit.primID[k] : SurfacePoint::none;
+    hits.u[k] = query.hit.u[k];
+    hits.v[k] = query.hit.v[k];
+  }
+}
+
 SurfacePoint RayScene::closest_point(const Eigen::Vector3f& point, float farthest) const {
   return implementation_->closest(point, nullptr, farthest);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -34,6 +35,16 @@ class RayScene {
   /// The first hit of the ray from `origin` along the unit vector `direction` at a distance of `nearest` to `farthest`.
   SurfacePoint first_hit(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest,
                          float farthest) const;
+
+  /// The first hits of up to 16 parallel rays, those whose bit is set in `rays`, from `origin` along the unit vector
+  /// `direction`. Of the others, and of those that hit nothing or the back of a triangle, `triangle` becomes `none`.
+  struct PacketHits {
+    static constexpr std::size_t lanes = 16;
+    std::uint32_t triangle[lanes];
+    float u[lanes], v[lanes];  ///< as in SurfacePoint
+  };
+  void first_front_hits(const float (&origin)[3][PacketHits::lanes], const Eigen::Vector3f& direction,
+                        std::uint32_t rays, PacketHits& hits) const;
 
   /// The surface point closest to `point`, at most `farthest` away.
   SurfacePoint closest_point(const Eigen::Vector3f& point, float farthest) const;
