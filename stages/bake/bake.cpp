@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "bake/bounce/bounced_light.h"
 #include "bake/engines/engines.h"
 #include "base/command_line.h"
 #include "base/errors.h"
@@ -56,20 +57,58 @@ std::vector<TransferVectors> thin_out(const std::vector<TransferVectors>& channe
   return thinned;
 }
 
+/// Direct light takes the first part of the progress where light bounces.
+constexpr double direct_share = 0.3;
+
+/// Multiplies each receiver's transfer by its albedo, if there are any.
+void put_albedo(std::vector<TransferVectors>& channels, std::span<const Eigen::Vector3f> albedos) {
+  const auto is_grey = [](const Eigen::Vector3f& albedo) {
+    return albedo.x() == albedo.y() && albedo.y() == albedo.z();
+  };
+  if (!std::all_of(albedos.begin(), albedos.end(), is_grey)) channels.resize(3, channels.front());
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    for (int i = 0; i < channels[c].coefficients; ++i)
+      for (std::size_t r = 0; r < albedos.size(); ++r)
+        channels[c].plane(i)[r] *= albedos[r][static_cast<Eigen::Index>(c)];
+}
+
+/// Lets light bounce where settings ask for it; `result.channels` has the direct transfer.
+void add_bounces(BakeResult& result, Integration& integration, const TexelReceivers& receivers,
+                 const Occluders& occluders, const BakeSettings& settings, int threads,
+                 const ProgressFunction& progress) {
+  const BounceTarget target = parse_bounces(settings.bounces);
+  if (!target.any()) return put_albedo(result.channels, receivers.albedos);
+  const BouncedLight light(integration.take_engine(), result.backend, occluders, integration.direction_list(), settings,
+                           threads, target, BounceSample(receivers.view(), result.channels.front()),
+                           [&](double fraction) { progress(direct_share + (1 - direct_share) * 0.5 * fraction); });
+  result.channels.resize(light.channels(), result.channels.front());
+  result.bounces = light.add_to(result.channels, receivers.view(), integration.direction_list(), [&](double fraction) {
+    progress(direct_share + (1 - direct_share) * (0.5 + 0.5 * fraction));
+  });
+  put_albedo(result.channels, receivers.albedos);
+}
+
 }  // namespace
 
 BakeResult bake(const TexelReceivers& receivers, const Occluders& occluders, const BakeSettings& settings, int seed,
                 int threads, const Checkpoints& checkpoints, const ProgressFunction& progress) {
   const Stopwatch stopwatch;
-  Integration integration(receivers.view(), occluders, settings, seed, threads, progress);
+  const bool bounces = parse_bounces(settings.bounces).any();
+  const ProgressFunction direct_progress = [&](double fraction) {
+    progress(bounces ? direct_share * fraction : fraction);
+  };
+  Integration integration(receivers.view(), occluders, settings, seed, threads, direct_progress);
   const TransferWork before = integration.engine().work();
   TransferVectors transfer(receivers.texels.size(), coefficient_count(settings.bands));
   integration.put_unoccluded(transfer);
   for (std::size_t slab = 0; slab < integration.slabs(); ++slab)
-    integration.put(slab, integration.sum(slab, {}, checkpoints, part_of(progress, slab, integration.slabs())).sums,
+    integration.put(slab,
+                    integration.sum(slab, {}, checkpoints, part_of(direct_progress, slab, integration.slabs())).sums,
                     transfer);
   BakeResult result = describe(integration, before, stopwatch);
   result.channels.push_back(std::move(transfer));
+  add_bounces(result, integration, receivers, occluders, settings, threads, progress);
+  result.seconds = stopwatch.seconds();
   return result;
 }
 
@@ -101,7 +140,7 @@ BakeResult merge_shards(const std::vector<fs::path>& folders, const TexelReceive
   if (settings.backend == BakeBackend::automatic) bake_options(merged).find("backend")->set(first.value("backend", ""));
   const std::string renderer = first.value("renderer", "");
   merged.max_error = "none";
-  const Integration integration(receivers.view(), occluders, merged, seed, threads, progress);
+  Integration integration(receivers.view(), occluders, merged, seed, threads, progress);
 
   // Step 2: slab after slab, add.
   const int count = static_cast<int>(folders.size());
@@ -136,6 +175,8 @@ BakeResult merge_shards(const std::vector<fs::path>& folders, const TexelReceive
   BakeResult result = describe(integration, stopwatch);
   result.renderer = renderer;
   result.channels.push_back(std::move(transfer));
+  add_bounces(result, integration, receivers, occluders, merged, threads, progress);
+  result.seconds = stopwatch.seconds();
   return result;
 }
 
@@ -151,6 +192,7 @@ BakeVerification verify(const BakeResult& result, const std::vector<TransferVect
   other_settings.max_error = "none";
   other_settings.directions = result.directions;
   other_settings.sampling = result.sampling;
+  if (result.bounces) other_settings.bounces = std::to_string(result.bounces->energy.size());
   const BakeResult other_result =
       bake(receivers, occluders, other_settings, seed, threads, {}, [&](double fraction) { progress(0.5 * fraction); });
   verification.other_backend = other_result.renderer;
@@ -161,17 +203,31 @@ BakeVerification verify(const BakeResult& result, const std::vector<TransferVect
   // Step 2: many rays, from some of the texels.
   const std::size_t all = receivers.texels.size();
   const std::size_t step = std::max<std::size_t>(1, all / settings.verify_texels);
-  std::vector<Eigen::Vector3f> positions, normals;
+  std::vector<Eigen::Vector3f> positions, normals, albedos;
   for (std::size_t r = 0; r < all; r += step) {
     positions.push_back(receivers.positions[r]);
     normals.push_back(receivers.normals[r]);
+    if (!receivers.albedos.empty()) albedos.push_back(receivers.albedos[r]);
   }
   const std::vector<Eigen::Vector3f> many =
       sample_directions(Sampling::fibonacci, settings.verify_directions, seed + 1u);
   const std::unique_ptr<TransferEngine> rays = make_engine(BakeBackend::embree, occluders, settings, threads);
   rays->set_receivers({positions, normals}, settings.bands);
   rays->add(many, [&](double fraction) { progress(0.5 + 0.5 * fraction); });
-  const std::vector<TransferVectors> reference = {rays->sums().transfer()};
+  std::vector<TransferVectors> reference = {rays->sums().transfer()};
+  if (result.bounces) {
+    // The surface's light by the bake's own number of directions: the last bounce, which shows, by many.
+    std::vector<Eigen::Vector3f> own =
+        sample_directions(result.sampling, result.directions, static_cast<std::uint64_t>(seed));
+    order_coherently(own, block_directions);
+    const BounceTarget target = {.automatic = false, .count = static_cast<int>(result.bounces->energy.size())};
+    const BouncedLight light(make_engine(BakeBackend::embree, occluders, settings, threads), BakeBackend::embree,
+                             occluders, own, settings, threads, target,
+                             BounceSample({positions, normals}, reference.front()), no_progress);
+    reference.resize(light.channels(), reference.front());
+    light.add_to(reference, {positions, normals}, many, no_progress);
+  }
+  put_albedo(reference, albedos);
   verification.reference_directions = settings.verify_directions;
   verification.reference_texels = positions.size();
   verification.integration_error = relative_l2(thin_out(result.channels, step), reference);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bake/bake_settings.h"
+#include "bake/bounce/bounces.h"
 #include "bake/integrate/integration.h"
 #include "bake/integrate/shadow_choice.h"
 #include "bake/scene/occluders.h"
@@ -27,8 +28,9 @@ struct BakeResult {
   std::size_t unoccluded = 0;  ///< receivers that took the analytic transfer
   TransferWork work;           ///< of this run, for the others
   std::optional<DirectionChoice> choice;
+  std::optional<BounceReport> bounces;  ///< where light bounces
   std::optional<ShadowSizeChoice> shadow_choice;
-  double seconds = 0;  ///< of the integration alone, the engine's start included
+  double seconds = 0;  ///< of integrating and bouncing alone, the engines' start included
 };
 
 /// Integrates the transfer of every receiver, shadowed by the occluders, over directions drawn with `seed`. `threads`

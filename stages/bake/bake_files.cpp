@@ -1,6 +1,7 @@
 #include "bake/bake_files.h"
 
 #include <optional>
+#include <utility>
 
 #include "bake/planes/coefficient_planes.h"
 #include "bake/planes/vertex_planes.h"
@@ -8,6 +9,7 @@
 #include "base/errors.h"
 #include "detail/asset_hints.h"
 #include "detail/detail_maps.h"
+#include "material/load_albedo.h"
 #include "mesh/draco_file.h"
 #include "mesh/mesh_file.h"
 
@@ -25,11 +27,29 @@ Extent packed_size(const fs::path& atlas) {
   return hints.width > 0 ? Extent(hints.width, hints.height) : Extent(default_size_texels);
 }
 
-std::vector<TriangleMesh> load_occluders(const BakePaths& paths) {
+/// Fills scene.occluders, with albedos where settings need them. Gives the meshes.
+std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSettings& settings, BakeScene& scene) {
   std::vector<TriangleMesh> meshes;
-  const MeshRepairSettings repair{.fill_hole_edges = read_asset_hints(folder_of(paths.atlas)).fill_hole_edges};
-  for (const fs::path& occluder : paths.occluders) meshes.push_back(load_mesh(occluder, nullptr, repair));
-  if (meshes.empty()) meshes.push_back(load_mesh(paths.atlas));
+  std::vector<fs::path> files = paths.occluders;
+  MeshRepairSettings repair{.fill_hole_edges = read_asset_hints(folder_of(paths.atlas)).fill_hole_edges};
+  if (files.empty()) {
+    files.push_back(paths.atlas);
+    repair = {};
+  }
+  for (const fs::path& file : files) meshes.push_back(load_mesh(file, nullptr, repair));
+
+  std::vector<SurfaceAlbedo> albedos;
+  const bool bounces = parse_bounces(settings.bounces).any();
+  for (std::size_t k = 0; k < files.size() && (bounces || settings.bake_albedo); ++k) {
+    const LoadedAlbedo loaded = load_albedo(files[k], meshes[k], settings.material);
+    if (bounces && loaded.albedo.source() == SurfaceAlbedo::Source::none)
+      throw WrongUsage("bounces: found no albedo in " + files[k].string() +
+                       "; expected materials, colours of vertices, --albedo or --albedo-texture");
+    albedos.push_back(loaded.albedo);
+    scene.material_files.insert(scene.material_files.end(), loaded.files.begin(), loaded.files.end());
+    if (const std::string warning = loaded.warning(); !warning.empty()) scene.warnings.push_back(warning);
+  }
+  scene.occluders = join_occluders(meshes, std::move(albedos));
   return meshes;
 }
 
@@ -41,12 +61,12 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
   if (settings.size.width != 0) throw WrongUsage("per-vertex: found --size; expected none, which is for texels");
   BakeScene scene;
   scene.vertex_mesh = load_vertex_mesh(paths.atlas);
-  const std::vector<TriangleMesh> occluders = load_occluders(paths);
-  scene.occluders = join_occluders(occluders);
+  const std::vector<TriangleMesh> occluders = load_occluders(paths, settings, scene);
   const bool on_high = settings.receiver == BakeReceiver::high && !paths.occluders.empty();
   VertexReceivers vertices = on_high ? receivers_on_high_of_vertices(scene.vertex_mesh, occluders.front())
                                      : receivers_on_vertices(scene.vertex_mesh);
   scene.receivers = std::move(vertices.receivers);
+  if (settings.bake_albedo) take_albedos(scene.receivers, scene.occluders);
   for (std::size_t r = 0; r < scene.receivers.texels.size(); ++r)
     scene.vertex_mesh.normals[scene.receivers.texels[r]] = scene.receivers.normals[r];
   scene.vertex_metrics = {{"receiver_distance_largest", vertices.largest_distance},
@@ -102,7 +122,11 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
   if (scene.receivers.texels.empty())
     throw BadInput(paths.atlas.string(), "covers no texel", "an atlas packed for this size", "bake at a larger size");
 
-  scene.occluders = join_occluders(load_occluders(paths));
+  load_occluders(paths, settings, scene);
+  if (settings.bake_albedo && detail && !settings.material.constant())
+    take_albedos(scene.receivers, *detail);
+  else if (settings.bake_albedo)
+    take_albedos(scene.receivers, scene.occluders);
   return scene;
 }
 
@@ -124,6 +148,17 @@ Json describe_bake(const BakeScene& scene, const BakeResult& result) {
     metrics["shadow_map"] = {{"size", result.shadow_choice->size_texels},
                              {"error", result.shadow_choice->error},
                              {"floor", result.shadow_choice->floor}};
+  if (result.bounces) {
+    const BounceReport& bounces = *result.bounces;
+    metrics["bounces"] = {{"count", bounces.energy.size()},
+                          {"renderer", bounces.renderer},
+                          {"energy", bounces.energy},
+                          {"seconds", bounces.seconds},
+                          {"cache_points", bounces.cache_points},
+                          {"cache_triangles", bounces.cache_triangles},
+                          {"cache_seconds", bounces.cache_seconds}};
+    if (bounces.floor > 0) metrics["bounces"]["floor"] = bounces.floor;
+  }
   // Shares of all pairs of a texel and a direction.
   const auto all = static_cast<double>(result.work.pairs);
   const auto share = [&](std::uint64_t pairs) { return all > 0 ? static_cast<double>(pairs) / all : 0; };

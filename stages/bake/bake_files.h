@@ -19,6 +19,8 @@ struct BakeScene {
   TriangleMesh atlas;  ///< empty in a bake per vertex
   TexelReceivers receivers;
   Occluders occluders;
+  std::vector<std::filesystem::path> material_files;  ///< that the occluders' albedo was read from, besides their own
+  std::vector<std::string> warnings;
 
   // Of a bake per vertex alone.
   TriangleMesh vertex_mesh;  ///< as it is to be written, normals those of the receivers

@@ -60,6 +60,9 @@ BakeResult run_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene&
                 " texels leave an error of visibility of " + std::to_string(result.shadow_choice->error) +
                 ", above the " + std::to_string(result.shadow_choice->floor) +
                 " that --bits costs; --refine rays brings it under that");
+  if (result.bounces && !result.bounces->reached)
+    command.say("WARNING: " + std::to_string(result.bounces->energy.size()) +
+                " bounces, the most there are, leave one that adds more than --bits costs; is the albedo 1?");
   if (settings.backend == BakeBackend::egl && result.software_renderer)
     command.say("WARNING: SOFTWARE RENDERER " + result.renderer +
                 "; a GPU would be far faster, and --backend embree is likely to be");

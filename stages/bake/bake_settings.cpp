@@ -1,8 +1,27 @@
 #include "bake/bake_settings.h"
 
+#include <charconv>
+
+#include "base/errors.h"
+
 namespace kiln {
 
 namespace {
+
+/// Light that bounces, and what it bounces off.
+void add_bounce_options(OptionSet& options, BakeSettings& settings) {
+  options.checked_text("bounces", settings.bounces, "0 to 100, or auto",
+                       "How often light bounces off the occluders; auto: until the next bounce adds less than what "
+                       "--bits costs",
+                       [](const std::string& text) { parse_bounces(text); });
+  add_material_options(options, settings.material);
+  options
+      .toggle("bake-albedo", settings.bake_albedo,
+              "Puts the receivers' albedo in the stored transfer, in place of leaving it to the renderer")
+      .number("bounce-edge", settings.bounce_edge, 1e-4, 1,
+              "Light bounces off a surface whose longer edges are cut: the longest, a fraction of the occluders' "
+              "diagonal");
+}
 
 /// How the EGL engine decides visibility; shadow_settings.h has what each means.
 void add_shadow_options(OptionSet& options, BakeSettings& settings) {
@@ -49,6 +68,16 @@ const std::vector<std::pair<std::string, BakeBackend>> backend_words = {{"auto",
 
 }  // namespace
 
+BounceTarget parse_bounces(const std::string& text) {
+  if (text == "auto") return {.automatic = true, .count = 0};
+  int count = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (failure != std::errc{} || end != text.data() + text.size() || count < 0 || count > most_bounces)
+    throw WrongUsage("bounces: found '" + text + "'; expected auto or a number of 0 to " +
+                     std::to_string(most_bounces));
+  return {.automatic = false, .count = count};
+}
+
 std::string backend_name(BakeBackend backend) {
   for (const auto& [name, value] : backend_words)
     if (value == backend) return name;
@@ -83,6 +112,7 @@ OptionSet bake_options(BakeSettings& settings) {
       .extent("size", settings.size, 0, 16384,
               "Width and height in texels where no --detail says it; 0 for what kiln-atlas packed for")
       .text("gl-device", settings.gl_device, "EGL device: auto, software, or its number");
+  add_bounce_options(options, settings);
   add_shadow_options(options, settings);
   options
       .number("ray-offset", settings.ray_offset, 0, 1,

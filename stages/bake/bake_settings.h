@@ -5,6 +5,7 @@
 #include "bake/egl/shadow_settings.h"
 #include "base/options.h"
 #include "detail/seam_choice.h"
+#include "material/material_settings.h"
 #include "sh/directions.h"
 
 namespace kiln {
@@ -23,6 +24,20 @@ std::string backend_name(BakeBackend backend);
 /// mesh.
 enum class BakeReceiver { high, low };
 
+/// How often light bounces.
+struct BounceTarget {
+  bool automatic = false;  ///< until the next bounce adds less than what storing costs
+  int count = 0;           ///< where that is not so
+
+  bool any() const { return automatic || count > 0; }
+};
+
+/// Of --bounces: "auto" or a number of 0 to most_bounces. Throws WrongUsage.
+BounceTarget parse_bounces(const std::string& text);
+
+/// With an albedo of 0.8 throughout, the hundredth bounce in a closed room is a 5-billionth of the direct light.
+inline constexpr int most_bounces = 100;
+
 struct BakeSettings {
   int bands = 5;  ///< bands^2 coefficients
   int directions = 1024;
@@ -31,6 +46,10 @@ struct BakeSettings {
   Sampling sampling = Sampling::fibonacci;
   int bits = 8;  ///< of a stored coefficient
   SeamChoice seams = SeamChoice::equalise;
+  std::string bounces = "0";  ///< how often light bounces: a number, or auto
+  bool bake_albedo = false;   ///< whether the stored transfer has the receivers' albedo in it
+  MaterialSettings material;  ///< of the occluders, and of receivers where no detail folder has it
+  double bounce_edge = 0.01;  ///< longest edge of what it bounces off, fraction of the occluders' diagonal
   BakeBackend backend = BakeBackend::automatic;
   BakeReceiver receiver = BakeReceiver::high;
   bool per_vertex = false;  ///< vertices receive light, not texels

@@ -23,6 +23,8 @@ int main(int argc, char** argv) {
 
     kiln::OutputSet outputs(paths.output);
     const kiln::BakeScene scene = kiln::load_bake_scene(paths, settings);
+    command.also_read(scene.material_files);
+    for (const std::string& warning : scene.warnings) command.say(warning);
     const kiln::BakeResult result = kiln::run_bake(outputs, paths, scene, settings, run, command);
     const kiln::Json metrics = run.is_shard() ? kiln::describe_bake(scene, result)
                                               : kiln::save_bake(outputs, paths, scene, result, settings, command);

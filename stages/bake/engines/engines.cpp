@@ -1,5 +1,6 @@
 #include "bake/engines/engines.h"
 
+#include "bake/bounce/ray_gather_engine.h"
 #include "bake/egl/egl_engine.h"
 #include "bake/engines/beam_engine.h"
 #include "bake/engines/embree_engine.h"
@@ -22,6 +23,12 @@ std::unique_ptr<TransferEngine> make_engine(BakeBackend backend, const Occluders
   shadows.size_texels = settings.shadow_size;
   return std::make_unique<EglEngine>(scene, settings.gl_device, threads, shadows,
                                      make_shadow_rays(scene, settings.ray_offset));
+}
+
+std::unique_ptr<GatherEngine> make_gather_engine(BakeBackend backend, const ReflectingSurface& surface,
+                                                 const BakeSettings& settings, int threads) {
+  (void)threads;
+  return std::make_unique<RayGatherEngine>(surface, settings.ray_offset, backend == BakeBackend::beams);
 }
 
 }  // namespace kiln

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "bake/bake_settings.h"
+#include "bake/bounce/gather_engine.h"
 #include "bake/engines/transfer_engine.h"
 #include "bake/scene/occluders.h"
 
@@ -15,5 +16,9 @@ BakeBackend choose_backend(const BakeSettings& settings);
 /// cannot run. `settings.shadow_size` is not automatic (shadow_choice.h); `occluders` outlives the engine.
 std::unique_ptr<TransferEngine> make_engine(BakeBackend backend, const Occluders& occluders,
                                             const BakeSettings& settings, int threads);
+
+/// What gathers bounced light beside the engine of `backend`, not automatic either.
+std::unique_ptr<GatherEngine> make_gather_engine(BakeBackend backend, const ReflectingSurface& surface,
+                                                 const BakeSettings& settings, int threads);
 
 }  // namespace kiln

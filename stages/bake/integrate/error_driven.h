@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "bake/bake_settings.h"
@@ -20,6 +21,9 @@ ErrorTarget parse_error_target(const std::string& text);
 /// Relative L2 that storing `transfer` costs: each plane's values are rounded to 2^bits - 1 steps of its range, an
 /// error of variance step^2 / 12.
 double quantisation_floor(const TransferVectors& transfer, int bits);
+
+/// The same over all channels together.
+double quantisation_floor(std::span<const TransferVectors> channels, int bits);
 
 struct DirectionChoice {
   int directions = 0;

@@ -147,8 +147,9 @@ Json Integration::key(const Shard& shard, const std::string& renderer) const {
   BakeSettings settings = settings_;
   settings.sampling = sampling_;
   Json relevant = bake_options(settings).to_json();
-  for (const char* name : {"bits", "size", "directions", "max-error", "max-directions", "verify-directions",
-                           "verify-texels", "backend", "gl-device"})
+  for (const char* name :
+       {"bits", "size", "directions", "max-error", "max-directions", "verify-directions", "verify-texels", "backend",
+        "gl-device", "bounces", "bounce-edge", "bake-albedo", "albedo", "albedo-texture", "albedo-encoding"})
     relevant.erase(name);
   return {{"receivers", receivers_hash_},
           {"occluders", occluders_hash_},

@@ -58,8 +58,14 @@ class Integration {
   BakeBackend backend() const { return backend_; }
   /// Made when first asked for. Throws MachineLacks where the backend cannot run.
   TransferEngine& engine();
+  /// Gives the engine away, so that another can take its place in memory and on the GPU.
+  std::unique_ptr<TransferEngine> take_engine() {
+    engine();
+    return std::move(engine_);
+  }
   Sampling sampling() const { return sampling_; }
   int directions() const { return static_cast<int>(directions_.size()); }
+  std::span<const Eigen::Vector3f> direction_list() const { return directions_; }  ///< coherent block after block
   std::size_t unoccluded() const { return receivers_.size() - tested_.size(); }
   const std::optional<DirectionChoice>& choice() const { return choice_; }
   /// Made with the engine, for an automatic size of depth maps.

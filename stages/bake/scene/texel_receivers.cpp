@@ -1,8 +1,11 @@
 #include "bake/scene/texel_receivers.h"
 
 #include <algorithm>
+#include <limits>
+#include <tbb/parallel_for.h>
 
 #include "mesh/uv_raster.h"
+#include "raycast/ray_scene.h"
 
 namespace kiln {
 
@@ -62,6 +65,22 @@ TexelReceivers receivers_on_low(const TriangleMesh& atlas, int width, int height
                                     : Eigen::Vector3f(interpolate(atlas, atlas.normals, source).normalized()));
   });
   return receivers;
+}
+
+void take_albedos(TexelReceivers& receivers, const DetailMaps& detail) {
+  receivers.albedos.clear();
+  for (std::uint32_t texel : receivers.texels)
+    receivers.albedos.push_back(
+        detail.albedo_at(static_cast<int>(texel % detail.width), static_cast<int>(texel / detail.width)));
+}
+
+void take_albedos(TexelReceivers& receivers, const Occluders& occluders) {
+  const RayScene surface(occluders.mesh);
+  receivers.albedos.resize(receivers.positions.size());
+  tbb::parallel_for(std::size_t{0}, receivers.positions.size(), [&](std::size_t r) {
+    const SurfacePoint at = surface.closest_point(receivers.positions[r], std::numeric_limits<float>::infinity());
+    receivers.albedos[r] = occluders.albedo_at(at.triangle, at.u, at.v);
+  });
 }
 
 }  // namespace kiln

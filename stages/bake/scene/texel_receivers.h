@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "bake/scene/occluders.h"
 #include "detail/detail_maps.h"
 #include "mesh/triangle_mesh.h"
 #include "sh/transfer.h"
@@ -18,6 +19,7 @@ struct TexelReceivers {
   std::vector<std::uint32_t> texels;  ///< j * width + i, rows from the bottom
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
+  std::vector<Eigen::Vector3f> albedos = {};  ///< linear red, green and blue; none where nothing was asked for
 
   Receivers view() const { return {positions, normals}; }
   std::vector<std::uint8_t> covered() const;  ///< 1 or 0 per texel
@@ -29,5 +31,11 @@ TexelReceivers receivers_on_high(const DetailMaps& detail);
 /// Texels stand on the low mesh itself; with the high mesh's normals where `detail` is given (the thesis's
 /// variant, 4.2.4), else with the low mesh's, interpolated.
 TexelReceivers receivers_on_low(const TriangleMesh& atlas, int width, int height, const DetailMaps* detail);
+
+/// Gives the receivers the albedos that `detail` has of their texels.
+void take_albedos(TexelReceivers& receivers, const DetailMaps& detail);
+
+/// Gives them those of the occluders' nearest points. `occluders` have albedos.
+void take_albedos(TexelReceivers& receivers, const Occluders& occluders);
 
 }  // namespace kiln

@@ -1,0 +1,39 @@
+#include "bake/bounce/bounced_light.h"
+
+#include "bake/engines/engines.h"
+#include "base/command_line.h"
+
+namespace kiln {
+
+namespace {
+
+constexpr double cache_share = 0.3;  // of the progress
+
+}  // namespace
+
+BouncedLight::BouncedLight(std::unique_ptr<TransferEngine> direct, BakeBackend backend, const Occluders& occluders,
+                           std::span<const Eigen::Vector3f> directions, const BakeSettings& settings, int threads,
+                           const BounceTarget& target, const BounceSample& sample, const ProgressFunction& progress) {
+  const Stopwatch stopwatch;
+  const SurfaceCache cache = make_surface_cache(occluders, settings.bounce_edge);
+  const TransferVectors transfer = direct_transfer(*direct, cache.receivers(), directions, settings.bands,
+                                                   [&](double fraction) { progress(cache_share * fraction); });
+  direct.reset();
+  report_.cache_points = cache.size();
+  report_.cache_triangles = cache.triangles.size();
+  report_.cache_seconds = stopwatch.seconds();
+  engine_ = make_gather_engine(backend, cache.surface(), settings, threads);
+  light_ = bounce_light(cache, transfer, *engine_, directions, target, settings.bits, sample, report_,
+                        [&](double fraction) { progress(cache_share + (1 - cache_share) * fraction); });
+}
+
+BounceReport BouncedLight::add_to(std::vector<TransferVectors>& channels, const Receivers& receivers,
+                                  std::span<const Eigen::Vector3f> directions, const ProgressFunction& progress) const {
+  const Stopwatch stopwatch;
+  add_bounced(*engine_, light_, receivers, directions, channels, progress);
+  BounceReport report = report_;
+  if (!report.seconds.empty()) report.seconds.back() += stopwatch.seconds();
+  return report;
+}
+
+}  // namespace kiln

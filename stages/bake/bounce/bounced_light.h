@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "bake/bounce/bounces.h"
+
+namespace kiln {
+
+/// The light that a scene's surfaces send each other, ready to be gathered by any receivers.
+class BouncedLight {
+ public:
+  /// Lights the surface by `direct`, an engine of `backend` whose scene are the occluders, then lets light bounce off
+  /// it. The engine goes before the one that gathers comes.
+  BouncedLight(std::unique_ptr<TransferEngine> direct, BakeBackend backend, const Occluders& occluders,
+               std::span<const Eigen::Vector3f> directions, const BakeSettings& settings, int threads,
+               const BounceTarget& target, const BounceSample& sample, const ProgressFunction& progress);
+
+  int channels() const { return light_.channels; }
+
+  /// Adds all bounces to the receivers' direct transfer: `channels` of them. Gives the report, the time of this among
+  /// the last bounce's.
+  BounceReport add_to(std::vector<TransferVectors>& channels, const Receivers& receivers,
+                      std::span<const Eigen::Vector3f> directions, const ProgressFunction& progress) const;
+
+ private:
+  BounceReport report_;
+  SentLight light_;
+  std::unique_ptr<GatherEngine> engine_;
+};
+
+}  // namespace kiln

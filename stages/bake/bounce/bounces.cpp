@@ -1,0 +1,145 @@
+// Transfer bounces as radiance does, because it is linear in the light (Sloan, Kautz and Snyder, "Precomputed radiance
+// transfer for real-time rendering in dynamic, low-frequency lighting environments", 2002, section 5). Gathered at
+// points of the surface bounce after bounce, and at the receivers once: a final gather, as of radiosity (Lischinski,
+// Tampieri and Greenberg, "Combining hierarchical radiosity and discontinuity meshing", 1993).
+#include "bake/bounce/bounces.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bake/integrate/error_driven.h"
+#include "base/command_line.h"
+#include "sh/basis.h"
+
+namespace kiln {
+
+namespace {
+
+constexpr std::size_t sample_receivers = 4096;
+constexpr std::size_t slab_receivers = 1u << 17;  // 75 sums of 8 bytes each: 79 MB
+
+/// Calls visit(first, part, fraction of progress) for parts of the receivers.
+template <class Visit>
+void for_each_slab(const Receivers& receivers, const ProgressFunction& progress, const Visit& visit) {
+  const auto all = static_cast<double>(receivers.size());
+  for (std::size_t first = 0; first < receivers.size(); first += slab_receivers) {
+    const std::size_t count = std::min(slab_receivers, receivers.size() - first);
+    visit(
+        first, Receivers{receivers.positions.subspan(first, count), receivers.normals.subspan(first, count)},
+        [&](double fraction) { progress((static_cast<double>(first) + fraction * static_cast<double>(count)) / all); });
+  }
+}
+
+/// Channel after channel of what `engine` gathers.
+std::vector<TransferVectors> gathered(GatherEngine& engine, int channels, int coefficients, const Receivers& receivers,
+                                      std::span<const Eigen::Vector3f> directions, const ProgressFunction& progress) {
+  std::vector<TransferVectors> result(channels, TransferVectors(receivers.size(), coefficients));
+  for_each_slab(receivers, progress, [&](std::size_t first, const Receivers& part, const ProgressFunction& partly) {
+    const TransferVectors planes = engine.gather(part, directions, partly).transfer();
+    for (int c = 0; c < channels; ++c)
+      for (int i = 0; i < coefficients; ++i) {
+        const std::span<const float> plane = planes.plane(c * coefficients + i);
+        std::copy(plane.begin(), plane.end(), result[c].plane(i).begin() + static_cast<std::ptrdiff_t>(first));
+      }
+  });
+  return result;
+}
+
+/// albedo times transfer, point after point. A channel of `transfer` may serve for all.
+std::vector<float> sent(const SurfaceCache& cache, const std::vector<TransferVectors>& transfer, int channels) {
+  const auto coefficients = static_cast<std::size_t>(transfer.front().coefficients);
+  std::vector<float> values(cache.size() * channels * coefficients);
+  for (int c = 0; c < channels; ++c)
+    for (std::size_t i = 0; i < coefficients; ++i) {
+      const std::span<const float> plane =
+          transfer[std::min<std::size_t>(c, transfer.size() - 1)].plane(static_cast<int>(i));
+      for (std::size_t p = 0; p < cache.size(); ++p)
+        values[(p * channels + c) * coefficients + i] = cache.point_albedos[p][c] * plane[p];
+    }
+  return values;
+}
+
+double squared_norm(const std::vector<TransferVectors>& channels) {
+  double sum = 0;
+  for (const TransferVectors& channel : channels)
+    for (float value : channel.values) sum += static_cast<double>(value) * value;
+  return sum;
+}
+
+void add(std::vector<TransferVectors>& sums, const std::vector<TransferVectors>& more) {
+  for (std::size_t c = 0; c < sums.size(); ++c)
+    for (std::size_t k = 0; k < sums[c].values.size(); ++k) sums[c].values[k] += more[c].values[k];
+}
+
+}  // namespace
+
+BounceSample::BounceSample(const Receivers& receivers, const TransferVectors& transfer)
+    : direct(std::min(sample_receivers, receivers.size()), transfer.coefficients) {
+  for (std::size_t k = 0; k < direct.receivers; ++k) {
+    const std::size_t r = k * receivers.size() / direct.receivers;
+    positions.push_back(receivers.positions[r]);
+    normals.push_back(receivers.normals[r]);
+    for (int i = 0; i < transfer.coefficients; ++i) direct.plane(i)[k] = transfer.plane(i)[r];
+  }
+}
+
+TransferVectors direct_transfer(TransferEngine& engine, const Receivers& receivers,
+                                std::span<const Eigen::Vector3f> directions, int bands,
+                                const ProgressFunction& progress) {
+  TransferVectors result(receivers.size(), coefficient_count(bands));
+  for_each_slab(receivers, progress, [&](std::size_t first, const Receivers& part, const ProgressFunction& partly) {
+    engine.set_receivers(part, bands);
+    engine.add(directions, partly);
+    const TransferVectors own = engine.sums().transfer();
+    for (int i = 0; i < own.coefficients; ++i)
+      std::copy(own.plane(i).begin(), own.plane(i).end(), result.plane(i).begin() + static_cast<std::ptrdiff_t>(first));
+  });
+  return result;
+}
+
+SentLight bounce_light(const SurfaceCache& cache, const TransferVectors& direct, GatherEngine& engine,
+                       std::span<const Eigen::Vector3f> directions, const BounceTarget& target, int bits,
+                       const BounceSample& sample, BounceReport& report, const ProgressFunction& progress) {
+  SentLight light{cache.grey ? 1 : 3, direct.coefficients, {}};
+  const int most = target.automatic ? most_bounces : target.count;
+  const double direct_norm = std::sqrt(light.channels * squared_norm({sample.direct}));
+  std::vector<TransferVectors> sample_total(light.channels, sample.direct);
+  std::vector<float> bounced = sent(cache, {direct}, light.channels);
+  report.reached = !target.automatic;
+  for (int bounce = 1; bounce <= most; ++bounce) {
+    const Stopwatch stopwatch;
+    engine.set_radiance(bounced, light.width());
+    // Step 1: what this bounce adds.
+    const std::vector<TransferVectors> added =
+        gathered(engine, light.channels, light.coefficients, sample.receivers(), directions, no_progress);
+    const double norm = std::sqrt(squared_norm(added));
+    if (target.automatic) {
+      report.floor = quantisation_floor(sample_total, bits);
+      report.reached = norm <= report.floor * std::sqrt(squared_norm(sample_total));
+      if (report.reached) break;
+    }
+    add(sample_total, added);
+    report.energy.push_back(direct_norm > 0 ? norm / direct_norm : 0);
+    if (light.values.empty()) light.values.resize(bounced.size(), 0.f);
+    for (std::size_t k = 0; k < bounced.size(); ++k) light.values[k] += bounced[k];
+    // Step 2: what the next one finds. Of a fixed count the last is the receivers' own.
+    if (bounce < most)
+      bounced = sent(cache,
+                     gathered(engine, light.channels, light.coefficients, cache.receivers(), directions,
+                              [&](double fraction) { progress((bounce - 1 + fraction) / most); }),
+                     light.channels);
+    report.seconds.push_back(stopwatch.seconds());
+  }
+  report.renderer = engine.renderer();
+  return light;
+}
+
+void add_bounced(GatherEngine& engine, const SentLight& light, const Receivers& receivers,
+                 std::span<const Eigen::Vector3f> directions, std::vector<TransferVectors>& channels,
+                 const ProgressFunction& progress) {
+  if (light.values.empty()) return;
+  engine.set_radiance(light.values, light.width());
+  add(channels, gathered(engine, light.channels, light.coefficients, receivers, directions, progress));
+}
+
+}  // namespace kiln

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "base/progress.h"
+#include "sh/transfer_sums.h"
+
+namespace kiln {
+
+/// What receivers see: triangles whose front, the side from which they wind counter-clockwise, sends out vectors,
+/// linear between those of three points. The engine copies what it keeps.
+struct ReflectingSurface {
+  std::span<const Eigen::Vector3f> positions;
+  std::span<const std::array<std::uint32_t, 3>> triangles;
+  std::span<const std::array<std::uint32_t, 3>> points;  ///< of each triangle's corners
+  std::span<const Eigen::Vector3f> hull;                 ///< as TransferScene has it
+  bool closed = false;
+};
+
+/// Receivers, a surface that sends out vectors, directions in; sums of what is received out. Stands beside
+/// TransferEngine: the one has what receivers see of the sky, the other what they see of the surface.
+class GatherEngine {
+ public:
+  virtual ~GatherEngine() = default;
+
+  /// What the surface's points send out from now on: point after point, `width` numbers of at most 8 each. Copied.
+  virtual void set_radiance(std::span<const float> values, int width) = 0;
+
+  /// The sums over unit vectors s, for each receiver, of max(0, n.s) times what the surface's first point along s sends
+  /// (nothing from its back), component after component: TransferSums with `width` coefficients, whose transfer() is
+  /// the integral over pi. The same bits whatever the number of threads. Directions of a block of block_directions that
+  /// lie close together go faster.
+  virtual TransferSums gather(const Receivers& receivers, std::span<const Eigen::Vector3f> directions,
+                              const ProgressFunction& progress) = 0;
+
+  /// What did the work, for the record.
+  virtual std::string renderer() const = 0;
+};
+
+}  // namespace kiln

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "bake/bounce/gather_engine.h"
+#include "raycast/beam_scene.h"
+#include "raycast/ray_scene.h"
+
+namespace kiln {
+
+/// First hits by Embree, in packets of 16 parallel rays. With `by_beams` Kiln's beams say which rays hit anything at
+/// all, and Embree, what.
+class RayGatherEngine : public GatherEngine {
+ public:
+  /// Rays start `ray_offset` off the receiver along its normal, a fraction of the surface's bounding box diagonal.
+  RayGatherEngine(const ReflectingSurface& surface, double ray_offset, bool by_beams);
+
+  void set_radiance(std::span<const float> values, int width) override;
+  TransferSums gather(const Receivers& receivers, std::span<const Eigen::Vector3f> directions,
+                      const ProgressFunction& progress) override;
+  std::string renderer() const override;
+
+ private:
+  RayScene scene_;
+  std::optional<BeamScene> beams_;
+  float ray_offset_;
+  std::vector<std::array<std::uint32_t, 3>> points_;
+  std::vector<float> values_;
+  int width_ = 0;
+};
+
+}  // namespace kiln

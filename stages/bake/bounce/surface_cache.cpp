@@ -1,0 +1,228 @@
+#include "bake/bounce/surface_cache.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace kiln {
+
+namespace {
+
+constexpr float crease_cosine = 0.70710678f;  // of 45 degrees
+constexpr float inset = 0.1f;                 // of the way to the triangle's centre, at creases and borders
+
+/// A triangle of the cut surface: its corners, and where they lie in the triangle that it was cut from.
+struct Piece {
+  std::array<std::uint32_t, 3> corners;
+  std::uint32_t source = 0;
+  std::array<Eigen::Vector2f, 3> places;  // weights of the source's second and third corner
+};
+
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+/// Halves edges longer than `longest` until there are none.
+void cut_long_edges(std::vector<Eigen::Vector3f>& positions, std::vector<Piece>& pieces, float longest) {
+  const float most = longest * longest;
+  for (bool any = true; any;) {
+    any = false;
+    std::map<Edge, std::uint32_t> middles;
+    const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+      const auto [found, fresh] = middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(positions.size()));
+      if (fresh) positions.push_back(0.5f * (positions[a] + positions[b]));
+      return found->second;
+    };
+    std::vector<Piece> finer;
+    for (const Piece& piece : pieces) {
+      // Step 1: turned so that, of one cut edge, it is the first, and of two, the third is the whole one.
+      std::array<bool, 3> is_long{};
+      int count = 0;
+      for (int k = 0; k < 3; ++k) {
+        is_long[k] = (positions[piece.corners[k]] - positions[piece.corners[(k + 1) % 3]]).squaredNorm() > most;
+        count += is_long[k] ? 1 : 0;
+      }
+      if (count == 0) {
+        finer.push_back(piece);
+        continue;
+      }
+      any = true;
+      int first = 0;
+      while (count < 3 && !(is_long[first] && (count == 1 || is_long[(first + 1) % 3]))) ++first;
+      // Step 2: corners 0 to 2, and the middles of the edges 0-1, 1-2 and 2-0 as 3 to 5.
+      std::array<std::uint32_t, 6> vertex{};
+      std::array<Eigen::Vector2f, 6> place;
+      for (int k = 0; k < 3; ++k) {
+        vertex[k] = piece.corners[(first + k) % 3];
+        place[k] = piece.places[(first + k) % 3];
+      }
+      for (int k = 0; k < count; ++k) {
+        vertex[3 + k] = middle(vertex[k], vertex[(k + 1) % 3]);
+        place[3 + k] = 0.5f * (place[k] + place[(k + 1) % 3]);
+      }
+      const auto add = [&](int a, int b, int c) {
+        finer.push_back({{vertex[a], vertex[b], vertex[c]}, piece.source, {place[a], place[b], place[c]}});
+      };
+      if (count == 1) {
+        add(0, 3, 2);
+        add(3, 1, 2);
+      } else if (count == 2) {
+        add(3, 1, 4);
+        add(0, 3, 4);
+        add(0, 4, 2);
+      } else {
+        add(0, 3, 5);
+        add(3, 1, 4);
+        add(5, 4, 2);
+        add(3, 4, 5);
+      }
+    }
+    pieces = std::move(finer);
+  }
+}
+
+/// Points for the corners of pieces.
+class PointMaker {
+ public:
+  PointMaker(const std::vector<Eigen::Vector3f>& positions, const std::vector<Piece>& pieces)
+      : positions_(positions), pieces_(pieces), on_border_(positions.size(), 0) {
+    std::vector<Edge> sides;
+    for (const Piece& piece : pieces) {
+      const auto& [a, b, c] = piece.corners;
+      normals_.push_back((positions[b] - positions[a]).cross(positions[c] - positions[a]));
+      for (const Edge edge : {std::minmax(a, b), std::minmax(b, c), std::minmax(c, a)}) sides.push_back(edge);
+    }
+    std::sort(sides.begin(), sides.end());
+    for (auto side = sides.begin(); side != sides.end();) {
+      const auto next = std::find_if(side, sides.end(), [&](const Edge& other) { return other != *side; });
+      if (next - side != 2) on_border_[side->first] = on_border_[side->second] = 1;
+      side = next;
+    }
+  }
+
+  /// Fills the cache's points; albedos are still zero.
+  void make(SurfaceCache& cache) const {
+    // Step 1: the corners of each vertex, in the order of triangles.
+    std::vector<std::uint32_t> first(positions_.size() + 1, 0), corners(3 * pieces_.size());
+    for (const Piece& piece : pieces_)
+      for (std::uint32_t vertex : piece.corners) ++first[vertex + 1];
+    for (std::size_t v = 0; v < positions_.size(); ++v) first[v + 1] += first[v];
+    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
+    for (std::uint32_t corner = 0; corner < corners.size(); ++corner)
+      corners[next[pieces_[corner / 3].corners[corner % 3]]++] = corner;
+
+    // Step 2: groups of them.
+    cache.points.resize(pieces_.size());
+    for (std::uint32_t vertex = 0; vertex < positions_.size(); ++vertex) {
+      std::vector<Group> groups;
+      for (std::uint32_t k = first[vertex]; k < first[vertex + 1]; ++k) add_corner(groups, corners[k]);
+      for (const Group& group : groups) {
+        for (std::uint32_t corner : group.corners)
+          cache.points[corner / 3][corner % 3] = static_cast<std::uint32_t>(cache.point_positions.size());
+        const Piece& largest = pieces_[group.largest];
+        Eigen::Vector3f at = positions_[vertex];
+        if (groups.size() > 1 || on_border_[vertex] != 0) {
+          const Eigen::Vector3f centre =
+              (positions_[largest.corners[0]] + positions_[largest.corners[1]] + positions_[largest.corners[2]]) / 3;
+          at += inset * (centre - at);
+        }
+        cache.point_positions.push_back(at);
+        const float length = group.normal.norm();
+        cache.point_normals.push_back(length > 0 ? Eigen::Vector3f(group.normal / length) : Eigen::Vector3f::UnitY());
+      }
+    }
+  }
+
+  /// Twice the triangle's area.
+  float double_area(std::size_t piece) const { return normals_[piece].norm(); }
+
+ private:
+  struct Group {
+    std::vector<std::uint32_t> corners;
+    Eigen::Vector3f normal = Eigen::Vector3f::Zero();  // the sum, weighted by the angles at the vertex
+    std::uint32_t largest = 0;                         // of its triangles
+  };
+
+  void add_corner(std::vector<Group>& groups, std::uint32_t corner) const {
+    const std::uint32_t piece = corner / 3;
+    const Eigen::Vector3f& normal = normals_[piece];
+    const float length = normal.norm();
+    const auto& vertices = pieces_[piece].corners;
+    const Eigen::Vector3f& at = positions_[vertices[corner % 3]];
+    const Eigen::Vector3f a = positions_[vertices[(corner + 1) % 3]] - at,
+                          b = positions_[vertices[(corner + 2) % 3]] - at;
+    const auto fits = [&](const Group& group) {
+      // Triangles without area fit anywhere, and where there is nothing but them.
+      return length == 0 || group.normal.isZero(0) ||
+             group.normal.dot(normal) > crease_cosine * length * group.normal.norm();
+    };
+    auto group = std::find_if(groups.begin(), groups.end(), fits);
+    if (group == groups.end()) group = groups.insert(group, Group{{}, Eigen::Vector3f::Zero(), piece});
+    if (length > normals_[group->largest].norm()) group->largest = piece;
+    if (length > 0) group->normal += std::atan2(length, a.dot(b)) / length * normal;
+    group->corners.push_back(corner);
+  }
+
+  const std::vector<Eigen::Vector3f>& positions_;
+  const std::vector<Piece>& pieces_;
+  std::vector<Eigen::Vector3f> normals_;  // twice the areas long
+  std::vector<std::uint8_t> on_border_;
+};
+
+/// The mean of what `albedo` has over the triangles at each point, weighted by the point's share in interpolation: 16
+/// samples of each triangle, the centres of a regular subdivision.
+template <class AlbedoAt>
+std::vector<Eigen::Vector3f> mean_albedos(const SurfaceCache& cache, const std::vector<Piece>& pieces,
+                                          const PointMaker& maker, const AlbedoAt& albedo_at) {
+  constexpr int rows = 4;
+  std::vector<Eigen::Vector3f> sums(cache.size(), Eigen::Vector3f::Zero());
+  std::vector<float> weights(cache.size(), 0.f);
+  for (std::size_t t = 0; t < pieces.size(); ++t) {
+    const Piece& piece = pieces[t];
+    // A triangle without area counts where there is nothing else.
+    const float area = std::max(maker.double_area(t), 1e-30f);
+    for (int i = 0; i < rows; ++i)
+      for (int j = 0; j < 2 * (rows - i) - 1; ++j) {
+        const bool turned = j % 2 != 0;
+        const float u = (static_cast<float>(i) + (turned ? 2.f : 1.f) / 3) / rows,
+                    v = (static_cast<float>(j / 2) + (turned ? 2.f : 1.f) / 3) / rows;
+        const float hats[3] = {1 - u - v, u, v};
+        const Eigen::Vector2f place = hats[0] * piece.places[0] + u * piece.places[1] + v * piece.places[2];
+        const Eigen::Vector3f albedo = albedo_at(piece.source, place);
+        for (int k = 0; k < 3; ++k) {
+          sums[cache.points[t][k]] += hats[k] * area * albedo;
+          weights[cache.points[t][k]] += hats[k] * area;
+        }
+      }
+  }
+  for (std::size_t p = 0; p < sums.size(); ++p) sums[p] /= weights[p];
+  return sums;
+}
+
+}  // namespace
+
+SurfaceCache make_surface_cache(const Occluders& occluders, double longest_edge) {
+  SurfaceCache cache;
+  cache.hull = occluders.hull;
+  cache.closed = occluders.closed;
+
+  // Step 1: the triangles.
+  cache.positions = occluders.mesh.positions;
+  std::vector<Piece> pieces;
+  for (std::uint32_t t = 0; t < occluders.mesh.triangles.size(); ++t)
+    pieces.push_back({occluders.mesh.triangles[t], t, {Eigen::Vector2f(0, 0), {1, 0}, {0, 1}}});
+  cut_long_edges(cache.positions, pieces, static_cast<float>(longest_edge) * bounding_box(occluders.mesh).diagonal());
+  for (const Piece& piece : pieces) cache.triangles.push_back(piece.corners);
+
+  // Step 2: the points.
+  const PointMaker maker(cache.positions, pieces);
+  maker.make(cache);
+  const auto albedo_at = [&](std::uint32_t triangle, const Eigen::Vector2f& place) {
+    return occluders.albedo_at(triangle, place.x(), place.y());
+  };
+  cache.point_albedos = mean_albedos(cache, pieces, maker, albedo_at);
+  cache.grey = occluders.grey();
+  return cache;
+}
+
+}  // namespace kiln

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "bake/bake.h"
+#include "bake/engines/engines.h"
+#include "sh/basis.h"
+#include "sh/directions.h"
+
+namespace kiln {
+
+/// Turned inside out.
+inline TriangleMesh inverted(TriangleMesh mesh) {
+  for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+  for (Eigen::Vector3f& normal : mesh.normals) normal = -normal;
+  return mesh;
+}
+
+/// A scene that light bounces in, and receivers of it.
+struct BounceStand {
+  Occluders occluders;
+  std::vector<Eigen::Vector3f> positions, normals;
+  BakeBackend backend = BakeBackend::embree;
+  BakeSettings settings = [] {
+    BakeSettings own;
+    own.bands = 1;
+    own.gl_device = "software";
+    return own;
+  }();
+  std::vector<Eigen::Vector3f> directions = [] {
+    std::vector<Eigen::Vector3f> all = sample_directions(Sampling::fibonacci, 1024, 1);
+    order_coherently(all, block_directions);
+    return all;
+  }();
+
+  Receivers receivers() const { return {positions, normals}; }
+
+  /// What the receivers get of the bounces alone, where the surface has the direct transfer `direct` (one row for each
+  /// point of the cache); the report goes to `report`.
+  std::vector<TransferVectors> bounced(const SurfaceCache& cache, const TransferVectors& direct,
+                                       const BounceTarget& target, BounceReport& report,
+                                       const TransferVectors& receivers_direct) const {
+    const std::unique_ptr<GatherEngine> engine = make_gather_engine(backend, cache.surface(), settings, 2);
+    const SentLight light = bounce_light(cache, direct, *engine, directions, target, settings.bits,
+                                         BounceSample(receivers(), receivers_direct), report, no_progress);
+    std::vector<TransferVectors> channels(light.channels, TransferVectors(positions.size(), direct.coefficients));
+    add_bounced(*engine, light, receivers(), directions, channels, no_progress);
+    return channels;
+  }
+
+  /// A whole bake of the receivers.
+  BakeResult bake(int seed = 1) const {
+    TexelReceivers texels{static_cast<int>(positions.size()), 1, {}, positions, normals};
+    for (std::uint32_t r = 0; r < positions.size(); ++r) texels.texels.push_back(r);
+    BakeSettings own = settings;
+    own.backend = backend;
+    return kiln::bake(texels, occluders, own, seed, 2);
+  }
+};
+
+}  // namespace kiln
