@@ -21,7 +21,7 @@ OptionSet render_options(RenderSettings& settings) {
                {"all", TechniqueChoice::all}},
               "How to shade; auto is what the asset was made for, all a sheet of every technique it can be drawn by")
       .integer_or_auto("incident-samples", settings.incident_samples, 1, most_incident_samples,
-                       "Points around each asset at which the incident light is computed; auto: 6 if a light is a "
+                       "Points around each asset at which the incident light is computed; auto: 8 if a light is a "
                        "sphere, else 1")
       .choice("shading", settings.shading, {{"forward", Shading::forward}, {"deferred", Shading::deferred}},
               "deferred lights only what is visible, after all is drawn: faster where many surfaces lie behind one "
@@ -104,8 +104,7 @@ Technique technique_of(const RenderSettings& settings, const PrtAsset& asset) {
 }
 
 int incident_samples_of(const RenderSettings& settings, bool local_lights) {
-  constexpr int extremes = 6;  // of x, y and z, as in Chapter 2010, 4.3.3
-  return settings.incident_samples > 0 ? settings.incident_samples : local_lights ? extremes : 1;
+  return settings.incident_samples > 0 ? settings.incident_samples : local_lights ? most_incident_samples : 1;
 }
 
 }  // namespace kiln

@@ -17,7 +17,7 @@ enum class TechniqueChoice { automatic, phong, normal_map, vertex_prt, textured_
 /// How assets are drawn.
 struct RenderSettings {
   TechniqueChoice technique = TechniqueChoice::automatic;
-  int incident_samples = 0;  ///< points of incident light around each asset; 0: 6 where a light is local, else 1
+  int incident_samples = 0;  ///< points of incident light around each asset; 0: 8 where a light is local, else 1
   Shading shading = Shading::forward;
   double specular = 0;  ///< of the Phong techniques: reflectance of the highlight
   double shininess = 32;

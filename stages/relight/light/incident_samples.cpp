@@ -1,6 +1,8 @@
 #include "relight/light/incident_samples.h"
 
+#include <Eigen/LU>
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 namespace kiln {
@@ -34,6 +36,33 @@ std::vector<Eigen::Vector3f> spread_points(const TriangleMesh& mesh, std::size_t
   return points;
 }
 
+/// Moving least squares of linear functions, distances as fractions of `unit`.
+std::vector<double> contributions_at(const Eigen::Vector3f& place, const std::vector<Eigen::Vector3f>& points,
+                                     double unit) {
+  // Over the least distance, so that a place next to a sample, or on it, overflows nothing.
+  std::vector<double> weights;
+  std::vector<Eigen::Vector4d> functions;
+  for (const Eigen::Vector3f& point : points) {
+    const Eigen::Vector3d offset = (point - place).cast<double>() / unit;
+    weights.push_back(offset.squaredNorm());
+    functions.emplace_back(1, offset.x(), offset.y(), offset.z());
+  }
+  const double least = *std::min_element(weights.begin(), weights.end());
+  double sum = 0;
+  for (double& weight : weights) sum += weight = weight > least ? least / weight : 1;
+
+  // A few points in a plane have no slope across it: a little of the identity keeps it near 0.
+  constexpr double ridge = 0.003;
+  Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
+  moments.diagonal() << 0, ridge, ridge, ridge;
+  for (std::size_t k = 0; k < points.size(); ++k) moments += weights[k] / sum * functions[k] * functions[k].transpose();
+  const Eigen::Vector4d value_at_place = moments.inverse().col(0);
+  double total = 0;
+  for (std::size_t k = 0; k < points.size(); ++k) total += weights[k] *= value_at_place.dot(functions[k]);
+  for (double& weight : weights) weight /= total;
+  return weights;
+}
+
 }  // namespace
 
 IncidentSamples place_incident_samples(const TriangleMesh& mesh, int count) {
@@ -46,18 +75,10 @@ IncidentSamples place_incident_samples(const TriangleMesh& mesh, int count) {
     return samples;
   }
   samples.points = spread_points(mesh, static_cast<std::size_t>(count));
+  const double unit = std::max(0.5 * static_cast<double>(bounding_box(mesh).diagonal()), 1e-30);
   for (const Eigen::Vector3f& vertex : mesh.positions) {
-    // Over the least distance, so that a vertex next to a sample, or on it, overflows nothing.
-    std::vector<double> squared;
-    for (const Eigen::Vector3f& point : samples.points)
-      squared.push_back((vertex - point).cast<double>().squaredNorm());
-    const double least = *std::min_element(squared.begin(), squared.end());
-    double sum = 0;
-    for (double& value : squared) {
-      value = value > least ? least / value : 1;
-      sum += value;
-    }
-    for (const double value : squared) samples.contributions.push_back(static_cast<float>(value / sum));
+    const std::vector<double> contributions = contributions_at(vertex, samples.points, unit);
+    samples.contributions.insert(samples.contributions.end(), contributions.begin(), contributions.end());
   }
   return samples;
 }

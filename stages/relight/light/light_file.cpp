@@ -36,7 +36,11 @@ LightSettings read_light_file(const std::filesystem::path& file) {
       throw BadInput(file.string(), error.what(), "a light file", remedy);
     }
   }
-  light_specs(settings);  // an ambient light that is none
+  try {
+    light_specs(settings);
+  } catch (const WrongUsage& error) {  // an ambient light that is none
+    throw BadInput(file.string(), error.what(), "a light file", remedy);
+  }
   return settings;
 }
 
