@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int default_size_texels = 512;
+constexpr const char* albedo_name = "albedo.png";  ///< of the normals stage and of what ships
 
 /// The size that kiln-atlas packed for, from the record beside the atlas.
 Extent packed_size(const fs::path& atlas) {
@@ -74,10 +75,17 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
   return scene;
 }
 
+/// What ranges.json says of the reflectance that the normals stage found.
+Json albedo_entry(const DetailMaps& detail) {
+  const Eigen::Vector3f& constant = detail.constant_albedo;
+  if (!detail.albedo.values().empty()) return albedo_name;
+  return constant.isOnes(0) ? Json() : Json{constant.x(), constant.y(), constant.z()};
+}
+
 /// Gives what came of the seams, for bake.json.
 Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeResult& result,
                     const BakeSettings& settings) {
-  AssetFiles files{"atlas.drc", ""};
+  AssetFiles files{"atlas.drc", "", scene.albedo};
   fs::copy_file(paths.atlas, outputs.add(files.mesh), fs::copy_options::overwrite_existing);
   if (!paths.detail.empty()) {
     files.normals = "normal.png";
@@ -85,6 +93,10 @@ Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene&
   } else {
     outputs.remove_stale("normal.png");
   }
+  if (files.albedo == albedo_name)
+    fs::copy_file(paths.detail / albedo_name, outputs.add(albedo_name), fs::copy_options::overwrite_existing);
+  else
+    outputs.remove_stale(albedo_name);
   const Seams seams(scene.atlas, scene.receivers.width, scene.receivers.height);
   const PlaneSeams done =
       write_planes(outputs, result.channels, scene.receivers, settings.bits, files, seams, settings.seams);
@@ -109,7 +121,10 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
   scene.atlas = load_atlas(paths.atlas);
   const TriangleMesh& atlas = scene.atlas;
   std::optional<DetailMaps> detail;
-  if (!paths.detail.empty()) detail = load_detail_maps(paths.detail, atlas);
+  if (!paths.detail.empty()) {
+    detail = load_detail_maps(paths.detail, atlas);
+    if (!settings.bake_albedo) scene.albedo = albedo_entry(*detail);
+  }
 
   if (settings.receiver == BakeReceiver::high) {
     scene.receivers = receivers_on_high(*detail);

@@ -21,6 +21,7 @@ struct BakeScene {
   Occluders occluders;
   std::vector<std::filesystem::path> material_files;  ///< that the occluders' albedo was read from, besides their own
   std::vector<std::string> warnings;
+  Json albedo;  ///< of the receivers, as ranges.json has it (AssetFiles); null: white, unknown, or baked
 
   // Of a bake per vertex alone.
   TriangleMesh vertex_mesh;  ///< as it is to be written, normals those of the receivers

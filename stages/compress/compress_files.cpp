@@ -41,6 +41,11 @@ void add_names(Json& head, const PrtAsset& asset) {
   head["basis"] = basis_of_files;
   head["mesh"] = asset.mesh_file;
   if (!asset.normals_file.empty()) head["normals"] = asset.normals_file;
+  const Eigen::Vector3f& constant = asset.albedo.constant;
+  if (!asset.albedo.file.empty())
+    head["albedo"] = asset.albedo.file;
+  else if (!constant.isOnes(0))
+    head["albedo"] = {constant.x(), constant.y(), constant.z()};
 }
 
 void copy_into(OutputSet& outputs, const fs::path& input, const std::string& name) {
@@ -150,6 +155,7 @@ EncodedFiles encode_planes(const PrtAsset& asset, int bits, PngEffort effort) {
 Json save_compressed(OutputSet& outputs, const fs::path& input, const PrtAsset& asset, const CompressResult& result) {
   copy_into(outputs, input, asset.mesh_file);
   if (!asset.normals_file.empty()) copy_into(outputs, input, asset.normals_file);
+  if (!asset.albedo.file.empty()) copy_into(outputs, input, asset.albedo.file);
   for (const auto& [name, bytes] : result.files) {
     const fs::path file = outputs.add(name);
     std::ofstream stream(file, std::ios::binary);

@@ -6,6 +6,7 @@
 #include "base/errors.h"
 #include "base/process.h"
 #include "image/image_file.h"
+#include "material/load_albedo.h"
 #include "mesh/draco_file.h"
 #include "mesh/mesh_file.h"
 #include "report/reference.h"
@@ -28,9 +29,25 @@ std::vector<LightSpec> parse_lights(const std::vector<std::string>& texts) {
   return specs;
 }
 
+/// Whether the normals stage found or was given an albedo.
+bool has_albedo(const AssetFolder& asset) {
+  return asset.record("normals").value("albedo", Json::object()).value("source", "none") != "none";
+}
+
+/// The high mesh's reflectance, by the settings that the normals stage had.
+SurfaceAlbedo high_albedo(const AssetFolder& asset, const fs::path& high_file, const TriangleMesh& high) {
+  MaterialSettings material;
+  OptionSet options;
+  add_material_options(options, material);
+  const Json settings = asset.record("normals").value("settings", Json::object());
+  for (const Option& option : options.options())
+    if (settings.contains(option.name)) option.set(settings.at(option.name).get<std::string>());
+  return load_albedo(high_file, high, material).albedo;
+}
+
 /// Draws a baked or compressed folder under one light into an EXR, and returns what kiln-render says of it.
-Json render(const fs::path& folder, const std::string& light, const ReportSettings& settings, const ComparisonRun& run,
-            const fs::path& file) {
+Json render(const fs::path& folder, const std::string& light, double albedo, const ReportSettings& settings,
+            const ComparisonRun& run, const fs::path& file) {
   std::string printed;
   ProcessSettings process;
   process.on_output_line = [&](const std::string& line) { printed += line; };
@@ -54,7 +71,7 @@ Json render(const fs::path& folder, const std::string& light, const ReportSettin
                    "--supersample",
                    std::to_string(supersample),
                    "--albedo",
-                   fmt::format("{}", settings.albedo),
+                   fmt::format("{}", albedo),
                    "--background",
                    "none",
                    "--gl-device",
@@ -123,18 +140,20 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   const std::vector<LightSpec> specs = parse_lights(lights);
   Comparison comparison;
 
+  const double albedo = settings.albedo_factor(has_albedo(asset));
+
   // The asset, by the program that draws it from its files alone.
   const Stopwatch render_watch;
   for (std::size_t k = 0; k < lights.size(); ++k) {
     const fs::path file = run.scratch / fmt::format("light_{}.exr", k);
-    const Json said = render(asset.prt(), lights[k], settings, run, file);
+    const Json said = render(asset.prt(), lights[k], albedo, settings, run, file);
     comparison.renderer = said.at("renderer").get<std::string>();
     comparison.software_renderer = said.at("software_renderer").get<bool>();
     LightComparison& light = comparison.lights.emplace_back();
     light.light = lights[k];
     light.asset = read_rendered(file, settings);
     if (asset.compressed.empty()) continue;
-    render(asset.compressed, lights[k], settings, run, file);
+    render(asset.compressed, lights[k], albedo, settings, run, file);
     light.compressed = read_rendered(file, settings);
     std::size_t pixels = 0;
     light.compressed_difference = compare(light.compressed, light.asset, pixels);
@@ -154,7 +173,8 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   view.width = view.height = settings.picture_size;
   view.camera = make_camera(bounding_box(load_atlas(asset.prt() / "atlas.drc")), camera, view.width, view.height);
   view.supersample = supersample;
-  view.albedo = static_cast<float>(settings.albedo);
+  view.albedo = static_cast<float>(albedo);
+  view.surface_albedo = high_albedo(asset, high_file, high);
   std::vector<LightCoefficients> coefficients;
   for (const LightSpec& spec : specs)
     coefficients.push_back(light_coefficients(std::span(&spec, 1), asset.bands, LightWindow::hann));

@@ -206,6 +206,11 @@ std::string match_figure(const fs::path& file, const fs::path& scratch) {
                 "<b>Match</b> · how texels found their point of the high mesh: " + legend);
 }
 
+/// Whether albedo.png belongs to that record of the normals stage; an older one may have been left behind.
+bool has_albedo_map(const Json& normals) {
+  return normals.contains("albedo") && normals["albedo"].contains("error_rms");
+}
+
 std::string textures_section(const AssetFolder& asset, const fs::path& scratch) {
   const Json& normals = asset.record("normals");
   const auto value = [](const Json& record, const char* key) {
@@ -222,6 +227,10 @@ std::string textures_section(const AssetFolder& asset, const fs::path& scratch) 
           "<b>Normal map</b> · {} space, gutters filled; {} found by rays outwards, {} inwards, {} by nearest point",
           value(normals, "space"), value(normals, "found_by_ray_outwards"), value(normals, "found_by_ray_inwards"),
           value(normals, "found_by_nearest_point")));
+  if (const fs::path albedo = asset.folder / "normals" / "albedo.png"; has_albedo_map(normals) && fs::exists(albedo))
+    html += figure(image(thumbnail(albedo, 8, texture_pixels), "Albedo", scratch),
+                   fmt::format("<b>Albedo</b> · from {}; off the high mesh's by {} (root mean square, linear)",
+                               escaped(normals["albedo"].value("source", "")), value(normals["albedo"], "error_rms")));
   if (const fs::path match = asset.folder / "normals" / "match.png"; fs::exists(match))
     html += match_figure(match, scratch);
   return html + "</div></section>\n";

@@ -19,6 +19,7 @@ constexpr float ray_offset_relative = 1e-4f;    // of the box' diagonal, as kiln
 struct VisiblePoints {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
+  std::vector<Eigen::Vector3f> albedos;
   std::vector<std::size_t> pixels;  // whose samples they are, j * width + i
 };
 
@@ -43,6 +44,7 @@ VisiblePoints visible_points(const RayScene& scene, const TriangleMesh& mesh, co
     };
     points.positions.push_back(blend(mesh.positions));
     points.normals.push_back(blend(mesh.normals).normalized());
+    points.albedos.emplace_back(view.albedo * view.surface_albedo.at(hit.triangle, hit.u, hit.v));
     const std::size_t row = k / columns / view.supersample, column = k % columns / view.supersample;
     points.pixels.push_back(row * view.width + column);
   }
@@ -77,7 +79,7 @@ std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const Ref
           double radiance = 0;
           for (int i = 0; i < transfer.coefficients; ++i)
             radiance += lights[light].channels[c][i] * transfer.plane(i)[r];
-          values[c] += share * view.albedo * static_cast<float>(radiance);
+          values[c] += share * points.albedos[begin + r][c] * static_cast<float>(radiance);
         }
         values[3] += share;
       }

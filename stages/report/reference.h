@@ -6,6 +6,7 @@
 
 #include "base/progress.h"
 #include "image/image.h"
+#include "material/surface_albedo.h"
 #include "mesh/camera.h"
 #include "mesh/triangle_mesh.h"
 #include "sh/lights.h"
@@ -17,8 +18,9 @@ struct ReferenceView {
   Camera camera;
   int width = 0;
   int height = 0;
-  int supersample = 2;  ///< samples per pixel along each axis
-  float albedo = 0.8f;
+  int supersample = 2;           ///< samples per pixel along each axis
+  float albedo = 0.8f;           ///< of the whole surface, times
+  SurfaceAlbedo surface_albedo;  ///< the mesh's own
 };
 
 /// Pictures of a mesh under each of `lights` (three channels each, all of the same bands): the first hit of each

@@ -1,8 +1,30 @@
 #include "report/report_settings.h"
 
+#include <charconv>
+#include <optional>
 #include <sstream>
 
+#include "base/errors.h"
+
 namespace kiln {
+
+namespace {
+
+/// Nothing for auto.
+std::optional<double> parse_albedo(const std::string& text) {
+  if (text == "auto") return std::nullopt;
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(value >= 0 && value <= 1))
+    throw WrongUsage("albedo: found '" + text + "'; expected auto or a number, 0 to 1");
+  return value;
+}
+
+}  // namespace
+
+double ReportSettings::albedo_factor(bool asset_has_albedo) const {
+  return parse_albedo(albedo).value_or(asset_has_albedo ? 1 : 0.8);
+}
 
 OptionSet report_options(ReportSettings& settings) {
   OptionSet options;
@@ -16,7 +38,10 @@ OptionSet report_options(ReportSettings& settings) {
                  "Of the camera above the horizon, in degrees");
   options.integer("picture-size", settings.picture_size, 64, 2048, "Of the rendered pictures, pixels a side");
   options.integer("directions", settings.directions, 16, 65536, "Directions of the reference's transfer integral");
-  options.number("albedo", settings.albedo, 0, 1, "Share of the light that the surface reflects");
+  options.checked_text("albedo", settings.albedo, "auto or 0 to 1",
+                       "Share of the light that surfaces reflect, times the asset's own albedo; auto: 1 where it has "
+                       "one, else 0.8",
+                       [](const std::string& text) { parse_albedo(text); });
   options.text("gl-device", settings.gl_device, "EGL device to draw on: auto, software, or its number");
   return options;
 }

@@ -12,9 +12,13 @@ struct ReportSettings {
   std::string lights = "45,30; -60,20; ambient:1";  ///< as kiln-render takes them, separated by semicolons
   double camera_azimuth_degrees = 20;               ///< where the camera stands: 0 is +Z, 90 is +X
   double camera_elevation_degrees = 12;
-  int picture_size = 512;  ///< pixels a side
-  int directions = 1024;   ///< of the reference's transfer integral
-  double albedo = 0.8;
+  int picture_size = 512;       ///< pixels a side
+  int directions = 1024;        ///< of the reference's transfer integral
+  std::string albedo = "auto";  ///< auto, or a number that the surface's own is multiplied by
+
+  /// That number; auto is 1 where the asset has an albedo of its own, else 0.8.
+  double albedo_factor(bool asset_has_albedo) const;
+
   std::string gl_device = "auto";  ///< that kiln-render draws on
 };
 

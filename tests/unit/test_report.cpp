@@ -6,6 +6,7 @@
 #include "base/errors.h"
 #include "base/process.h"
 #include "image/image_file.h"
+#include "raycast/ray_scene.h"
 #include "report/budget.h"
 #include "report/labels.h"
 #include "report/pictures.h"
@@ -135,6 +136,47 @@ TEST(Reference, SphereInAFurnaceHasItsAlbedo) {
     }
   EXPECT_GT(whole, 100);
   EXPECT_EQ(pictures[0].at(0, 0, 3), 0);
+}
+
+TEST(Reference, SurfacesHaveTheirOwnAlbedo) {
+  // Every vertex of the sphere has a colour that tells where it is; in a furnace of radiance 1 that is its radiance.
+  const TriangleMesh mesh = sphere(64);
+  const auto color_at = [](const Eigen::Vector3f& p) { return Eigen::Vector3f(0.5f * (p.array() + 1)); };
+  std::vector<Eigen::Vector3f> colors;
+  for (const Eigen::Vector3f& p : mesh.positions) colors.push_back(color_at(p));
+  ReferenceView view;
+  view.width = view.height = 24;
+  view.camera = make_camera(bounding_box(mesh), {}, view.width, view.height);
+  view.supersample = 1;
+  view.albedo = 0.5f;
+  view.surface_albedo = SurfaceAlbedo::of_vertices(colors, mesh.triangles);
+  const float ones[] = {1, 1, 1};
+  const LightCoefficients lights[] = {constant_light(3, ones)};
+  const auto directions = sample_directions(Sampling::fibonacci, 2048, 1);
+  const Image<float> picture = reference_pictures(mesh, view, lights, directions).front();
+  const RayScene scene(mesh);
+  int whole = 0;
+  for (int j = 0; j < view.height; ++j)
+    for (int i = 0; i < view.width; ++i) {
+      if (picture.at(i, j, 3) < 0.9999f) continue;
+      ++whole;
+      const Eigen::Vector3f direction = view.camera.pixel_direction(i, j, view.width, view.height);
+      const SurfacePoint hit = scene.first_hit(view.camera.position, direction, 0, 100);
+      const Eigen::Vector3f expected = 0.5f * color_at(view.camera.position + hit.distance * direction);
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture.at(i, j, c), expected[c], 0.01);  // quadrature and facets
+    }
+  EXPECT_GT(whole, 100);
+}
+
+TEST(ReportSettings, AlbedoIsAutomaticOrANumber) {
+  ReportSettings settings;
+  OptionSet options = report_options(settings);
+  EXPECT_EQ(settings.albedo_factor(true), 1);
+  EXPECT_EQ(settings.albedo_factor(false), 0.8);
+  options.find("albedo")->set("0.3");
+  EXPECT_EQ(settings.albedo_factor(true), 0.3);
+  EXPECT_THROW(options.find("albedo")->set("1.5"), WrongUsage);
+  EXPECT_THROW(options.find("albedo")->set("white"), WrongUsage);
 }
 
 TEST(Labels, Numbers) {

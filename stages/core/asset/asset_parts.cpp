@@ -12,12 +12,18 @@ namespace kiln {
 namespace {
 
 template <class Texel>
-void require_grey(const Image<Texel>& picture, const std::filesystem::path& file, int width, int height,
+void require_size(const Image<Texel>& picture, const std::filesystem::path& file, int width, int height,
                   const std::string& remedy) {
   const std::string size = std::to_string(picture.width()) + " x " + std::to_string(picture.height());
   const std::string expected = std::to_string(width) + " x " + std::to_string(height);
   if (size != expected)
     throw BadInput(file.string(), "is " + size + " texels", expected + ", as the folder's JSON has it", remedy);
+}
+
+template <class Texel>
+void require_grey(const Image<Texel>& picture, const std::filesystem::path& file, int width, int height,
+                  const std::string& remedy) {
+  require_size(picture, file, width, height, remedy);
   if (picture.channels() != 1)
     throw BadInput(file.string(), "has " + std::to_string(picture.channels()) + " channels", "a grey PNG", remedy);
 }
@@ -63,6 +69,29 @@ void require_drawable(const TriangleMesh& mesh, const std::filesystem::path& fil
   if (!(std::isfinite(diagonal) && diagonal > 0))
     throw BadInput(file.string(), "is as large as " + std::to_string(diagonal), "a mesh of finite size above 0",
                    "scale the mesh and start over with kiln-simplify");
+}
+
+PrtAlbedo read_albedo(const Fields& fields, const std::filesystem::path& folder, int width, int height,
+                      const std::string& remedy) {
+  PrtAlbedo albedo;
+  if (!fields.has("albedo")) return albedo;
+  const std::string expected = "the name of a picture, or three numbers of 0 to 1";
+  const nlohmann::json& value = fields.get("albedo", expected);
+  if (value.is_array()) {
+    const auto is_share = [](const nlohmann::json& v) { return v.is_number() && v >= 0 && v <= 1; };
+    if (value.size() != 3 || !std::all_of(value.begin(), value.end(), is_share))
+      fields.fail("albedo", value.dump(), expected);
+    for (int c = 0; c < 3; ++c) albedo.constant[c] = value[static_cast<std::size_t>(c)].get<float>();
+    return albedo;
+  }
+  albedo.file = fields.safe_path("albedo");
+  const std::filesystem::path file = folder / albedo.file;
+  albedo.picture = read_png8(file);
+  require_size(albedo.picture, file, width, height, remedy);
+  if (albedo.picture.channels() != 3)
+    throw BadInput(file.string(), "has " + std::to_string(albedo.picture.channels()) + " channels", "an RGB PNG",
+                   remedy);
+  return albedo;
 }
 
 }  // namespace kiln

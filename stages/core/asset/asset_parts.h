@@ -40,6 +40,11 @@ Image<std::uint8_t> read_grey(const std::filesystem::path& file, int width, int 
 template <>
 Image<std::uint16_t> read_grey(const std::filesystem::path& file, int width, int height, const std::string& remedy);
 
+/// `albedo` of the JSON that describes an asset of that size: the name of an sRGB-encoded picture, or three linear
+/// numbers of 0 to 1; left out where the surface is white. Throws BadInput.
+PrtAlbedo read_albedo(const Fields& fields, const std::filesystem::path& folder, int width, int height,
+                      const std::string& remedy);
+
 /// All planes of an asset. The first plane at fault is the one that is told of, whatever the number of threads.
 template <class Texel>
 std::vector<Image<Texel>> read_grey_pictures(const std::filesystem::path& folder, const std::vector<std::string>& files,

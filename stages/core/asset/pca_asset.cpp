@@ -138,6 +138,7 @@ PrtAsset load_pca_asset(const fs::path& folder) {
   }
 
   // What it names.
+  asset.albedo = read_albedo(fields, folder, asset.width, asset.height, remedy);
   asset.mesh = read_asset_mesh(folder / asset.mesh_file);
   clusters.vectors = read_vectors(folder, fields, clusters, scales);
   if (clusters.count > 1) clusters.ids = read_ids(folder, fields, asset, clusters.count);

@@ -48,6 +48,7 @@ void read_ranges(const Fields& fields, PrtAsset& asset) {
   }
   asset.mesh_file = fields.safe_path("mesh");
   read_normals(fields, asset);
+  asset.albedo = read_albedo(fields, asset.ranges_file.parent_path(), asset.width, asset.height, remedy);
 
   const std::size_t count = static_cast<std::size_t>(asset.channels) * asset.bands * asset.bands;
   const std::string expected = "a list of " + std::to_string(count) + " planes";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -46,6 +47,14 @@ struct PrtClusters {
   }
 };
 
+/// The share of light that the asset's surface reflects, which its transfer leaves out: exit radiance is this times
+/// the sum of light and transfer coefficients.
+struct PrtAlbedo {
+  std::string file;             ///< of the picture, relative to the asset's folder; empty: none
+  Image<std::uint8_t> picture;  ///< 3 channels, sRGB-encoded, of the asset's size; empty where it is constant
+  Eigen::Vector3f constant = Eigen::Vector3f::Ones();  ///< linear; where there is no picture
+};
+
 /// A baked PRT folder, as it is on the disk: the mesh with its atlas, and a picture for every transfer coefficient, or
 /// for every weight where it is compressed. Planes of coefficients are sorted by channel, then coefficient, and there
 /// is one for each; of weights, `coefficient` is the number of the basis vector. One that is baked per vertex has
@@ -55,6 +64,7 @@ struct PrtAsset {
   std::string mesh_file;                           ///< relative to its folder
   std::string normals_file;                        ///< the same; empty: none
   NormalSpace normal_space = NormalSpace::object;  ///< of that map
+  PrtAlbedo albedo;
   TriangleMesh mesh;
   int bands = 0;
   int channels = 0;
@@ -76,8 +86,8 @@ struct PrtAsset {
 inline constexpr const char* ranges_name = "ranges.json";  ///< of a baked folder
 inline constexpr const char* pca_name = "pca.json";        ///< of a compressed one
 
-/// Reads `folder`/pca.json, or where there is none `folder`/ranges.json, and what it names: the mesh and the pictures,
-/// and nothing else. Throws BadInput where anything is missing, damaged, or at odds with the rest.
+/// Reads `folder`/pca.json, or where there is none `folder`/ranges.json, and what it names: the mesh, the planes and
+/// the albedo, and nothing else. Throws BadInput where anything is missing, damaged, or at odds with the rest.
 PrtAsset load_prt_asset(const std::filesystem::path& folder);
 
 /// Reads a folder of kiln-compress; its README has the format.
