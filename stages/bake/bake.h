@@ -11,6 +11,7 @@
 #include "bake/integrate/shadow_choice.h"
 #include "bake/scene/occluders.h"
 #include "bake/scene/texel_receivers.h"
+#include "bake/subsurface/subsurface.h"
 #include "base/outputs.h"
 #include "base/progress.h"
 #include "sh/transfer.h"
@@ -20,6 +21,8 @@ namespace kiln {
 struct BakeResult {
   /// Of every receiver, bands^2 coefficients: one for all colours, or one for each of red, green and blue.
   std::vector<TransferVectors> channels;
+  std::vector<TransferVectors> arriving;  ///< before it was scattered beneath the surface, for verify(); else empty
+  std::optional<SubsurfaceReport> subsurface;
   BakeBackend backend = BakeBackend::embree;
   std::string renderer;  ///< what did the work
   bool software_renderer = false;
@@ -30,7 +33,7 @@ struct BakeResult {
   std::optional<DirectionChoice> choice;
   std::optional<BounceReport> bounces;  ///< where light bounces
   std::optional<ShadowSizeChoice> shadow_choice;
-  double seconds = 0;  ///< of integrating and bouncing alone, the engines' start included
+  double seconds = 0;  ///< of integrating, bouncing and scattering alone, the engines' start included
 };
 
 /// Integrates the transfer of every receiver, shadowed by the occluders, over directions drawn with `seed`. `threads`
@@ -59,8 +62,9 @@ struct BakeVerification {
   int reference_directions = 0;
   std::size_t reference_texels = 0;
   double integration_error = 0;  ///< relative L2 to that many rays, before quantisation
-  double error = 0;              ///< relative L2 to that many rays, of the planes read back
-  double relighting_error = 0;   ///< the same as expected relighting error
+  // Of the planes read back, which hold what the rays measure unless it was scattered beneath the surface.
+  std::optional<double> error;             ///< relative L2 to that many rays
+  std::optional<double> relighting_error;  ///< the same as expected relighting error
 };
 
 /// Compares `result` with the other backend (embree, or egl if embree baked it), and it and the planes read back

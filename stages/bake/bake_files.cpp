@@ -68,6 +68,7 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
                                      : receivers_on_vertices(scene.vertex_mesh);
   scene.receivers = std::move(vertices.receivers);
   if (settings.bake_albedo) take_albedos(scene.receivers, scene.occluders);
+  if (on_high) scene.high_area = surface_area(occluders.front());
   for (std::size_t r = 0; r < scene.receivers.texels.size(); ++r)
     scene.vertex_mesh.normals[scene.receivers.texels[r]] = scene.receivers.normals[r];
   scene.vertex_metrics = {{"receiver_distance_largest", vertices.largest_distance},
@@ -80,6 +81,19 @@ Json albedo_entry(const DetailMaps& detail) {
   const Eigen::Vector3f& constant = detail.constant_albedo;
   if (!detail.albedo.values().empty()) return albedo_name;
   return constant.isOnes(0) ? Json() : Json{constant.x(), constant.y(), constant.z()};
+}
+
+Json describe_subsurface(const SubsurfaceReport& report) {
+  return {{"reflectance", report.reflectance},
+          {"energy", report.energy},
+          {"hierarchy_error", report.hierarchy_error},
+          {"error_points", report.error_points},
+          {"largest_gain", report.largest_gain},
+          {"capped_area", report.capped_area},
+          {"area_mm2", report.area_mm2},
+          {"area_correction", report.area_correction},
+          {"spacing_mm", report.spacing_mm},
+          {"seconds", report.seconds}};
 }
 
 /// Gives what came of the seams, for bake.json.
@@ -112,6 +126,9 @@ Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene&
 }  // namespace
 
 BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) {
+  subsurface_profiles(settings.subsurface);  // says what does not go together before anything is baked
+  if (settings.subsurface.wanted() && settings.bake_albedo)
+    throw WrongUsage("subsurface: found --bake-albedo; expected one of them, the material has its own albedo");
   if (settings.bits != 8 && settings.bits != 16)
     throw WrongUsage("bits: found '" + std::to_string(settings.bits) + "'; expected 8 or 16");
   if (settings.per_vertex) return load_vertex_scene(paths, settings);
@@ -123,7 +140,7 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
   std::optional<DetailMaps> detail;
   if (!paths.detail.empty()) {
     detail = load_detail_maps(paths.detail, atlas);
-    if (!settings.bake_albedo) scene.albedo = albedo_entry(*detail);
+    if (!settings.bake_albedo && !settings.subsurface.wanted()) scene.albedo = albedo_entry(*detail);
   }
 
   if (settings.receiver == BakeReceiver::high) {
@@ -137,7 +154,9 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
   if (scene.receivers.texels.empty())
     throw BadInput(paths.atlas.string(), "covers no texel", "an atlas packed for this size", "bake at a larger size");
 
-  load_occluders(paths, settings, scene);
+  const std::vector<TriangleMesh> occluders = load_occluders(paths, settings, scene);
+  if (settings.receiver == BakeReceiver::high && !paths.occluders.empty())
+    scene.high_area = surface_area(occluders.front());
   if (settings.bake_albedo && detail && !settings.material.constant())
     take_albedos(scene.receivers, *detail);
   else if (settings.bake_albedo)
@@ -147,12 +166,13 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
 
 Json describe_bake(const BakeScene& scene, const BakeResult& result) {
   const double texel_directions = static_cast<double>(scene.receivers.texels.size()) * result.directions;
+  const double integration_seconds = result.seconds - (result.subsurface ? result.subsurface->seconds : 0);
   Json metrics = {{"backend", backend_name(result.backend)},
                   {"renderer", result.renderer},
                   {"software_renderer", result.software_renderer},
                   {"texels", scene.receivers.texels.size()},
                   {"directions", result.directions},
-                  {"texel_directions_per_second", texel_directions / result.seconds},
+                  {"texel_directions_per_second", texel_directions / integration_seconds},
                   {"coefficients", result.channels.front().coefficients},
                   {"channels", result.channels.size()},
                   {"occluder_triangles", scene.occluders.mesh.triangles.size()},
@@ -184,6 +204,7 @@ Json describe_bake(const BakeScene& scene, const BakeResult& result) {
                         {"shadowed_tiles", share(result.work.shadowed_tiles)}};
   metrics["ambiguous"] = share(result.work.ambiguous);
   metrics["refined"] = share(result.work.refined);
+  if (result.subsurface) metrics["subsurface"] = describe_subsurface(*result.subsurface);
   return metrics;
 }
 
@@ -213,9 +234,8 @@ Json save_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scen
                                {"backend_difference", v.backend_difference},
                                {"reference_directions", v.reference_directions},
                                {"reference_texels", v.reference_texels},
-                               {"integration_error", v.integration_error},
-                               {"error", v.error},
-                               {"relighting_error", v.relighting_error}};
+                               {"integration_error", v.integration_error}};
+    if (v.error) metrics["verification"].update({{"error", *v.error}, {"relighting_error", *v.relighting_error}});
   }
   return metrics;
 }

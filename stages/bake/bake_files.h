@@ -21,7 +21,9 @@ struct BakeScene {
   Occluders occluders;
   std::vector<std::filesystem::path> material_files;  ///< that the occluders' albedo was read from, besides their own
   std::vector<std::string> warnings;
-  Json albedo;  ///< of the receivers, as ranges.json has it (AssetFiles); null: white, unknown, or baked
+  Json
+      albedo;  ///< of the receivers, as ranges.json has it (AssetFiles); null: white, unknown, baked or in the material
+  double high_area = 0;  ///< of the mesh that receivers on the high mesh stand on, square object units; else 0
 
   // Of a bake per vertex alone.
   TriangleMesh vertex_mesh;  ///< as it is to be written, normals those of the receivers

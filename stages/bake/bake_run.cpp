@@ -32,8 +32,11 @@ void add_run_options(CommandLine& command, BakeRun& run) {
       ->group("Run");
 }
 
-BakeResult run_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeSettings& settings,
-                    const BakeRun& run, const CommandLine& command) {
+namespace {
+
+/// All but what goes on beneath the surface.
+BakeResult integrate(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeSettings& settings,
+                     const BakeRun& run, const CommandLine& command) {
   const ProgressFunction progress = command.progress(run.shards.empty() ? "bake" : "merge");
   if (!run.shards.empty()) {
     if (run.is_shard() || run.resume) throw WrongUsage("merge: found --shard or --resume; expected neither");
@@ -66,6 +69,20 @@ BakeResult run_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene&
   if (settings.backend == BakeBackend::egl && result.software_renderer)
     command.say("WARNING: SOFTWARE RENDERER " + result.renderer +
                 "; a GPU would be far faster, and --backend embree is likely to be");
+  return result;
+}
+
+}  // namespace
+
+BakeResult run_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeSettings& settings,
+                    const BakeRun& run, const CommandLine& command) {
+  BakeResult result = integrate(outputs, paths, scene, settings, run, command);
+  if (!settings.subsurface.wanted() || run.is_shard()) return result;
+  if (settings.verify_directions > 0) result.arriving = result.channels;
+  const TriangleMesh& mesh = settings.per_vertex ? scene.vertex_mesh : scene.atlas;
+  result.subsurface = scatter_beneath({scene.receivers, mesh, settings.per_vertex, scene.high_area},
+                                      settings.subsurface, result.channels, command.progress("subsurface"));
+  result.seconds += result.subsurface->seconds;
   return result;
 }
 

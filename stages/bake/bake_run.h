@@ -21,7 +21,8 @@ struct BakeRun {
 /// The options of a run, under a heading of their own. They are not part of the settings on record.
 void add_run_options(CommandLine& command, BakeRun& run);
 
-/// Integrates, integrates one shard into `outputs`, or merges shards, as `run` says. Throws WrongUsage for options that
+/// Integrates, integrates one shard into `outputs`, or merges shards, as `run` says; then scatters beneath the
+/// surface, if settings ask for it. Throws WrongUsage for options that
 /// do not go together, and what bake(), bake_shard() and merge_shards() throw.
 BakeResult run_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeSettings& settings,
                     const BakeRun& run, const CommandLine& command);

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "bake/egl/shadow_settings.h"
+#include "bake/subsurface/subsurface_settings.h"
 #include "base/options.h"
 #include "detail/seam_choice.h"
 #include "material/material_settings.h"
@@ -58,6 +59,7 @@ struct BakeSettings {
   int shadow_size = 1024;     ///< texels; 0: the smallest whose error is under that of storing
   ShadowMapSettings shadows;  ///< but for the size
   double ray_offset = 1e-4;   ///< fraction of the occluders' bounding box diagonal
+  SubsurfaceSettings subsurface;
   int verify_directions = 0;  ///< 0: no verification
   int verify_texels = 8192;
 };

@@ -151,6 +151,9 @@ Json Integration::key(const Shard& shard, const std::string& renderer) const {
        {"bits", "size", "directions", "max-error", "max-directions", "verify-directions", "verify-texels", "backend",
         "gl-device", "bounces", "bounce-edge", "bake-albedo", "albedo", "albedo-texture", "albedo-encoding"})
     relevant.erase(name);
+  OptionSet after;  // what is done with the transfer afterwards
+  add_subsurface_options(after, settings.subsurface);
+  for (const Option& option : after.options()) relevant.erase(option.name);
   return {{"receivers", receivers_hash_},
           {"occluders", occluders_hash_},
           {"settings", relevant},

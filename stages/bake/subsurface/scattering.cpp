@@ -1,6 +1,7 @@
 #include "bake/subsurface/scattering.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <tbb/blocked_range.h>
@@ -22,8 +23,8 @@ constexpr float same_side_cosine = -0.5f;
 /// Discs much smaller than the others are as good as points.
 constexpr float least_radius_share = 1e-3f;
 
-/// Where a sum of a few hundred kernels is known to that accuracy, more than all means more than this.
-constexpr float most_gain = 1.0f;
+/// Rows of numbers are padded to whole vectors of so many.
+constexpr int row_lanes = 4;
 
 float radius_of(float area) { return std::sqrt(area * 0.318309886f); }
 
@@ -35,46 +36,129 @@ struct Sample {
   float radius = 0;  ///< for the kernels, not below least_radius_share of the largest
 };
 
-/// Sums of kernels times vectors over the samples. Vectors are `inputs` channels of `width` numbers each, row after row
-/// along the octree's order.
+/// Weighted vectors on their way into sums: some at a time, so that they stay in the nearest cache while sums of a few
+/// coefficients stay in registers.
+class WeightedSum {
+ public:
+  WeightedSum(std::size_t channels, std::size_t width) : channels_(channels), width_(width), sums_(channels * width) {
+    weights_.reserve(batch * channels);
+  }
+
+  /// Adds weights[c] times the `width` numbers at vector + c * stride.
+  void add(const float* weights, const float* vector, std::size_t stride) {
+    vectors_[size_] = {vector, stride};
+    weights_.insert(weights_.end(), weights, weights + channels_);
+    if (++size_ == batch) flush();
+  }
+
+  /// Scales the sums so far by channel and adds them to those of `other`.
+  void add_to(WeightedSum& other, const float* factors) {
+    flush();
+    other.flush();
+    for (std::size_t c = 0; c < channels_; ++c)
+      for (std::size_t i = 0; i < width_; ++i) other.sums_[c * width_ + i] += factors[c] * sums_[c * width_ + i];
+  }
+
+  const std::vector<float>& sums() {
+    flush();
+    return sums_;
+  }
+
+  void clear() {
+    size_ = 0;
+    weights_.clear();
+    std::fill(sums_.begin(), sums_.end(), 0.f);
+  }
+
+ private:
+  static constexpr std::size_t batch = 64;
+
+  struct Row {
+    const float* first;
+    std::size_t stride;
+  };
+
+  template <int lanes>
+  void flush_lanes(std::size_t c, std::size_t i) {
+    float kept[lanes];
+    float* const sums = sums_.data() + c * width_ + i;
+    std::copy_n(sums, lanes, kept);
+    for (std::size_t k = 0; k < size_; ++k) {
+      const float weight = weights_[k * channels_ + c];
+      const float* const values = vectors_[k].first + c * vectors_[k].stride + i;
+      for (int lane = 0; lane < lanes; ++lane) kept[lane] += weight * values[lane];
+    }
+    std::copy_n(kept, lanes, sums);
+  }
+
+  void flush() {
+    std::size_t i = 0;
+    for (; i + 16 <= width_; i += 16)
+      for (std::size_t c = 0; c < channels_; ++c) flush_lanes<16>(c, i);
+    for (; i < width_; i += row_lanes)
+      for (std::size_t c = 0; c < channels_; ++c) flush_lanes<row_lanes>(c, i);
+    size_ = 0;
+    weights_.clear();
+  }
+
+  std::size_t channels_, width_, size_ = 0;
+  std::array<Row, batch> vectors_;
+  std::vector<float> weights_, sums_;
+};
+
+/// Sums of kernels times vectors over the samples. Vectors are `inputs` channels of `width` numbers each, a multiple of
+/// row_lanes, row after row along the octree's order.
 class KernelSums {
  public:
   KernelSums(const SampleOctree& tree, const std::vector<Sample>& samples, const KernelTables& kernels)
       : tree_(tree), samples_(samples), kernels_(kernels), channels_(kernels.channels()) {}
 
-  /// `gains`: by sample and channel, what its vector is scaled with. Keeps references to both.
-  void set_vectors(const std::vector<float>& rows, std::size_t inputs, int width, const std::vector<float>& gains) {
+  /// `gains`: by sample and channel, what its vector is scaled with; empty for 1. Keeps references to both.
+  void set_vectors(const std::vector<float>& rows, std::size_t inputs, std::size_t width,
+                   const std::vector<float>& gains) {
     rows_ = rows.data();
     inputs_ = inputs;
-    width_ = static_cast<std::size_t>(width);
-    gains_ = gains.data();
-    node_sums_.assign(tree_.nodes.size() * channels_ * width_, 0.f);
+    width_ = width;
+    gains_ = gains.empty() ? nullptr : gains.data();
+    sum_channels_ = gains_ == nullptr ? inputs : channels_;
+    const std::size_t row = sum_channels_ * width_;
+    node_sums_.assign(tree_.nodes.size() * row, 0.f);
     for (std::size_t node = tree_.nodes.size(); node-- > 0;) {
       const SampleOctree::Node& own = tree_.nodes[node];
-      float* const sums = node_sums_.data() + node * channels_ * width_;
+      float* const sums = node_sums_.data() + node * row;
       if (own.is_leaf)
         for (std::uint32_t k = own.first; k < own.last; ++k)
-          for (std::size_t c = 0; c < channels_; ++c)
-            add(sums + c * width_, samples_[k].area * gains_[k * channels_ + c], row(k, c));
+          for (std::size_t c = 0; c < sum_channels_; ++c) {
+            const float weight = samples_[k].area * gain(k, c);
+            const float* const vector = rows_ + (k * inputs_ + (inputs_ == 1 ? 0 : c)) * width_;
+            for (std::size_t i = 0; i < width_; ++i) sums[c * width_ + i] += weight * vector[i];
+          }
       if (node > 0) {
-        float* const parent = node_sums_.data() + own.parent * channels_ * width_;
-        for (std::size_t i = 0; i < channels_ * width_; ++i) parent[i] += sums[i];
+        float* const parent = node_sums_.data() + own.parent * row;
+        for (std::size_t i = 0; i < row; ++i) parent[i] += sums[i];
       }
     }
   }
 
   struct Scratch {
-    std::vector<float> sums, near, near_weights, kernel;
+    WeightedSum all, near;
+    std::vector<float> kernel, weights, near_weights;
+
+    explicit Scratch(const KernelSums& sums)
+        : all(sums.channels_, sums.width_),
+          near(sums.channels_, sums.width_),
+          kernel(sums.channels_),
+          weights(sums.channels_),
+          near_weights(sums.channels_) {}
   };
 
-  /// What arrives at sample `p`: channels times width numbers in `scratch.sums`.
-  void evaluate(std::uint32_t p, float solid_angle, Scratch& scratch) const {
+  /// What arrives at sample `p`: channels times width numbers, which stay in `scratch` until its next use.
+  const std::vector<float>& evaluate(std::uint32_t p, float solid_angle, Scratch& scratch) const {
     const Sample& to = samples_[p];
     const float near_distance = KernelTables::near_reach * to.radius;
-    scratch.sums.assign(channels_ * width_, 0.f);
-    scratch.near.assign(channels_ * width_, 0.f);
-    scratch.near_weights.assign(channels_, 0.f);
-    scratch.kernel.resize(channels_);
+    scratch.all.clear();
+    scratch.near.clear();
+    std::fill(scratch.near_weights.begin(), scratch.near_weights.end(), 0.f);
 
     // Step 1: the octree, a node as a whole where it is far and small enough.
     for (std::uint32_t at = 0; at < tree_.nodes.size();) {
@@ -82,9 +166,7 @@ class KernelSums {
       const float squared = (node.centre - to.position).squaredNorm();
       if (node.area <= solid_angle * squared && squared_distance(node, to.position) > near_distance * near_distance) {
         kernels_.density(squared, scratch.kernel.data());
-        const float* const sums = node_sums_.data() + at * channels_ * width_;
-        for (std::size_t c = 0; c < channels_; ++c)
-          add(scratch.sums.data() + c * width_, scratch.kernel[c], sums + c * width_);
+        scratch.all.add(scratch.kernel.data(), node_sums_.data() + at * sum_channels_ * width_, stride(sum_channels_));
         at = node.next;
         continue;
       }
@@ -96,19 +178,18 @@ class KernelSums {
     // Step 2: what is near, with a plane's energy.
     kernels_.near_total(to.radius, scratch.kernel.data());
     for (std::size_t c = 0; c < channels_; ++c)
-      if (scratch.near_weights[c] > 0)
-        add(scratch.sums.data() + c * width_, scratch.kernel[c] / scratch.near_weights[c],
-            scratch.near.data() + c * width_);
+      scratch.weights[c] = scratch.near_weights[c] > 0 ? scratch.kernel[c] / scratch.near_weights[c] : 0.f;
+    scratch.near.add_to(scratch.all, scratch.weights.data());
+    return scratch.all.sums();
   }
 
  private:
-  const float* row(std::size_t k, std::size_t channel) const {
-    return rows_ + (k * inputs_ + (inputs_ == 1 ? 0 : channel)) * width_;
+  float gain(std::size_t k, std::size_t channel) const {
+    return gains_ == nullptr ? 1.f : gains_[k * channels_ + channel];
   }
 
-  void add(float* sums, float weight, const float* vector) const {
-    for (std::size_t i = 0; i < width_; ++i) sums[i] += weight * vector[i];
-  }
+  /// From one channel's vector to the next's.
+  std::size_t stride(std::size_t channels) const { return channels == 1 ? 0 : width_; }
 
   void add_sample(const Sample& to, std::uint32_t q, float near_distance, Scratch& scratch) const {
     const Sample& from = samples_[q];
@@ -121,14 +202,19 @@ class KernelSums {
       kernels_.disc_mean(from.radius, distance, kernel);
     else
       kernels_.density(squared + 0.5f * from.radius * from.radius, kernel);  // a disc across: its mean square
+    const float* const vector = rows_ + q * inputs_ * width_;
     const float share = near ? KernelTables::near_share(distance, to.radius) : 0.f;
-    for (std::size_t c = 0; c < channels_; ++c) {
-      const float weight = kernel[c] * from.area, gain = gains_[q * channels_ + c];
-      add(scratch.sums.data() + c * width_, weight * (1 - share) * gain, row(q, c));
-      if (!near) continue;
-      add(scratch.near.data() + c * width_, weight * share * gain, row(q, c));
-      scratch.near_weights[c] += weight * share;
+    if (near) {
+      for (std::size_t c = 0; c < channels_; ++c) {
+        const float weight = kernel[c] * from.area * share;
+        scratch.near_weights[c] += weight;
+        scratch.weights[c] = weight * gain(q, c);
+      }
+      scratch.near.add(scratch.weights.data(), vector, stride(inputs_));
     }
+    if (share == 1) return;
+    for (std::size_t c = 0; c < channels_; ++c) scratch.weights[c] = kernel[c] * from.area * (1 - share) * gain(q, c);
+    scratch.all.add(scratch.weights.data(), vector, stride(inputs_));
   }
 
   const SampleOctree& tree_;
@@ -136,9 +222,9 @@ class KernelSums {
   const KernelTables& kernels_;
   std::size_t channels_;
   const float* rows_ = nullptr;
-  std::size_t inputs_ = 1, width_ = 0;
+  std::size_t inputs_ = 1, width_ = 0, sum_channels_ = 1;
   const float* gains_ = nullptr;
-  std::vector<float> node_sums_;
+  std::vector<float> node_sums_;  // by node and, where gains or inputs differ by channel, channel
 };
 
 /// Calls keep(sample along the order, its sums) for every sample, from any thread.
@@ -149,11 +235,9 @@ void evaluate_all(const KernelSums& sums, std::size_t samples, float solid_angle
   for (std::size_t first = 0; first < samples; first += slice) {
     const std::size_t last = std::min(samples, first + slice);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(first, last, block_receivers), [&](const auto& range) {
-      KernelSums::Scratch scratch;
-      for (std::size_t p = range.begin(); p != range.end(); ++p) {
-        sums.evaluate(static_cast<std::uint32_t>(p), solid_angle, scratch);
-        keep(p, scratch.sums);
-      }
+      KernelSums::Scratch scratch(sums);
+      for (std::size_t p = range.begin(); p != range.end(); ++p)
+        keep(p, sums.evaluate(static_cast<std::uint32_t>(p), solid_angle, scratch));
     });
     progress(static_cast<double>(last) / static_cast<double>(samples));
   }
@@ -171,16 +255,18 @@ std::vector<Sample> ordered_samples(const SurfaceSamples& samples, const SampleO
   return ordered;
 }
 
-/// `count` coefficients of every channel from `first` on, row after row along the order.
+std::size_t padded(int count) { return static_cast<std::size_t>((count + row_lanes - 1) / row_lanes * row_lanes); }
+
+/// `count` coefficients of every channel from `first` on, padded with zeros, row after row along the order.
 std::vector<float> gather_rows(const std::vector<TransferVectors>& incoming, const SampleOctree& tree, int first,
                                int count) {
-  const std::size_t row = incoming.size() * static_cast<std::size_t>(count);
-  std::vector<float> rows(tree.order.size() * row);
+  const std::size_t width = padded(count), row = incoming.size() * width;
+  std::vector<float> rows(tree.order.size() * row, 0.f);
   for (std::size_t c = 0; c < incoming.size(); ++c)
     for (int i = 0; i < count; ++i) {
       const std::span<const float> plane = incoming[c].plane(first + i);
       for (std::size_t k = 0; k < tree.order.size(); ++k)
-        rows[k * row + c * static_cast<std::size_t>(count) + static_cast<std::size_t>(i)] = plane[tree.order[k]];
+        rows[k * row + c * width + static_cast<std::size_t>(i)] = plane[tree.order[k]];
     }
   return rows;
 }
@@ -225,22 +311,25 @@ Scattering scatter_transfer(const SurfaceSamples& samples, const std::vector<Tra
   // Step 2: what every sample sends out of what it gets, which the kernel's symmetry makes what it would get from a
   // surface that sends 1 everywhere.
   Scattering result;
-  std::vector<float> gains(count * channels, 1.f);
+  std::vector<float> gains;  // empty: nothing is scaled
   {
-    const std::vector<float> ones(count, 1.f);
-    sums.set_vectors(ones, 1, 1, gains);
+    const std::vector<float> ones(count * row_lanes, 1.f);
+    sums.set_vectors(ones, 1, row_lanes, {});
     std::vector<float> sent(count * channels);
     evaluate_all(sums, count, solid_angle, part_of(progress, 0, 0.2),
                  [&](std::size_t p, const std::vector<float>& all) {
-                   std::copy(all.begin(), all.end(), sent.begin() + static_cast<std::ptrdiff_t>(p * channels));
+                   for (std::size_t c = 0; c < channels; ++c) sent[p * channels + c] = all[c * row_lanes];
                  });
-    for (std::size_t k = 0; k < sent.size(); ++k) gains[k] = sent[k] > most_gain ? most_gain / sent[k] : 1.f;
     result.largest_gain = *std::max_element(sent.begin(), sent.end());
+    if (result.largest_gain > 1) {
+      gains.resize(sent.size());
+      std::transform(sent.begin(), sent.end(), gains.begin(), [](float all) { return all > 1 ? 1 / all : 1.f; });
+    }
     double all_area = 0;
     std::vector<double> capped(channels, 0);
     for (std::size_t k = 0; k < count; ++k) {
       all_area += ordered[k].area;
-      for (std::size_t c = 0; c < channels; ++c) capped[c] += gains[k * channels + c] < 1 ? ordered[k].area : 0;
+      for (std::size_t c = 0; c < channels; ++c) capped[c] += sent[k * channels + c] > 1 ? ordered[k].area : 0;
     }
     result.capped_area = *std::max_element(capped.begin(), capped.end()) / all_area;
   }
@@ -252,12 +341,12 @@ Scattering scatter_transfer(const SurfaceSamples& samples, const std::vector<Tra
   for (int first = 0; first < coefficients; first += chunk_coefficients) {
     const int width = std::min(chunk_coefficients, coefficients - first);
     const std::vector<float> rows = gather_rows(incoming, tree, first, width);
-    sums.set_vectors(rows, incoming.size(), width, gains);
+    const std::size_t stride = padded(width);
+    sums.set_vectors(rows, incoming.size(), stride, gains);
     const auto put = [&](std::size_t p, const std::vector<float>& all) {
       for (std::size_t c = 0; c < channels; ++c)
         for (int i = 0; i < width; ++i)
-          result.transfer[c].plane(first + i)[tree.order[p]] =
-              all[c * static_cast<std::size_t>(width) + static_cast<std::size_t>(i)];
+          result.transfer[c].plane(first + i)[tree.order[p]] = all[c * stride + static_cast<std::size_t>(i)];
     };
     evaluate_all(sums, count, solid_angle,
                  part_of(progress, 0.2 + 0.8 * first / coefficients, 0.2 + 0.8 * (first + width) / coefficients), put);
@@ -265,11 +354,11 @@ Scattering scatter_transfer(const SurfaceSamples& samples, const std::vector<Tra
     std::vector<double> errors(result.error_points, 0), lengths(result.error_points, 0);
     tbb::parallel_for(std::size_t{0}, result.error_points, [&](std::size_t e) {
       const std::size_t p = e * count / result.error_points;
-      KernelSums::Scratch scratch;
-      sums.evaluate(static_cast<std::uint32_t>(p), 0.f, scratch);
+      KernelSums::Scratch scratch(sums);
+      const std::vector<float>& all = sums.evaluate(static_cast<std::uint32_t>(p), 0.f, scratch);
       for (std::size_t c = 0; c < channels; ++c)
         for (int i = 0; i < width; ++i) {
-          const double exact = scratch.sums[c * static_cast<std::size_t>(width) + static_cast<std::size_t>(i)];
+          const double exact = all[c * stride + static_cast<std::size_t>(i)];
           const double off = result.transfer[c].plane(first + i)[tree.order[p]] - exact;
           errors[e] += off * off;
           lengths[e] += exact * exact;

@@ -25,6 +25,24 @@ std::string Extent::text() const {
   return width == height ? std::to_string(width) : fmt::format("{}x{}", width, height);
 }
 
+std::optional<std::array<double, 3>> parse_colours(const std::string& text) {
+  std::vector<double> values;
+  for (std::string rest = text;;) {
+    const std::size_t end = rest.find_first_of(",;");
+    std::string word = rest.substr(0, end);
+    word.erase(0, word.find_first_not_of(' '));
+    word.erase(word.find_last_not_of(' ') + 1);
+    const std::optional<double> value = parse<double>(word);
+    if (!value || !std::isfinite(*value)) return std::nullopt;
+    values.push_back(*value);
+    if (end == std::string::npos) break;
+    rest.erase(0, end + 1);
+  }
+  if (values.size() == 1) values.resize(3, values[0]);
+  if (values.size() != 3) return std::nullopt;
+  return std::array<double, 3>{values[0], values[1], values[2]};
+}
+
 OptionSet& OptionSet::integer(std::string name, int& value, int lowest, int highest, std::string help) {
   const std::string range = fmt::format("{} to {}", lowest, highest);
   auto set = [=, &value](const std::string& text) {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +25,10 @@ struct Extent {
   /// "512" or "1024x512".
   std::string text() const;
 };
+
+/// "0.8" (three times that) or "0.8,0.5,0.2", also with the semicolons that a list of pipeline.yaml becomes: finite
+/// numbers for red, green and blue. Nothing for other text.
+std::optional<std::array<double, 3>> parse_colours(const std::string& text);
 
 /// One setting, as the command line, pipeline.yaml and the reports know it.
 struct Option {

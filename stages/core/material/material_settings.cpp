@@ -1,8 +1,6 @@
 #include "material/material_settings.h"
 
-#include <charconv>
-#include <string_view>
-#include <vector>
+#include <algorithm>
 
 #include "base/errors.h"
 
@@ -12,26 +10,12 @@ namespace {
 
 std::optional<std::array<float, 3>> parse_albedo(const std::string& text) {
   if (text == "auto") return std::nullopt;
-  const auto refuse = [&] {
-    return WrongUsage("albedo: found '" + text + "'; expected auto, one number or three as R,G,B, each 0 to 1");
-  };
-  // Commas, or the semicolons that a list of pipeline.yaml becomes.
-  std::vector<float> values;
-  for (std::string_view rest = text;;) {
-    const std::size_t end = rest.find_first_of(",;");
-    std::string_view word = rest.substr(0, end);
-    while (!word.empty() && word.front() == ' ') word.remove_prefix(1);
-    while (!word.empty() && word.back() == ' ') word.remove_suffix(1);
-    float value = 0;
-    const auto [last, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || last != word.data() + word.size() || !(value >= 0 && value <= 1)) throw refuse();
-    values.push_back(value);
-    if (end == std::string_view::npos) break;
-    rest.remove_prefix(end + 1);
-  }
-  if (values.size() == 1) return std::array<float, 3>{values[0], values[0], values[0]};
-  if (values.size() != 3) throw refuse();
-  return std::array<float, 3>{values[0], values[1], values[2]};
+  const std::optional<std::array<double, 3>> colours = parse_colours(text);
+  if (!colours || !std::all_of(colours->begin(), colours->end(), [](double c) { return c >= 0 && c <= 1; }))
+    throw WrongUsage("albedo: found '" + text + "'; expected auto, one number or three as R,G,B, each 0 to 1");
+  std::array<float, 3> albedo{};
+  std::transform(colours->begin(), colours->end(), albedo.begin(), [](double c) { return static_cast<float>(c); });
+  return albedo;
 }
 
 }  // namespace

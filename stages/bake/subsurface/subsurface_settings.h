@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/options.h"
+#include "scatter/profile.h"
+
+namespace kiln {
+
+enum class SubsurfaceModel { dipole, diffusion };
+
+struct SubsurfaceSettings {
+  std::string material = "none";  ///< none, custom or the name of a measured material
+  SubsurfaceModel model = SubsurfaceModel::dipole;
+  std::string scattering = {};      ///< custom, dipole: sigma_s', 1/mm; one number or R,G,B
+  std::string absorption = {};      ///< custom, dipole: sigma_a, 1/mm
+  double eta = 1.3;                 ///< custom, dipole
+  std::string albedo = {};          ///< custom, diffusion: of the surface, 0 to 1
+  std::string mean_free_path = {};  ///< custom, diffusion: mm
+  double mm_per_unit = 1000;        ///< object units are metres unless told otherwise
+  double solid_angle = 0.05;        ///< ScatteringSettings has it
+
+  bool wanted() const { return material != "none"; }
+};
+
+/// Adds `subsurface` and `subsurface-...` to the bake's options.
+void add_subsurface_options(OptionSet& options, SubsurfaceSettings& settings);
+
+/// One profile where all colours have the same, else those of red, green and blue; none where nothing is wanted. A
+/// measured material as diffusion has the dipole's total reflectance as surface albedo and the mean free path
+/// 1 / sigma_t'. Throws WrongUsage for settings that do not go together.
+std::vector<ScatterProfile> subsurface_profiles(const SubsurfaceSettings& settings);
+
+}  // namespace kiln
