@@ -1,14 +1,11 @@
-// Projects a block of directions: its float32 sums of weights * basis rows stay in registers, and are added to the
-// totals as fixed-point numbers, so that the order of blocks does not matter (stages/core/sh/transfer_sums.h).
+// Projects a block of directions: its float32 sums of weights * basis rows stay in registers, and are added to the totals.
 //   BLOCK   directions of a full block; the weights of those beyond a smaller one are zero
 //   CHUNK   coefficients of a chunk, a multiple of 4
 #include "bake_receivers.glsl"
+#include "bake_totals.glsl"
 
 layout(std430, binding = 2) readonly buffer Weights {
   float weights[];  // direction after direction
-};
-layout(std430, binding = 3) buffer Totals {
-  uvec2 totals[];  // plane after plane, whole chunks; 64-bit integers: low word, high word
 };
 // Basis functions at the block's directions. A uniform block, whose constant addresses cost nothing.
 layout(std140, binding = 0) uniform BasisRows {
@@ -25,13 +22,5 @@ void main() {
     float weight = weights[d * receiver_count + r];
     for (int i = 0; i < CHUNK / 4; ++i) sums[i] += weight * basis_rows[d * CHUNK / 4 + i];
   }
-  for (int i = 0; i < CHUNK; ++i) {
-    int sum = int(roundEven(sums[i / 4][i % 4] * 8388608.0));
-    int at = (first_coefficient + i) * receiver_count + r;
-    uvec2 total = totals[at];
-    uint carry;
-    total.x = uaddCarry(total.x, uint(sum), carry);
-    total.y += uint(sum >> 31) + carry;
-    totals[at] = total;
-  }
+  for (int i = 0; i < CHUNK; ++i) add_to_total((first_coefficient + i) * receiver_count + r, sums[i / 4][i % 4]);
 }

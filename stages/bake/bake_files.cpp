@@ -76,10 +76,12 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
   return scene;
 }
 
-/// What ranges.json says of the reflectance that the normals stage found.
-Json albedo_entry(const DetailMaps& detail) {
-  const Eigen::Vector3f& constant = detail.constant_albedo;
-  if (!detail.albedo.values().empty()) return albedo_name;
+/// What ranges.json says of the reflectance: that of the settings, else what the normals stage found.
+Json albedo_entry(const DetailMaps& detail, const MaterialSettings& material) {
+  const auto given = material.constant();
+  const Eigen::Vector3f constant =
+      given ? Eigen::Vector3f((*given)[0], (*given)[1], (*given)[2]) : detail.constant_albedo;
+  if (!given && !detail.albedo.values().empty()) return albedo_name;
   return constant.isOnes(0) ? Json() : Json{constant.x(), constant.y(), constant.z()};
 }
 
@@ -140,7 +142,7 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
   std::optional<DetailMaps> detail;
   if (!paths.detail.empty()) {
     detail = load_detail_maps(paths.detail, atlas);
-    if (!settings.bake_albedo && !settings.subsurface.wanted()) scene.albedo = albedo_entry(*detail);
+    if (!settings.bake_albedo && !settings.subsurface.wanted()) scene.albedo = albedo_entry(*detail, settings.material);
   }
 
   if (settings.receiver == BakeReceiver::high) {

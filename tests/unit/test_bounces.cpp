@@ -7,6 +7,7 @@
 #include <tbb/global_control.h>
 
 #include "bake/bake.h"
+#include "bake/egl/bundle_engine.h"
 #include "base/errors.h"
 #include "bounce_stand.h"
 #include "mesh/mesh_file.h"
@@ -59,13 +60,26 @@ void stand_on_faces(BounceStand& stand, const TriangleMesh& mesh, std::size_t st
   }
 }
 
-class Bounces : public testing::TestWithParam<BakeBackend> {};
+/// Of a software GL renderer less is asked.
+class Bounces : public testing::TestWithParam<BakeBackend> {
+ protected:
+  bool egl() const { return GetParam() == BakeBackend::egl; }
+  BounceStand stand() const {
+    BounceStand stand;
+    stand.backend = GetParam();
+    if (egl()) {
+      stand.settings.shadow_size = 256;
+      stand.directions = sample_directions(Sampling::fibonacci, 128, 1);
+      order_coherently(stand.directions, block_directions);
+    }
+    return stand;
+  }
+};
 
 TEST_P(Bounces, InsideOfASphereIsTheSameEverywhere) {
   // The inside of a closed sphere, lit the same everywhere: every point sees nothing but the sphere, so each bounce is
   // the one before times the albedo, wherever one looks.
-  BounceStand stand;
-  stand.backend = GetParam();
+  BounceStand stand = this->stand();
   const Eigen::Vector3f albedo(0.8f, 0.5f, 0.1f);
   stand.occluders = join_occluders({inverted(shapes::icosphere(4))}, {SurfaceAlbedo::constant(albedo)});
   for (const Eigen::Vector3f& point : sample_directions(Sampling::fibonacci, 200, 4)) {
@@ -77,21 +91,30 @@ TEST_P(Bounces, InsideOfASphereIsTheSameEverywhere) {
   const std::vector<TransferVectors> got =
       stand.bounced(cache, even_transfer(cache.size(), 0.25f), {false, 3}, report, even_transfer(200, 0.25f));
   ASSERT_EQ(got.size(), 3u);
-  // 1,024 directions integrate a clamped cosine to 2e-4; three bounces, one after the other, to 6e-4.
+  // Each bounce errs by as much as the directions do on the integral of a clamped cosine, at the worst of these
+  // normals.
+  double worst = 0;
+  for (const std::vector<Eigen::Vector3f>& normals : {stand.normals, cache.point_normals})
+    for (const Eigen::Vector3f& normal : normals) {
+      double sum = 0;
+      for (const Eigen::Vector3f& direction : stand.directions) sum += std::max(0.f, normal.dot(direction));
+      worst = std::max(worst, std::abs(4 * sum / static_cast<double>(stand.directions.size()) - 1));
+    }
+  EXPECT_LT(worst, 1e-2);
+  const double tolerance = 3 * worst + 1e-5;
   for (int c = 0; c < 3; ++c)
     for (float value : got[c].values)
-      EXPECT_NEAR(value, 0.25f * (albedo[c] + std::pow(albedo[c], 2) + std::pow(albedo[c], 3)), 1e-3 * 0.25);
+      EXPECT_NEAR(value, 0.25f * (albedo[c] + std::pow(albedo[c], 2) + std::pow(albedo[c], 3)), tolerance * 0.25);
   ASSERT_EQ(report.energy.size(), 3u);
   for (int bounce = 1; bounce <= 3; ++bounce) {
     const Eigen::Array3d power = albedo.cast<double>().array().pow(bounce);
-    EXPECT_NEAR(report.energy[bounce - 1], std::sqrt(power.square().mean()), 1e-3);
+    EXPECT_NEAR(report.energy[bounce - 1], std::sqrt(power.square().mean()), tolerance);
   }
 }
 
 TEST_P(Bounces, BacksReflectNothing) {
   // The same sphere facing outwards: its inside is all backs.
-  BounceStand stand;
-  stand.backend = GetParam();
+  BounceStand stand = this->stand();
   stand.occluders = join_occluders({shapes::icosphere(3)}, {SurfaceAlbedo::constant(Eigen::Vector3f{1, 1, 1})});
   for (const Eigen::Vector3f& point : sample_directions(Sampling::fibonacci, 50, 4)) {
     stand.positions.push_back(0.9f * point);
@@ -119,22 +142,21 @@ TEST_P(Bounces, WhiteBowlInAFurnaceShinesAsTheFurnaceDoes) {
     profile.emplace_back(std::max(std::cos(angle), 0.01f), std::sin(angle));
   }
   const TriangleMesh bowl = revolved(profile, 48);
-  BounceStand stand;
-  stand.backend = GetParam();
+  BounceStand stand = this->stand();
   stand.settings.bounces = "20";
   stand.settings.bounce_edge = 0.1;
-  stand.settings.directions = 256;
-  stand.settings.shadow_size = 256;
+  stand.settings.directions = egl() ? 64 : 256;
+  if (egl()) stand.settings.bounces = "10";
   stand.occluders = join_occluders({bowl}, {SurfaceAlbedo::constant(Eigen::Vector3f{1, 1, 1})});
   ASSERT_TRUE(stand.occluders.closed);
   stand_on_faces(stand, bowl, 7, 0.05f);  // not in the pinhole along the axis that the profile leaves
   const BakeResult result = stand.bake();
   ASSERT_EQ(result.channels.size(), 1u);
   ASSERT_TRUE(result.bounces.has_value());
-  // Half of the light that leaves a point of the inside leaves the bowl (the mouth has half its area), so after 40
-  // bounces 1e-6 of it is still about. Rays err by what 256 directions do, and at the rim by the cache's facets: 1
-  // %. A depth map of 256 texels and its bias lose some of the light at grazing angles, at the rim and the bottom: 5 %.
-  const double tolerance = GetParam() == BakeBackend::egl ? 0.05 : 0.01;
+  // Half of the light that leaves a point of the inside leaves the bowl (the mouth has half its area), so after 20
+  // bounces 1e-6 of it is still about, after 10 a thousandth. 256 directions err by 1e-3. A depth map of 256 texels and
+  // its bias lose some of the light at grazing angles, at the rim and the bottom: 5 %.
+  const double tolerance = egl() ? 0.05 : 0.003;
   double mean = 0, dark = 1;
   for (float value : result.channels[0].values) {
     const double radiance = value / t_0;
@@ -164,8 +186,7 @@ TEST_P(Bounces, ParallelPlatesExchangeWhatFormFactorsSay) {
   // not at all. Bounce 1 reaches the upper alone: albedo times the form factor, in closed form. Bounce 2 comes back to
   // the lower: of bounce 1 as above, over 40 x 40 patches, each with its form factor in closed form.
   constexpr double gap = 0.5, lower_albedo = 0.9, upper_albedo = 0.6;
-  BounceStand stand;
-  stand.backend = GetParam();
+  BounceStand stand = this->stand();
   TriangleMesh upper = inverted(shapes::plane(1, 1, gap));
   stand.occluders = join_occluders({shapes::plane(1, 1, 0), upper},
                                    {SurfaceAlbedo::constant(Eigen::Vector3f::Constant(lower_albedo)),
@@ -173,7 +194,7 @@ TEST_P(Bounces, ParallelPlatesExchangeWhatFormFactorsSay) {
   const SurfaceCache cache = make_surface_cache(stand.occluders, 0.03);
   TransferVectors lit(cache.size(), 1);
   for (std::size_t p = 0; p < cache.size(); ++p) lit.plane(0)[p] = cache.point_normals[p].y() > 0 ? 1.f : 0.f;
-  stand.directions = sample_directions(Sampling::fibonacci, 4096, 1);
+  stand.directions = sample_directions(Sampling::fibonacci, egl() ? 1024 : 4096, 1);
   order_coherently(stand.directions, block_directions);
   const auto first_bounce = [&](double x, double z) {
     return lower_albedo * rectangle_above(-0.5 - x, 0.5 - x, -0.5 - z, 0.5 - z, gap);
@@ -200,7 +221,7 @@ TEST_P(Bounces, ParallelPlatesExchangeWhatFormFactorsSay) {
   const std::vector<TransferVectors> got = stand.bounced(cache, lit, {false, 2}, report, even_transfer(50, 1));
   // A plate's edge cuts through the 4,096 directions: a ray weighs 1e-3 at most, and some twenty are cut wrongly, most
   // of which cancel; 0.5 % of 1. Egl finds the edge of a plate by whole texels of 1/500: another 0.5 %.
-  const double tolerance = GetParam() == BakeBackend::egl ? 0.01 : 0.005;
+  const double tolerance = egl() ? 0.015 : 0.005;
   for (std::size_t r = 0; r < stand.positions.size(); ++r) {
     const double x = stand.positions[r].x(), z = stand.positions[r].z();
     const double truth = stand.normals[r].y() < 0 ? first_bounce(x, z) : second_bounce(x, z);
@@ -208,7 +229,7 @@ TEST_P(Bounces, ParallelPlatesExchangeWhatFormFactorsSay) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Bake, Bounces, testing::Values(BakeBackend::beams, BakeBackend::embree),
+INSTANTIATE_TEST_SUITE_P(Bake, Bounces, testing::Values(BakeBackend::egl, BakeBackend::beams, BakeBackend::embree),
                          [](const auto& backend) { return backend_name(backend.param); });
 
 /// The bunny on a floor, both coloured; receivers on the bunny.
@@ -254,6 +275,49 @@ TEST(BounceRays, ThreadsGiveTheSameBytes) {
     for (int c = 0; c < 3; ++c) EXPECT_EQ(many.channels[c].values, single.channels[c].values);
     EXPECT_EQ(many.bounces->energy, single.bounces->energy);
   }
+}
+
+TEST(BounceEgl, BundlesAgreeWithRays) {
+  BounceStand stand = bunny_on_floor(20);
+  stand.settings.directions = 64;
+  stand.settings.bounces = "1";
+  stand.settings.shadow_size = 1024;
+  std::vector<TransferVectors> bounce[2];  // without the direct light, whose depth maps err by themselves
+  double energy[2] = {0, 0};
+  for (int k = 0; k < 2; ++k) {
+    stand.backend = k == 0 ? BakeBackend::embree : BakeBackend::egl;
+    const BakeResult result = stand.bake();
+    energy[k] = result.bounces->energy[0];
+    bounce[k] = result.channels;
+    BounceStand direct = stand;
+    direct.settings.bounces = "0";
+    const TransferVectors without = direct.bake().channels[0];
+    for (TransferVectors& channel : bounce[k])
+      for (std::size_t i = 0; i < channel.values.size(); ++i) channel.values[i] -= without.values[i];
+  }
+  // A receiver's rays pass through the centres of texels, half a texel of 1/700 of the scene off at most, so at edges
+  // one ray in some takes another surface than it should: 2 %, noise that does not pile up in the energy.
+  EXPECT_LT(relative_l2(bounce[1], bounce[0]), 0.04);
+  EXPECT_NEAR(energy[1] / energy[0], 1, 0.01);
+}
+
+TEST(BounceEgl, BatchesGiveWhatSingleDirectionsGive) {
+  const BounceStand stand = bunny_on_floor(200);
+  const SurfaceCache cache = make_surface_cache(stand.occluders, 0.1);
+  std::vector<float> sent(cache.size() * 75);
+  for (std::size_t k = 0; k < sent.size(); ++k) sent[k] = std::sin(static_cast<float>(k));
+  const std::span<const Eigen::Vector3f> directions = std::span(stand.directions).first(70);  // not whole blocks
+  ShadowMapSettings settings;
+  settings.size_texels = 256;
+  std::vector<TransferSums> sums;
+  for (int batch : {16, 1}) {
+    settings.batch_directions = batch;
+    BundleEngine engine(cache.surface(), "software", 2, settings);
+    engine.set_radiance(sent, 75);
+    sums.push_back(engine.gather(stand.receivers(), directions, no_progress));
+  }
+  EXPECT_EQ(sums[0].values, sums[1].values);
+  EXPECT_NE(sums[0].values, TransferSums(stand.positions.size(), 75).values);
 }
 
 TEST(BounceCount, AutomaticStopsUnderTheFloor) {

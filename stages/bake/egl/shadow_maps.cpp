@@ -3,21 +3,16 @@
 #include <algorithm>
 #include <map>
 
+#include "bake/egl/views.h"
 #include "gpu/program.h"
 
 namespace kiln {
 
 namespace {
 
-constexpr int frame_margin_texels = 2;
 constexpr GLsizei most_draw_triangles = 16'000'000;  // of all layers: a few tens of milliseconds on hardware
 
 constexpr GLuint no_triangle = ~0u;
-
-/// As shaders/bake_views.glsl has it (std430).
-struct View {
-  Eigen::Vector4f row_u, row_v, row_depth, direction, extent;
-};
 
 GLenum depth_format(ShadowDepth depth) {
   switch (depth) {
@@ -104,16 +99,7 @@ void ShadowMaps::add_pass(GLenum culled, int layers) {
 
 void ShadowMaps::draw(std::span<const Eigen::Vector3f> directions) {
   // Step 1: the frames.
-  std::vector<View> views;
-  for (const Eigen::Vector3f& direction : directions) {
-    const ShadowFrame frame = fit_shadow_frame(hull_, direction, size_, frame_margin_texels);
-    const float texel = std::max(frame.width, frame.height) / static_cast<float>(size_);
-    views.push_back({frame.row_u,
-                     frame.row_v,
-                     frame.row_depth,
-                     {direction.x(), direction.y(), direction.z(), texel},
-                     {frame.width, frame.height, frame.depth, 0}});
-  }
+  const std::vector<View> views = fit_views(hull_, directions, size_);
   refill_buffer<View>(views_, views);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, views_.name());
 

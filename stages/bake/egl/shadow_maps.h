@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "bake/egl/shadow_frame.h"
 #include "bake/egl/shadow_settings.h"
 #include "bake/engines/transfer_engine.h"
 #include "gpu/gl_objects.h"

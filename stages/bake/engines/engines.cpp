@@ -1,6 +1,7 @@
 #include "bake/engines/engines.h"
 
 #include "bake/bounce/ray_gather_engine.h"
+#include "bake/egl/bundle_engine.h"
 #include "bake/egl/egl_engine.h"
 #include "bake/engines/beam_engine.h"
 #include "bake/engines/embree_engine.h"
@@ -27,7 +28,11 @@ std::unique_ptr<TransferEngine> make_engine(BakeBackend backend, const Occluders
 
 std::unique_ptr<GatherEngine> make_gather_engine(BakeBackend backend, const ReflectingSurface& surface,
                                                  const BakeSettings& settings, int threads) {
-  (void)threads;
+  if (backend == BakeBackend::egl) {
+    ShadowMapSettings shadows = settings.shadows;
+    shadows.size_texels = settings.shadow_size > 0 ? settings.shadow_size : shadows.size_texels;
+    return std::make_unique<BundleEngine>(surface, settings.gl_device, threads, shadows);
+  }
   return std::make_unique<RayGatherEngine>(surface, settings.ray_offset, backend == BakeBackend::beams);
 }
 

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/bounce/gather_engine.h"
+#include "bake/egl/shadow_settings.h"
+#include "gpu/gl_objects.h"
+
+namespace kiln {
+
+/// All layers of a surface along a batch of directions: bundles of parallel rays. Where Hachisuka peels one layer after
+/// the other ("High-quality global illumination rendering using rasterization", GPU Gems 2, 2005, chapter 38), one pass
+/// leaves every fragment in a list of its texel (Yang, Hensley, Gruen and Thibieroz, "Real-time concurrent linked list
+/// construction on the GPU", 2010; for bundles Tokuyoshi, Sekine and Ogaki, "Fast global illumination baking via
+/// ray-bundles", 2011). Of a closed surface the lists hold the faces that turn away from the light alone, which are
+/// those that a receiver beneath them sees the front of.
+class BundleLists {
+ public:
+  BundleLists(const ReflectingSurface& surface, const ShadowMapSettings& settings);
+
+  /// Draws the first of `directions`, as many as memory has room for, and says how many. Binds the frames (views) to
+  /// shader storage binding 0, the first entries of texels' lists to 5, the entries to 6. Throws MachineLacks where
+  /// even one has no room.
+  std::size_t draw(std::span<const Eigen::Vector3f> directions);
+
+  int size_texels() const { return size_; }
+
+ private:
+  std::uint32_t draw_once(std::span<const Eigen::Vector3f> directions);
+
+  int size_;
+  bool closed_;
+  GLsizei indices_;
+  std::size_t batch_;     // directions at a time
+  std::size_t capacity_;  // entries
+  std::vector<Eigen::Vector3f> hull_;
+  GlBuffer positions_, triangles_, views_;
+  GlBuffer heads_;    // of each texel: its list's first entry
+  GlBuffer entries_;  // depth, triangle, next
+  GlBuffer counter_;
+  GlVertexArray surface_;
+  GlFramebuffer framebuffer_;
+  GlProgram program_;
+};
+
+}  // namespace kiln
