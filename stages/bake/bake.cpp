@@ -60,6 +60,23 @@ std::vector<TransferVectors> thin_out(const std::vector<TransferVectors>& channe
 /// Direct light takes the first part of the progress where light bounces.
 constexpr double direct_share = 0.3;
 
+/// Bakes some of the receivers and interpolates others; gives what came of it.
+AdaptiveReport bake_adaptively(Integration& integration, const TexelReceivers& receivers, const BakeSettings& settings,
+                               TransferVectors& transfer, const ProgressFunction& progress) {
+  std::vector<std::uint8_t> known(receivers.texels.size(), 1);
+  for (std::uint32_t r : integration.tested()) known[r] = 0;
+  const BakeSome bake_some = [&](std::span<const std::uint32_t> some) {
+    std::vector<Eigen::Vector3f> positions, normals;
+    for (std::uint32_t r : some) {
+      positions.push_back(receivers.positions[r]);
+      normals.push_back(receivers.normals[r]);
+    }
+    return direct_transfer(integration.engine(), {positions, normals}, integration.direction_list(), settings.bands,
+                           no_progress);
+  };
+  return adaptive_transfer(receivers, std::move(known), bake_some, settings.adaptive, transfer, progress);
+}
+
 /// Multiplies each receiver's transfer by its albedo, if there are any.
 void put_albedo(std::vector<TransferVectors>& channels, std::span<const Eigen::Vector3f> albedos) {
   const auto is_grey = [](const Eigen::Vector3f& albedo) {
@@ -101,11 +118,14 @@ BakeResult bake(const TexelReceivers& receivers, const Occluders& occluders, con
   const TransferWork before = integration.engine().work();
   TransferVectors transfer(receivers.texels.size(), coefficient_count(settings.bands));
   integration.put_unoccluded(transfer);
-  for (std::size_t slab = 0; slab < integration.slabs(); ++slab)
+  std::optional<AdaptiveReport> adaptive;
+  if (settings.adaptive > 0) adaptive = bake_adaptively(integration, receivers, settings, transfer, direct_progress);
+  for (std::size_t slab = 0; slab < integration.slabs() && !adaptive; ++slab)
     integration.put(slab,
                     integration.sum(slab, {}, checkpoints, part_of(direct_progress, slab, integration.slabs())).sums,
                     transfer);
   BakeResult result = describe(integration, before, stopwatch);
+  result.adaptive = adaptive;
   result.channels.push_back(std::move(transfer));
   add_bounces(result, integration, receivers, occluders, settings, threads, progress);
   result.seconds = stopwatch.seconds();
@@ -192,6 +212,7 @@ BakeVerification verify(const BakeResult& result, const std::vector<TransferVect
   BakeSettings other_settings = settings;
   other_settings.backend = other;
   other_settings.max_error = "none";
+  other_settings.adaptive = 0;
   other_settings.directions = result.directions;
   other_settings.sampling = result.sampling;
   if (result.bounces) other_settings.bounces = std::to_string(result.bounces->energy.size());

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/adaptive/adaptive.h"
 #include "bake/bake_settings.h"
 #include "bake/bounce/bounces.h"
 #include "bake/integrate/integration.h"
@@ -31,7 +32,8 @@ struct BakeResult {
   std::size_t unoccluded = 0;  ///< receivers that took the analytic transfer
   TransferWork work;           ///< of this run, for the others
   std::optional<DirectionChoice> choice;
-  std::optional<BounceReport> bounces;  ///< where light bounces
+  std::optional<AdaptiveReport> adaptive;  ///< where some receivers were interpolated
+  std::optional<BounceReport> bounces;     ///< where light bounces
   std::optional<ShadowSizeChoice> shadow_choice;
   double seconds = 0;  ///< of integrating, bouncing and scattering alone, the engines' start included
 };

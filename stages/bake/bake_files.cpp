@@ -59,6 +59,8 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
     throw WrongUsage(
         "per-vertex: found --detail; expected none, which is for texels; --receiver high takes the first "
         "--occluder as the high mesh");
+  if (settings.adaptive > 0)
+    throw WrongUsage("per-vertex: found --adaptive; expected none, it goes by squares of texels");
   if (settings.size.width != 0) throw WrongUsage("per-vertex: found --size; expected none, which is for texels");
   BakeScene scene;
   scene.vertex_mesh = load_vertex_mesh(paths.atlas);
@@ -74,6 +76,20 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
   scene.vertex_metrics = {{"receiver_distance_largest", vertices.largest_distance},
                           {"vertices_facing_away", vertices.facing_away}};
   return scene;
+}
+
+Json describe_adaptive(const AdaptiveReport& report, int directions) {
+  const auto all = static_cast<double>(report.baked + report.interpolated);
+  return {{"target", report.target},
+          {"error", report.error},
+          {"error_of_interpolated", report.error_of_interpolated},
+          {"held_out_texels", report.held_out},
+          {"bound", report.bound},
+          {"rounds", report.rounds},
+          {"baked_texels", report.baked},
+          {"interpolated_texels", report.interpolated},
+          {"texel_directions_saved", static_cast<double>(report.interpolated) * directions},
+          {"share_saved", all > 0 ? static_cast<double>(report.interpolated) / all : 0}};
 }
 
 /// What ranges.json says of the reflectance: that of the settings, else what the normals stage found.
@@ -206,6 +222,7 @@ Json describe_bake(const BakeScene& scene, const BakeResult& result) {
                         {"shadowed_tiles", share(result.work.shadowed_tiles)}};
   metrics["ambiguous"] = share(result.work.ambiguous);
   metrics["refined"] = share(result.work.refined);
+  if (result.adaptive) metrics["adaptive"] = describe_adaptive(*result.adaptive, result.directions);
   if (result.subsurface) metrics["subsurface"] = describe_subsurface(*result.subsurface);
   return metrics;
 }

@@ -37,6 +37,8 @@ namespace {
 /// All but what goes on beneath the surface.
 BakeResult integrate(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeSettings& settings,
                      const BakeRun& run, const CommandLine& command) {
+  if (settings.adaptive > 0 && (run.is_shard() || !run.shards.empty() || run.resume))
+    throw WrongUsage("adaptive: found --shard, --merge or --resume; expected none, they go by blocks of directions");
   const ProgressFunction progress = command.progress(run.shards.empty() ? "bake" : "merge");
   if (!run.shards.empty()) {
     if (run.is_shard() || run.resume) throw WrongUsage("merge: found --shard or --resume; expected neither");

@@ -98,6 +98,9 @@ OptionSet bake_options(BakeSettings& settings) {
           "Takes as many directions as bring the estimated error of integration under this: a relative L2 of transfer "
           "vectors, or auto for what --bits costs; the directions are then progressive ones")
       .integer("max-directions", settings.max_directions, 64, 100'000'000, "The most directions that --max-error takes")
+      .number("adaptive", settings.adaptive, 0, 0.5,
+              "Bakes some texels and interpolates others where that costs no more than this, a relative L2 of transfer "
+              "vectors as texels held out say; 0 bakes every texel")
       .choice("backend", settings.backend, backend_words,
               "Shadows from depth maps on the GPU, from beams of rays on the CPU, or ray by ray from Embree, the "
               "reference; auto: egl if EGL has a GPU, else beams")

@@ -44,6 +44,7 @@ struct BakeSettings {
   int directions = 1024;
   std::string max_error = "none";  ///< none, auto or relative L2: decides the number of directions
   int max_directions = 65536;      ///< that max_error may take
+  double adaptive = 0;             ///< relative L2 that interpolating texels may cost; 0: every texel is baked
   Sampling sampling = Sampling::fibonacci;
   int bits = 8;  ///< of a stored coefficient
   SeamChoice seams = SeamChoice::equalise;

@@ -5,6 +5,7 @@
 //   seconds, cpu_seconds                   of bake(), all receivers, the engine's start included; CPU of all threads
 //   relative_l2, expected_relighting_error before quantisation
 //   million_texel_directions_per_second
+//   baked_share                            of the texels; under 1 with --adaptive
 //
 //   bench_error_time [--asset FOLDER] [--mesh MESH] [--reference 65536] [--sample 2048] [--threads 2]
 //                    [--only TEXT] [--setting "--backend egl --shadow-size 512"]... [--directions N...]
@@ -99,7 +100,7 @@ class Truth {
 void run(const BakeScene& scene, const std::vector<Series>& list, const Truth& truth, int threads) {
   std::printf(
       "setting,directions,seconds,cpu_seconds,relative_l2,expected_relighting_error,"
-      "million_texel_directions_per_second\n");
+      "million_texel_directions_per_second,baked_share\n");
   for (const Series& series : list)
     for (int directions : series.directions) {
       BakeSettings settings = parse(series.setting);
@@ -108,9 +109,10 @@ void run(const BakeScene& scene, const std::vector<Series>& list, const Truth& t
       const Cost cost = cost_of([&] { result = bake(scene.receivers, scene.occluders, settings, seed, threads); });
       const TransferVectors some = truth.sampled(result.channels.front());
       const double pairs = static_cast<double>(scene.receivers.texels.size()) * result.directions;
-      std::printf("%s,%d,%.3f,%.3f,%.6f,%.6f,%.2f\n", series.setting.c_str(), result.directions, cost.wall, cost.cpu,
-                  relative_l2(some, truth.transfer()), expected_relighting_error(some, truth.transfer()),
-                  pairs / cost.wall / 1e6);
+      const double interpolated = result.adaptive ? static_cast<double>(result.adaptive->interpolated) : 0;
+      std::printf("%s,%d,%.3f,%.3f,%.6f,%.6f,%.2f,%.3f\n", series.setting.c_str(), result.directions, cost.wall,
+                  cost.cpu, relative_l2(some, truth.transfer()), expected_relighting_error(some, truth.transfer()),
+                  pairs / cost.wall / 1e6, 1 - interpolated / static_cast<double>(scene.receivers.texels.size()));
       std::fflush(stdout);
     }
 }

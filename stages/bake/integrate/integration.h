@@ -66,6 +66,7 @@ class Integration {
   Sampling sampling() const { return sampling_; }
   int directions() const { return static_cast<int>(directions_.size()); }
   std::span<const Eigen::Vector3f> direction_list() const { return directions_; }  ///< coherent block after block
+  std::span<const std::uint32_t> tested() const { return tested_; }  ///< receivers that something may shadow, ascending
   std::size_t unoccluded() const { return receivers_.size() - tested_.size(); }
   const std::optional<DirectionChoice>& choice() const { return choice_; }
   /// Made with the engine, for an automatic size of depth maps.
