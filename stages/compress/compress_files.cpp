@@ -4,6 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <fstream>
+#include <functional>
 #include <tbb/parallel_for.h>
 
 #include "base/errors.h"
@@ -16,17 +17,17 @@ namespace {
 
 constexpr const char* basis_of_files = "real-sh-orthonormal";
 
-/// Pictures to be encoded, side by side.
+/// A picture to be encoded, made when its turn comes, so that few are in memory at a time.
 struct Work {
   std::string name;
-  const Image<std::uint16_t>* picture;
+  std::function<Image<std::uint16_t>()> picture;
   int bits;
 };
 
 EncodedFiles encode_all(const std::vector<Work>& work, PngEffort effort) {
   EncodedFiles files(work.size());
   tbb::parallel_for(std::size_t{0}, work.size(), [&](std::size_t k) {
-    files[k] = {work[k].name, encode_grey_png(*work[k].picture, work[k].bits, effort)};
+    files[k] = {work[k].name, encode_grey_png(work[k].picture(), work[k].bits, effort)};
   });
   return files;
 }
@@ -47,6 +48,8 @@ void add_names(Json& head, const PrtAsset& asset) {
   else if (!constant.isOnes(0))
     head["albedo"] = {constant.x(), constant.y(), constant.z()};
 }
+
+std::uint8_t eight_of_sixteen_bits(std::uint16_t value) { return static_cast<std::uint8_t>((value + 128) / 257); }
 
 void copy_into(OutputSet& outputs, const fs::path& input, const std::string& name) {
   if (name.find('/') != std::string::npos) fs::create_directories((outputs.staging() / name).parent_path());
@@ -78,16 +81,16 @@ EncodedFiles encode_pca(const StoredPca& stored, const TransferSource& source, P
   Json planes = Json::array();
   for (std::size_t j = 0; j < stored.weights.size(); ++j) {
     const StoredPicture& plane = stored.weights[j];
-    work.push_back({fmt::format("weight_{:02d}.png", j), &plane.values, plane.bits});
+    work.push_back({fmt::format("weight_{:02d}.png", j), [&plane] { return plane.values; }, plane.bits});
     planes.push_back({{"file", work.back().name}, {"bits", plane.bits}, {"min", plane.lowest}, {"max", plane.highest}});
   }
-  work.push_back({"vectors.png", &stored.vectors, 16});
+  work.push_back({"vectors.png", [&] { return stored.vectors; }, 16});
   Image<std::uint16_t> ids;
   const int clusters = stored.decoded.model.clusters();
   if (clusters > 1) {
     ids = Image<std::uint16_t>(asset.width, asset.height, 1);
     std::copy(stored.decoded.ids.begin(), stored.decoded.ids.end(), ids.values().begin());
-    work.push_back({"clusters.png", &ids, 8});
+    work.push_back({"clusters.png", [&] { return ids; }, 8});
   }
   EncodedFiles files = encode_all(work, effort);
 
@@ -115,28 +118,29 @@ PrtAsset with_eight_bits(const PrtAsset& asset) {
   std::vector<Image<std::uint8_t>> pictures;
   for (const Image<std::uint16_t>& wide : std::get<std::vector<Image<std::uint16_t>>>(asset.pictures)) {
     Image<std::uint8_t>& picture = pictures.emplace_back(asset.width, asset.height, 1);
-    std::transform(wide.values().begin(), wide.values().end(), picture.values().begin(),
-                   [](std::uint16_t value) { return static_cast<std::uint8_t>((value + 128) / 257); });
+    std::transform(wide.values().begin(), wide.values().end(), picture.values().begin(), eight_of_sixteen_bits);
   }
   narrow.pictures = std::move(pictures);
   return narrow;
 }
 
 EncodedFiles encode_planes(const PrtAsset& asset, int bits, PngEffort effort) {
-  const PrtAsset stored = bits == 8 ? with_eight_bits(asset) : asset;
-  std::vector<Image<std::uint16_t>> pictures;
-  const auto widen = [&](const auto& planes) {
-    for (const auto& plane : planes) {
-      Image<std::uint16_t>& wide = pictures.emplace_back(asset.width, asset.height, 1);
-      std::copy(plane.values().begin(), plane.values().end(), wide.values().begin());
-    }
+  const auto picture = [&](std::size_t k) {
+    Image<std::uint16_t> wide(asset.width, asset.height, 1);
+    const auto copy = [&](const auto& planes) {
+      std::copy(planes[k].values().begin(), planes[k].values().end(), wide.values().begin());
+    };
+    std::visit(copy, asset.pictures);
+    if (bits < asset.bits)
+      std::transform(wide.values().begin(), wide.values().end(), wide.values().begin(), eight_of_sixteen_bits);
+    return wide;
   };
-  std::visit(widen, stored.pictures);
   std::vector<Work> work;
   Json planes = Json::array();
   for (std::size_t k = 0; k < asset.planes.size(); ++k) {
     const PrtPlane& plane = asset.planes[k];
-    work.push_back({fmt::format("coeff_{}_{:02d}.png", plane.channel, plane.coefficient), &pictures[k], bits});
+    work.push_back({fmt::format("coeff_{}_{:02d}.png", plane.channel, plane.coefficient),
+                    [&picture, k] { return picture(k); }, bits});
     planes.push_back({{"file", work.back().name},
                       {"channel", plane.channel},
                       {"coefficient", plane.coefficient},

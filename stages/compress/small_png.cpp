@@ -13,6 +13,8 @@ namespace kiln {
 
 namespace {
 
+constexpr std::size_t most_tried_bytes = 1u << 20;
+constexpr int large_level = 8;            // 9 takes several times as long for next to nothing
 constexpr int filters = 5, adaptive = 5;  // none, sub, up, average, Paeth; the best of them for each row
 
 using Bytes = std::vector<unsigned char>;
@@ -79,6 +81,20 @@ Bytes deflated(const Bytes& data, int level, int strategy) {
   return result;
 }
 
+/// Bands of rows, evenly spread over a picture of more than most_tried_bytes.
+Bytes bands_of(const Bytes& raw, std::size_t row_bytes) {
+  constexpr std::size_t band_rows = 64;
+  const std::size_t rows = raw.size() / row_bytes;
+  const std::size_t bands = std::max<std::size_t>(1, most_tried_bytes / (band_rows * row_bytes));
+  Bytes part;
+  for (std::size_t band = 0; band < bands; ++band) {
+    const std::size_t first = band * rows / bands, count = std::min(band_rows, rows - first);
+    const auto begin = raw.begin() + static_cast<std::ptrdiff_t>(first * row_bytes);
+    part.insert(part.end(), begin, begin + static_cast<std::ptrdiff_t>(count * row_bytes));
+  }
+  return part;
+}
+
 void add_number(std::string& bytes, std::uint32_t value) {
   for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<char>(value >> shift & 0xff));
 }
@@ -108,13 +124,21 @@ std::string encode_grey_png(const Image<std::uint16_t>& image, int bits, PngEffo
   if (effort == PngEffort::quick) {
     smallest = deflated(filtered(raw, row_bytes, texel_bytes, 3), 6, Z_FILTERED);
   } else {
+    // Which filter and strategy, of a large picture on a part of it.
+    const bool is_large = raw.size() > most_tried_bytes;
+    const Bytes part = is_large ? bands_of(raw, row_bytes) : raw;
+    int best_filter = 0, best_strategy = Z_FILTERED;
     for (int choice = 0; choice <= adaptive; ++choice) {
-      const Bytes rows = filtered(raw, row_bytes, texel_bytes, choice);
+      const Bytes rows = filtered(part, row_bytes, texel_bytes, choice);
       for (const int strategy : {Z_FILTERED, Z_RLE}) {
-        Bytes trial = deflated(rows, 9, strategy);
-        if (smallest.empty() || trial.size() < smallest.size()) smallest = std::move(trial);
+        Bytes trial = deflated(rows, is_large ? 6 : 9, strategy);
+        if (!smallest.empty() && trial.size() >= smallest.size()) continue;
+        smallest = std::move(trial);
+        best_filter = choice;
+        best_strategy = strategy;
       }
     }
+    if (is_large) smallest = deflated(filtered(raw, row_bytes, texel_bytes, best_filter), large_level, best_strategy);
   }
 
   std::string header;

@@ -1,5 +1,6 @@
 #include "base/command_line.h"
 #include "base/errors.h"
+#include "material/load_albedo.h"
 #include "mesh/mesh_file.h"
 #include "probes/probe_points.h"
 #include "probes/probes.h"
@@ -25,16 +26,32 @@ int main(int argc, char** argv) {
     // Load.
     std::vector<Eigen::Vector3f> points;
     if (!points_file.empty()) points = read_points(points_file);
-    TriangleMesh mesh;
-    for (const std::filesystem::path& file : high_files) append_mesh(mesh, load_mesh(file));
+    ProbeScene scene;
+    for (const std::filesystem::path& file : high_files) {
+      const TriangleMesh mesh = load_mesh(file);
+      if (settings.bounces == "0") {
+        scene.add(mesh);
+        continue;
+      }
+      const LoadedAlbedo loaded = load_albedo(file, mesh, settings.material);
+      if (loaded.albedo.source() == SurfaceAlbedo::Source::none)
+        throw WrongUsage("bounces: found no albedo in " + file.string() +
+                         "; expected materials, colours of vertices, --albedo or --albedo-texture");
+      if (!loaded.warning().empty()) command.say(loaded.warning());
+      command.also_read(loaded.files);
+      scene.add(mesh, loaded.albedo);
+    }
     OutputSet outputs(output);
 
     // Run.
-    const ProbesResult result = probe_matrices(mesh, nullptr, place_probes(mesh, points, settings), settings,
+    const Stopwatch watch;
+    const SurfaceLight light = light_surface(scene, settings, command.seed(), command.progress("bounces"));
+    const ProbesResult result = probe_matrices(scene.mesh, light, place_probes(scene.mesh, points, settings), settings,
                                                command.seed(), command.progress("probes"));
+    const double seconds = watch.seconds();
 
     // Save.
     save_probes(outputs, result.probes);
-    command.finish(outputs, command.result(result.seconds, result.to_json()));
+    command.finish(outputs, command.result(seconds, result.to_json()));
   });
 }

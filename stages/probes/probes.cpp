@@ -9,7 +9,6 @@
 #include <numbers>
 #include <tbb/parallel_for.h>
 
-#include "base/command_line.h"
 #include "probes/winding.h"
 #include "raycast/ray_scene.h"
 #include "sh/basis.h"
@@ -49,10 +48,11 @@ Eigen::MatrixXd product(const Rows& a, const Rows& b, Eigen::Index count) {
 /// Looks around from one point after another.
 class Looker {
  public:
-  Looker(const TriangleMesh& mesh, const SentTransfer* sent, int bands, const ProbesSettings& settings, int seed)
-      : mesh_(mesh),
-        sent_(sent),
-        scene_(mesh),
+  Looker(const TriangleMesh& mesh, const SurfaceLight& light, int bands, const ProbesSettings& settings, int seed)
+      : light_(light),
+        positions_(light.values.empty() ? mesh.positions : light.cache.positions),
+        triangles_(light.values.empty() ? mesh.triangles : light.cache.triangles),
+        scene_(positions_, triangles_),
         directions_(sample_directions(settings.sampling, settings.directions, static_cast<std::uint64_t>(seed))),
         rows_(basis_rows(directions_, bands)),
         weight_(4 * std::numbers::pi / static_cast<double>(directions_.size())),
@@ -62,7 +62,7 @@ class Looker {
   /// Writes the channels' matrices; returns the open share of the sky.
   double look(const Eigen::Vector3f& point, int channels, float* matrices) const {
     const Eigen::Index size = rows_.cols();
-    const int sent_width = sent_ != nullptr ? channels * static_cast<int>(size) : 0;
+    const int sent_width = light_.values.empty() ? 0 : channels * static_cast<int>(size);
     Rows open(rows_.rows(), size), seeing(sent_width > 0 ? rows_.rows() : 0, size), seen(seeing.rows(), sent_width);
     Eigen::Index open_count = 0, seen_count = 0;
     for (Eigen::Index d = 0; d < rows_.rows(); ++d) {
@@ -88,23 +88,24 @@ class Looker {
 
  private:
   bool shows_front(const SurfacePoint& hit, const Eigen::Vector3f& direction) const {
-    const auto& [a, b, c] = mesh_.triangles[hit.triangle];
-    const Eigen::Vector3f &p = mesh_.positions[a], &q = mesh_.positions[b], &r = mesh_.positions[c];
+    const auto& [a, b, c] = triangles_[hit.triangle];
+    const Eigen::Vector3f &p = positions_[a], &q = positions_[b], &r = positions_[c];
     return (q - p).cross(r - p).dot(direction) < 0;
   }
 
   Eigen::RowVectorXf sent_from(const SurfacePoint& hit, int width) const {
-    const std::array<std::uint32_t, 3>& corners = sent_->points[hit.triangle];
+    const std::array<std::uint32_t, 3>& corners = light_.cache.points[hit.triangle];
     const float weights[3] = {1 - hit.u - hit.v, hit.u, hit.v};
     Eigen::RowVectorXf sum = Eigen::RowVectorXf::Zero(width);
     for (std::size_t k = 0; k < 3; ++k)
       sum += weights[k] * Eigen::Map<const Eigen::RowVectorXf>(
-                              sent_->values.data() + static_cast<std::size_t>(corners[k]) * width, width);
+                              light_.values.data() + static_cast<std::size_t>(corners[k]) * width, width);
     return sum;
   }
 
-  const TriangleMesh& mesh_;
-  const SentTransfer* sent_;
+  const SurfaceLight& light_;
+  std::span<const Eigen::Vector3f> positions_;
+  std::span<const Triangle> triangles_;
   RayScene scene_;
   std::vector<Eigen::Vector3f> directions_;
   Rows rows_;
@@ -123,13 +124,10 @@ Json ProbesResult::to_json() const {
           {"invalid", invalid()},
           {"channels", probes.channels},
           {"coefficients", probes.coefficients()},
-          {"open_share", open_share}};
-}
-
-void append_mesh(TriangleMesh& mesh, const TriangleMesh& other) {
-  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-  mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
-  for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
+          {"open_share", open_share},
+          {"bounces", bounces},
+          {"last_bounce_share", last_bounce_share},
+          {"surface_points", surface_points}};
 }
 
 ProbeSet place_probes(const TriangleMesh& mesh, const std::vector<Eigen::Vector3f>& points,
@@ -153,16 +151,15 @@ ProbeSet place_probes(const TriangleMesh& mesh, const std::vector<Eigen::Vector3
   return probes;
 }
 
-ProbesResult probe_matrices(const TriangleMesh& mesh, const SentTransfer* sent, ProbeSet probes,
+ProbesResult probe_matrices(const TriangleMesh& mesh, const SurfaceLight& light, ProbeSet probes,
                             const ProbesSettings& settings, int seed, const ProgressFunction& progress) {
-  const Stopwatch watch;
   Eigen::AlignedBox3f box;  // outside of it nothing goes around a point
   for (const Eigen::Vector3f& position : mesh.positions) box.extend(position);
-  probes.channels = sent != nullptr ? sent->channels : 1;
+  probes.channels = light.channels;
   const std::size_t count = probes.positions.size();
   probes.valid.assign(count, 1);
   probes.matrices.assign(count * probes.entries(), 0.f);
-  const Looker looker(mesh, sent, probes.bands, settings, seed);
+  const Looker looker(mesh, light, probes.bands, settings, seed);
   std::vector<double> open(count, 0);
   for (std::size_t first = 0; first < count; first += group_points) {
     tbb::parallel_for(first, std::min(count, first + group_points), [&](std::size_t k) {
@@ -176,10 +173,12 @@ ProbesResult probe_matrices(const TriangleMesh& mesh, const SentTransfer* sent, 
   }
 
   ProbesResult result;
+  result.bounces = light.bounces;
+  result.last_bounce_share = light.last_share;
+  result.surface_points = light.cache.size();
   for (std::size_t k = 0; k < count; ++k) result.open_share += open[k];
   result.probes = std::move(probes);
   if (const std::size_t valid = count - result.invalid(); valid > 0) result.open_share /= static_cast<double>(valid);
-  result.seconds = watch.seconds();
   return result;
 }
 

@@ -64,6 +64,15 @@ std::optional<std::array<float, 6>> parse_box(const std::string& text) {
   return box;
 }
 
+std::optional<int> parse_probe_bounces(const std::string& text) {
+  if (text == "auto") return std::nullopt;
+  const std::optional<int> bounces = number_of<int>(text);
+  if (!bounces || *bounces < 0 || *bounces > most_probe_bounces)
+    throw WrongUsage("bounces: found '" + text + "'; expected auto or a number of 0 to " +
+                     std::to_string(most_probe_bounces));
+  return bounces;
+}
+
 OptionSet probes_options(ProbesSettings& settings) {
   OptionSet options;
   options
@@ -76,7 +85,15 @@ OptionSet probes_options(ProbesSettings& settings) {
       .integer("bands", settings.bands, 1, 8, "Bands of spherical harmonics: a matrix has bands^4 entries")
       .integer("directions", settings.directions, 16, 65536, "Directions that a point looks into")
       .choice("sampling", settings.sampling, {{"fibonacci", Sampling::fibonacci}, {"stratified", Sampling::stratified}},
-              "How the directions are spread");
+              "How the directions are spread")
+      .checked_text(
+          "bounces", settings.bounces, "auto or 0 to 100",
+          "How often light bounces off the meshes on its way to a point; auto: until a bounce adds less than a "
+          "thousandth",
+          [](const std::string& text) { parse_probe_bounces(text); })
+      .number("bounce-edge", settings.bounce_edge, 1e-4, 1,
+              "Longest edge of the triangles that light bounces off, a fraction of the meshes' diagonal");
+  add_material_options(options, settings.material);
   return options;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/options.h"
+#include "material/material_settings.h"
 #include "sh/directions.h"
 
 namespace kiln {
@@ -16,6 +17,9 @@ struct ProbesSettings {
   int bands = 5;               ///< of the light far away and of the light that comes in
   int directions = 1024;       ///< that a point looks into
   Sampling sampling = Sampling::fibonacci;
+  std::string bounces = "0";  ///< how often light bounces off the meshes before it reaches a point: a number, or auto
+  double bounce_edge = 0.01;  ///< longest edge of what it bounces off, fraction of the meshes' diagonal
+  MaterialSettings material;
 };
 
 OptionSet probes_options(ProbesSettings& settings);
@@ -23,6 +27,10 @@ OptionSet probes_options(ProbesSettings& settings);
 /// "NxMxK". Throws WrongUsage.
 std::array<int, 3> parse_grid(const std::string& text);
 inline constexpr std::size_t most_grid_points = 1u << 18;
+
+/// Of --bounces: a number of 0 to most_probe_bounces; none for "auto". Throws WrongUsage.
+std::optional<int> parse_probe_bounces(const std::string& text);
+inline constexpr int most_probe_bounces = 100;
 
 /// "X0,Y0,Z0,X1,Y1,Z1": the lower corner, then the upper one; none for "auto". Throws WrongUsage.
 std::optional<std::array<float, 6>> parse_box(const std::string& text);

@@ -43,7 +43,7 @@ struct BounceStand {
   std::vector<TransferVectors> bounced(const SurfaceCache& cache, const TransferVectors& direct,
                                        const BounceTarget& target, BounceReport& report,
                                        const TransferVectors& receivers_direct) const {
-    const std::unique_ptr<GatherEngine> engine = make_gather_engine(backend, cache.surface(), settings, 2);
+    const std::unique_ptr<GatherEngine> engine = make_gather_engine(backend, surface_of(cache, occluders), settings, 2);
     const SentLight light = bounce_light(cache, direct, *engine, directions, target, settings.bits,
                                          BounceSample(receivers(), receivers_direct), report, no_progress);
     std::vector<TransferVectors> channels(light.channels, TransferVectors(positions.size(), direct.coefficients));

@@ -9,6 +9,7 @@
 #include "base/errors.h"
 #include "probes/probe_points.h"
 #include "probes/probes.h"
+#include "probes/surface_light.h"
 #include "probes/winding.h"
 #include "scratch.h"
 #include "sh/basis.h"
@@ -20,8 +21,8 @@ namespace {
 namespace fs = std::filesystem;
 
 ProbesResult at(const TriangleMesh& mesh, const std::vector<Eigen::Vector3f>& points, const ProbesSettings& settings,
-                const SentTransfer* sent = nullptr) {
-  return probe_matrices(mesh, sent, place_probes(mesh, points, settings), settings, 1);
+                const SurfaceLight& light = {}) {
+  return probe_matrices(mesh, light, place_probes(mesh, points, settings), settings, 1);
 }
 
 /// The integral of B_i B_j over the upper half sphere, +Y, by products of Gauss-Legendre points in height and equal
@@ -147,15 +148,95 @@ TEST(Probes, PointsInsideSolidsAreNotValid) {
   EXPECT_LT(winding_number(open, Eigen::Vector3f::Zero()), 0.99);
 }
 
+/// A scene of one mesh of constant albedo, its light, and the probes in it.
+ProbesResult lit(const TriangleMesh& mesh, const Eigen::Vector3f& albedo, const std::vector<Eigen::Vector3f>& points,
+                 const ProbesSettings& settings) {
+  ProbeScene scene;
+  scene.add(mesh, SurfaceAlbedo::constant(albedo));
+  return at(mesh, points, settings, light_surface(scene, settings, 1));
+}
+
+TEST(Probes, WhiteSurfacesKeepConstantLight) {
+  // The lower half of a sphere, its front inside. What is white neither makes nor takes light, so with the same
+  // radiance from everywhere there is the same radiance everywhere.
+  TriangleMesh bowl = shapes::icosphere(3);
+  std::erase_if(bowl.triangles, [&](const Triangle& t) {
+    return bowl.positions[t[0]].y() + bowl.positions[t[1]].y() + bowl.positions[t[2]].y() > 0;
+  });
+  for (Triangle& t : bowl.triangles) std::swap(t[1], t[2]);
+  ProbesSettings settings;
+  settings.bands = 2;
+  settings.bounces = "auto";
+  settings.bounce_edge = 0.1;
+  const std::vector<Eigen::Vector3f> points = {{0, 0, 0}, {0.3f, -0.5f, 0.2f}, {0, -0.8f, 0}};
+  const ProbesResult result = lit(bowl, {1, 1, 1}, points, settings);
+  EXPECT_EQ(result.invalid(), 0u);
+  EXPECT_GT(result.bounces, 3);
+  ProbesSettings once = settings;
+  once.bounces = "1";
+  const ProbesResult single = lit(bowl, {1, 1, 1}, points, once);
+  for (std::size_t probe = 0; probe < 3; ++probe) {
+    const std::span<const float> matrix = result.probes.matrix(probe, 0);
+    // Light bounces until a thousandth is left; 1,024 directions and a cut surface leave some more.
+    EXPECT_NEAR(matrix[0], 1, 0.01) << probe;
+    for (std::size_t i = 1; i < 4; ++i) EXPECT_NEAR(matrix[i * 4], 0, 0.01) << probe << " " << i;
+    EXPECT_LT(single.probes.matrix(probe, 0)[0], 0.9);
+  }
+}
+
+TEST(Probes, AboveAWhitePlaneTheSkyIsMirroredDiffusely) {
+  // A plane of albedo rho sends up rho t_j = rho A_j / pi Y_j(n) of the coefficient j, the same from everywhere:
+  // M = half sphere + (integral of B_i over the lower half) rho t_j.
+  ProbesSettings settings;
+  settings.bands = 3;
+  settings.directions = 4096;
+  settings.bounces = "2";  // the second adds nothing, as a plane does not see itself
+  settings.bounce_edge = 0.2;
+  const ProbesResult result = lit(shapes::plane(2, 1000), {0.5f, 0.5f, 0.5f}, {{1, 0.01f, 2}}, settings);
+  EXPECT_EQ(result.probes.channels, 1);
+  EXPECT_NEAR(result.last_bounce_share, 0, 1e-6);
+  const std::vector<double> upper = half_sphere_matrix(3);
+  const std::vector<float> transfer = unoccluded_transfer(ShBasis(3), Eigen::Vector3f::UnitY());
+  const double y00 = 0.2820947918;
+  for (std::size_t i = 0; i < 9; ++i)
+    for (std::size_t j = 0; j < 9; ++j) {
+      // B_0 is constant, so the integral of B_i over the upper half is that of B_i B_0, over B_0.
+      const double lower_i = ((i == 0 ? 1 : 0) - upper[i * 9]) / y00;
+      const double expected = upper[i * 9 + j] + 0.5 * lower_i * transfer[j];
+      // 4,096 directions with an edge at the horizon, here and in the transfer.
+      EXPECT_NEAR(result.probes.matrix(0, 0)[i * 9 + j], expected, 5e-3) << i << " " << j;
+    }
+}
+
+TEST(Probes, ColouredSurfacesGiveThreeChannels) {
+  ProbesSettings settings;
+  settings.bands = 2;
+  settings.directions = 512;
+  settings.bounces = "1";
+  settings.bounce_edge = 0.5;
+  const TriangleMesh floor = shapes::plane(2, 100);
+  const ProbesResult dark = at(floor, {{0, 0.1f, 0}}, settings);
+  const ProbesResult red = lit(floor, {0.8f, 0.2f, 0}, {{0, 0.1f, 0}}, settings);
+  ASSERT_EQ(red.probes.channels, 3);
+  for (std::size_t k = 0; k < 16; ++k) {
+    // One bounce is in proportion to the albedo.
+    const double bounced = red.probes.matrix(0, 0)[k] - dark.probes.matrix(0, 0)[k];
+    EXPECT_NEAR(red.probes.matrix(0, 1)[k] - dark.probes.matrix(0, 0)[k], bounced / 4, 1e-5);
+    EXPECT_NEAR(red.probes.matrix(0, 2)[k], dark.probes.matrix(0, 0)[k], 1e-6);
+  }
+  EXPECT_GT(red.probes.matrix(0, 0)[0], dark.probes.matrix(0, 0)[0] + 0.3);
+}
+
 TEST(Probes, TheSameWithAnyThreads) {
   ProbesSettings settings;
   settings.bands = 3;
+  settings.bounces = "2";
   settings.grid = "4x3x2";
   settings.directions = 300;
   std::vector<float> matrices[2];
   for (const int threads : {1, 4}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-    matrices[threads == 4] = at(shapes::torus(16), {}, settings).probes.matrices;
+    matrices[threads == 4] = lit(shapes::torus(16), {0.5f, 0.6f, 0.7f}, {}, settings).probes.matrices;
   }
   EXPECT_EQ(matrices[0], matrices[1]);
 }
@@ -331,6 +412,9 @@ TEST(ProbesSettings, GridsAndBoxes) {
   EXPECT_EQ((*parse_box("-1,0,1,2,3,4"))[3], 2);
   for (const char* text : {"", "1,2,3", "1,2,3,0,3,4", "1,2,3,4,5,x", "0,0,0,1,1,inf"})
     EXPECT_THROW(parse_box(text), WrongUsage) << text;
+  EXPECT_FALSE(parse_probe_bounces("auto"));
+  EXPECT_EQ(parse_probe_bounces("7"), 7);
+  for (const char* text : {"", "-1", "101", "many"}) EXPECT_THROW(parse_probe_bounces(text), WrongUsage) << text;
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ BouncedLight::BouncedLight(std::unique_ptr<TransferEngine> direct, BakeBackend b
   report_.cache_points = cache.size();
   report_.cache_triangles = cache.triangles.size();
   report_.cache_seconds = stopwatch.seconds();
-  engine_ = make_gather_engine(backend, cache.surface(), settings, threads);
+  engine_ = make_gather_engine(backend, surface_of(cache, occluders), settings, threads);
   light_ = bounce_light(cache, transfer, *engine_, directions, target, settings.bits, sample, report_,
                         [&](double fraction) { progress(cache_share + (1 - cache_share) * fraction); });
 }

@@ -73,6 +73,15 @@ void add(std::vector<TransferVectors>& sums, const std::vector<TransferVectors>&
 
 }  // namespace
 
+SurfaceCache make_surface_cache(const Occluders& occluders, double longest_edge) {
+  const auto albedo_at = [&](std::uint32_t triangle, float u, float v) { return occluders.albedo_at(triangle, u, v); };
+  return make_surface_cache(occluders.mesh, albedo_at, occluders.grey(), longest_edge);
+}
+
+ReflectingSurface surface_of(const SurfaceCache& cache, const Occluders& occluders) {
+  return {cache.positions, cache.triangles, cache.points, occluders.hull, occluders.closed};
+}
+
 BounceSample::BounceSample(const Receivers& receivers, const TransferVectors& transfer)
     : direct(std::min(sample_receivers, receivers.size()), transfer.coefficients) {
   for (std::size_t k = 0; k < direct.receivers; ++k) {

@@ -6,10 +6,15 @@
 
 #include "bake/bake_settings.h"
 #include "bake/bounce/gather_engine.h"
-#include "bake/bounce/surface_cache.h"
 #include "bake/engines/transfer_engine.h"
+#include "bake/scene/occluders.h"
+#include "raycast/surface_cache.h"
 
 namespace kiln {
+
+/// The surface of the occluders, and the same as what gathers light sees of it.
+SurfaceCache make_surface_cache(const Occluders& occluders, double longest_edge);
+ReflectingSurface surface_of(const SurfaceCache& cache, const Occluders& occluders);
 
 /// What came of bouncing, for the record.
 struct BounceReport {

@@ -1,4 +1,4 @@
-#include "bake/bounce/surface_cache.h"
+#include "raycast/surface_cache.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -171,7 +171,6 @@ class PointMaker {
 
 /// The mean of what `albedo` has over the triangles at each point, weighted by the point's share in interpolation: 16
 /// samples of each triangle, the centres of a regular subdivision.
-template <class AlbedoAt>
 std::vector<Eigen::Vector3f> mean_albedos(const SurfaceCache& cache, const std::vector<Piece>& pieces,
                                           const PointMaker& maker, const AlbedoAt& albedo_at) {
   constexpr int rows = 4;
@@ -188,7 +187,7 @@ std::vector<Eigen::Vector3f> mean_albedos(const SurfaceCache& cache, const std::
                     v = (static_cast<float>(j / 2) + (turned ? 2.f : 1.f) / 3) / rows;
         const float hats[3] = {1 - u - v, u, v};
         const Eigen::Vector2f place = hats[0] * piece.places[0] + u * piece.places[1] + v * piece.places[2];
-        const Eigen::Vector3f albedo = albedo_at(piece.source, place);
+        const Eigen::Vector3f albedo = albedo_at(piece.source, place.x(), place.y());
         for (int k = 0; k < 3; ++k) {
           sums[cache.points[t][k]] += hats[k] * area * albedo;
           weights[cache.points[t][k]] += hats[k] * area;
@@ -201,27 +200,22 @@ std::vector<Eigen::Vector3f> mean_albedos(const SurfaceCache& cache, const std::
 
 }  // namespace
 
-SurfaceCache make_surface_cache(const Occluders& occluders, double longest_edge) {
+SurfaceCache make_surface_cache(const TriangleMesh& mesh, const AlbedoAt& albedo_at, bool grey, double longest_edge) {
   SurfaceCache cache;
-  cache.hull = occluders.hull;
-  cache.closed = occluders.closed;
 
   // Step 1: the triangles.
-  cache.positions = occluders.mesh.positions;
+  cache.positions = mesh.positions;
   std::vector<Piece> pieces;
-  for (std::uint32_t t = 0; t < occluders.mesh.triangles.size(); ++t)
-    pieces.push_back({occluders.mesh.triangles[t], t, {Eigen::Vector2f(0, 0), {1, 0}, {0, 1}}});
-  cut_long_edges(cache.positions, pieces, static_cast<float>(longest_edge) * bounding_box(occluders.mesh).diagonal());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    pieces.push_back({mesh.triangles[t], t, {Eigen::Vector2f(0, 0), {1, 0}, {0, 1}}});
+  cut_long_edges(cache.positions, pieces, static_cast<float>(longest_edge) * bounding_box(mesh).diagonal());
   for (const Piece& piece : pieces) cache.triangles.push_back(piece.corners);
 
   // Step 2: the points.
   const PointMaker maker(cache.positions, pieces);
   maker.make(cache);
-  const auto albedo_at = [&](std::uint32_t triangle, const Eigen::Vector2f& place) {
-    return occluders.albedo_at(triangle, place.x(), place.y());
-  };
   cache.point_albedos = mean_albedos(cache, pieces, maker, albedo_at);
-  cache.grey = occluders.grey();
+  cache.grey = grey;
   return cache;
 }
 
