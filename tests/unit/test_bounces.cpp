@@ -312,7 +312,7 @@ TEST(BounceEgl, BatchesGiveWhatSingleDirectionsGive) {
   std::vector<TransferSums> sums;
   for (int batch : {16, 1}) {
     settings.batch_directions = batch;
-    BundleEngine engine(cache.surface(), "software", 2, settings);
+    BundleEngine engine(surface_of(cache, stand.occluders), "software", 2, settings);
     engine.set_radiance(sent, 75);
     sums.push_back(engine.gather(stand.receivers(), directions, no_progress));
   }
