@@ -10,6 +10,7 @@
 #include "detail/asset_hints.h"
 #include "detail/detail_maps.h"
 #include "material/load_albedo.h"
+#include "material/surroundings.h"
 #include "mesh/draco_file.h"
 #include "mesh/mesh_file.h"
 
@@ -40,15 +41,30 @@ std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSetti
   for (const fs::path& file : files) meshes.push_back(load_mesh(file, nullptr, repair));
 
   std::vector<SurfaceAlbedo> albedos;
-  const bool bounces = parse_bounces(settings.bounces).any();
-  for (std::size_t k = 0; k < files.size() && (bounces || settings.bake_albedo); ++k) {
-    const LoadedAlbedo loaded = load_albedo(files[k], meshes[k], settings.material);
+  const bool bounces = parse_bounces(settings.bounces).any(), with_albedo = bounces || settings.bake_albedo;
+  const auto add_albedo = [&](const std::string& name, const LoadedAlbedo& loaded) {
     if (bounces && loaded.albedo.source() == SurfaceAlbedo::Source::none)
-      throw WrongUsage("bounces: found no albedo in " + files[k].string() +
+      throw WrongUsage("bounces: found no albedo in " + name +
                        "; expected materials, colours of vertices, --albedo or --albedo-texture");
     albedos.push_back(loaded.albedo);
-    scene.material_files.insert(scene.material_files.end(), loaded.files.begin(), loaded.files.end());
+    scene.further_files.insert(scene.further_files.end(), loaded.files.begin(), loaded.files.end());
     if (const std::string warning = loaded.warning(); !warning.empty()) scene.warnings.push_back(warning);
+  };
+  for (std::size_t k = 0; k < files.size() && with_albedo; ++k)
+    add_albedo(files[k].string(), load_albedo(files[k], meshes[k], settings.material));
+
+  // What stands around.
+  scene.neighbours = settings.surroundings.neighbours;
+  BoundingBox own;
+  for (const TriangleMesh& mesh : meshes) {
+    const BoundingBox box = bounding_box(mesh);
+    own.lowest = own.lowest.cwiseMin(box.lowest);
+    own.highest = own.highest.cwiseMax(box.highest);
+  }
+  for (PlacedMesh& placed : load_surroundings(settings.surroundings, own, settings.material, with_albedo)) {
+    meshes.push_back(std::move(placed.mesh));
+    if (with_albedo) add_albedo(placed.name, placed.material);
+    if (fs::is_regular_file(placed.name)) scene.further_files.emplace_back(placed.name);
   }
   scene.occluders = join_occluders(meshes, std::move(albedos));
   return meshes;
@@ -194,7 +210,8 @@ Json describe_bake(const BakeScene& scene, const BakeResult& result) {
                   {"coefficients", result.channels.front().coefficients},
                   {"channels", result.channels.size()},
                   {"occluder_triangles", scene.occluders.mesh.triangles.size()},
-                  {"occluders_closed", scene.occluders.closed}};
+                  {"occluders_closed", scene.occluders.closed},
+                  {"neighbours", scene.neighbours}};
   if (result.choice)
     metrics["max_error"] = {{"target", result.choice->target_error}, {"estimated", result.choice->estimated_error}};
   if (result.shadow_choice)

@@ -19,7 +19,8 @@ struct BakeScene {
   TriangleMesh atlas;  ///< empty in a bake per vertex
   TexelReceivers receivers;
   Occluders occluders;
-  std::vector<std::filesystem::path> material_files;  ///< that the occluders' albedo was read from, besides their own
+  std::vector<std::filesystem::path> further_files;  ///< that were read: neighbours, and what holds meshes' albedo
+  std::vector<std::string> neighbours;               ///< as --neighbour has them
   std::vector<std::string> warnings;
   Json
       albedo;  ///< of the receivers, as ranges.json has it (AssetFiles); null: white, unknown, baked or in the material

@@ -115,6 +115,7 @@ OptionSet bake_options(BakeSettings& settings) {
       .extent("size", settings.size, 0, 16384,
               "Width and height in texels where no --detail says it; 0 for what kiln-atlas packed for")
       .text("gl-device", settings.gl_device, "EGL device: auto, software, or its number");
+  add_surroundings_options(options, settings.surroundings);
   add_bounce_options(options, settings);
   add_subsurface_options(options, settings.subsurface);
   add_shadow_options(options, settings);

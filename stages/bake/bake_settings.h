@@ -7,6 +7,7 @@
 #include "base/options.h"
 #include "detail/seam_choice.h"
 #include "material/material_settings.h"
+#include "material/surroundings_settings.h"
 #include "sh/directions.h"
 
 namespace kiln {
@@ -50,6 +51,7 @@ struct BakeSettings {
   SeamChoice seams = SeamChoice::equalise;
   std::string bounces = "0";  ///< how often light bounces: a number, or auto
   bool bake_albedo = false;   ///< whether the stored transfer has the receivers' albedo in it
+  Surroundings surroundings;  ///< of the asset in its scene
   MaterialSettings material;  ///< of the occluders, and of receivers where no detail folder has it
   double bounce_edge = 0.01;  ///< longest edge of what it bounces off, fraction of the occluders' diagonal
   BakeBackend backend = BakeBackend::automatic;

@@ -15,6 +15,10 @@ int main(int argc, char** argv) {
                          "Folder of kiln-normals: the high mesh's point and normal of every texel");
     command.input_option("occluder", paths.occluders,
                          "Mesh that casts shadows, may be repeated (default: ATLAS itself)");
+    command.list_option(
+        "neighbour", settings.surroundings.neighbours, "Bake",
+        "Mesh beside the asset that casts shadows, may be repeated: FILE[;place=X,Y,Z[,AZIMUTH[,SCALE]]]"
+        "[;albedo=...][;albedo-texture=...][;albedo-encoding=...][;fill-holes=...]");
     command.input_option("merge", run.shards, "Folder of a shard; once for each. Adds them up in place of integrating");
     command.output(paths.output, "Folder for coeff_<c>_<ii>.png (per vertex: vertices.drc) and ranges.json");
     command.options("Bake", kiln::bake_options(settings));
@@ -23,7 +27,7 @@ int main(int argc, char** argv) {
 
     kiln::OutputSet outputs(paths.output);
     const kiln::BakeScene scene = kiln::load_bake_scene(paths, settings);
-    command.also_read(scene.material_files);
+    command.also_read(scene.further_files);
     for (const std::string& warning : scene.warnings) command.say(warning);
     const kiln::BakeResult result = kiln::run_bake(outputs, paths, scene, settings, run, command);
     const kiln::Json metrics = run.is_shard() ? kiln::describe_bake(scene, result)

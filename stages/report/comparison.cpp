@@ -7,6 +7,7 @@
 #include "base/process.h"
 #include "image/image_file.h"
 #include "material/load_albedo.h"
+#include "material/surroundings.h"
 #include "mesh/draco_file.h"
 #include "mesh/mesh_file.h"
 #include "report/reference.h"
@@ -43,6 +44,23 @@ SurfaceAlbedo high_albedo(const AssetFolder& asset, const fs::path& high_file, c
   for (const Option& option : options.options())
     if (settings.contains(option.name)) option.set(settings.at(option.name).get<std::string>());
   return load_albedo(high_file, high, material).albedo;
+}
+
+/// What the bake had around the asset, as one mesh.
+TriangleMesh surroundings_of(const AssetFolder& asset, const TriangleMesh& high) {
+  const Json& bake = asset.record("bake");
+  const Json settings = bake.value("settings", Json::object());
+  Surroundings surroundings;
+  surroundings.place = settings.value("place", surroundings.place);
+  surroundings.ground = settings.value("ground", surroundings.ground);
+  surroundings.neighbours = bake.value("neighbours", surroundings.neighbours);
+  TriangleMesh all;
+  for (const PlacedMesh& placed : load_surroundings(surroundings, bounding_box(high), {}, false)) {
+    const auto count = static_cast<std::uint32_t>(all.positions.size());
+    all.positions.insert(all.positions.end(), placed.mesh.positions.begin(), placed.mesh.positions.end());
+    for (const Triangle& t : placed.mesh.triangles) all.triangles.push_back({count + t[0], count + t[1], count + t[2]});
+  }
+  return all;
 }
 
 /// Draws a baked or compressed folder under one light into an EXR, and returns what kiln-render says of it.
@@ -175,6 +193,7 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   view.supersample = supersample;
   view.albedo = static_cast<float>(albedo);
   view.surface_albedo = high_albedo(asset, high_file, high);
+  view.surroundings = surroundings_of(asset, high);
   std::vector<LightCoefficients> coefficients;
   for (const LightSpec& spec : specs)
     coefficients.push_back(light_coefficients(std::span(&spec, 1), asset.bands, LightWindow::hann));

@@ -51,14 +51,22 @@ VisiblePoints visible_points(const RayScene& scene, const TriangleMesh& mesh, co
   return points;
 }
 
+TriangleMesh joined(const TriangleMesh& first, const TriangleMesh& second) {
+  TriangleMesh both{first.positions, first.triangles, {}, {}};
+  const auto count = static_cast<std::uint32_t>(first.positions.size());
+  both.positions.insert(both.positions.end(), second.positions.begin(), second.positions.end());
+  for (const Triangle& t : second.triangles) both.triangles.push_back({count + t[0], count + t[1], count + t[2]});
+  return both;
+}
+
 }  // namespace
 
 std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
                                              std::span<const LightCoefficients> lights,
                                              std::span<const Eigen::Vector3f> directions,
                                              const ProgressFunction& progress) {
-  const RayScene scene(mesh);
-  const VisiblePoints points = visible_points(scene, mesh, view);
+  const VisiblePoints points = visible_points(RayScene(mesh), mesh, view);
+  const RayScene scene(joined(mesh, view.surroundings));
   const float ray_offset = ray_offset_relative * bounding_box(mesh).diagonal();
   const float share = 1.f / static_cast<float>(view.supersample * view.supersample);  // of a pixel that one sample has
   std::vector<Image<float>> pictures(lights.size(), Image<float>(view.width, view.height, 4));

@@ -21,12 +21,13 @@ struct ReferenceView {
   int supersample = 2;           ///< samples per pixel along each axis
   float albedo = 0.8f;           ///< of the whole surface, times
   SurfaceAlbedo surface_albedo;  ///< the mesh's own
+  TriangleMesh surroundings;     ///< casts shadows and is not seen
 };
 
 /// Pictures of a mesh under each of `lights` (three channels each, all of the same bands): the first hit of each
 /// sample's ray, shaded by the transfer integral over `directions` (rays against the mesh itself, its normals
-/// interpolated) and projected on the lights' bands. No atlas, no texture, no rasteriser: what the baked asset
-/// approximates. RGBA in linear radiance, alpha is coverage and the colours are multiplied by it.
+/// interpolated; and what stands around) and projected on the lights' bands. No atlas, no texture, no rasteriser: what
+/// the baked asset approximates. RGBA in linear radiance, alpha is coverage and the colours are multiplied by it.
 std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
                                              std::span<const LightCoefficients> lights,
                                              std::span<const Eigen::Vector3f> directions,

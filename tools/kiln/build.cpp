@@ -63,8 +63,56 @@ class MessageDescriptor {
   int descriptor_;
 };
 
-fs::path high_mesh_of(const Asset& asset, const fs::path& folder) {
-  return asset.archive.empty() ? asset.mesh : folder / "high" / fs::path(asset.member).filename();
+fs::path high_mesh_of(const Pipeline& pipeline, const Asset& asset) {
+  const fs::path made = pipeline.output / asset.name / "high";
+  if (!asset.square.empty()) return made / "square.obj";
+  return asset.archive.empty() ? asset.mesh : made / fs::path(asset.member).filename();
+}
+
+/// An asset as kiln-bake's --neighbour has it.
+std::string neighbour_text(const fs::path& mesh, const std::string& place, const Asset& asset) {
+  std::string text = fmt::format("{};place={}", mesh.string(), place);
+  const auto add = [&](Stage stage, const char* name) {
+    const auto settings = asset.settings.find(stage);
+    if (settings == asset.settings.end()) return;
+    const auto found = settings->second.find(name);
+    if (found == settings->second.end()) return;
+    std::string value = found->second;
+    for (std::size_t k; (k = value.find("; ")) != std::string::npos;) value.replace(k, 2, ",");  // of a list
+    text += fmt::format(";{}={}", name, value);
+  };
+  for (const char* name : {"albedo", "albedo-texture", "albedo-encoding"}) add(Stage::normals, name);
+  add(Stage::simplify, "fill-holes");
+  return text;
+}
+
+/// The assets that stand in the same scene as `asset`.
+std::vector<PlanNeighbour> neighbours_of(const Pipeline& pipeline, const Asset& asset) {
+  std::vector<PlanNeighbour> neighbours;
+  if (!pipeline.places.contains(asset.name)) return neighbours;
+  for (const Asset& other : pipeline.assets) {
+    const auto place = pipeline.places.find(other.name);
+    if (other.name == asset.name || place == pipeline.places.end()) continue;
+    const fs::path mesh = high_mesh_of(pipeline, other);
+    neighbours.push_back({mesh, neighbour_text(mesh, place->second, other)});
+  }
+  return neighbours;
+}
+
+/// Files that an earlier run of a stage read besides those that its command names, such as textures of a material: its
+/// record has them.
+std::vector<fs::path> recorded_inputs(const Pipeline& pipeline, const StageRun& run) {
+  std::error_code error;
+  const fs::path record = pipeline.folder / run.outputs.front();
+  if (!fs::is_regular_file(record, error)) return {};
+  const Json json = Json::parse(read_text(record), nullptr, false);
+  if (!json.is_object() || !json.contains("inputs") || !json["inputs"].is_object()) return {};
+  std::vector<fs::path> files;
+  for (const auto& [file, hash] : json["inputs"].items())
+    if (std::find(run.inputs.begin(), run.inputs.end(), fs::path(file)) == run.inputs.end() &&
+        fs::is_regular_file(pipeline.folder / file, error))
+      files.emplace_back(file);
+  return files;
 }
 
 bool holds(const fs::path& file, const std::string& text) {
@@ -82,6 +130,7 @@ void write_if_changed(const fs::path& file, const std::string& text) {
 
 /// The stage that cannot start because the file it needs is not there; says so.
 bool lacks_mesh(const Pipeline& pipeline, const Asset& asset) {
+  if (!asset.square.empty()) return false;
   const fs::path source = asset.archive.empty() ? asset.mesh : asset.archive;
   std::error_code error;
   if (fs::is_regular_file(pipeline.folder / source, error)) return false;
@@ -201,17 +250,25 @@ std::vector<MakeRule> make_rules(const Pipeline& pipeline) {
   for (const Asset& asset : pipeline.assets) {
     AssetPlan plan;
     plan.folder = pipeline.output / asset.name;
-    plan.mesh = high_mesh_of(asset, plan.folder);
+    plan.mesh = high_mesh_of(pipeline, asset);
     plan.settings = asset.settings;
     plan.budgets = asset.budgets;
+    if (const auto place = pipeline.places.find(asset.name); place != pipeline.places.end()) plan.place = place->second;
+    plan.neighbours = neighbours_of(pipeline, asset);
     std::vector<StageRun> runs;
+    if (!asset.square.empty())
+      runs.push_back({"square", {"kiln", "square", asset.square, "-o", plan.mesh.string()}, {}, {}, {plan.mesh}});
     if (!asset.archive.empty())
       runs.push_back({"extract",
                       {"kiln", "extract", asset.archive.string(), asset.member, "-o", plan.mesh.string()},
                       {},
                       {asset.archive},
                       {plan.mesh}});
-    for (StageRun& run : stage_runs(plan)) runs.push_back(std::move(run));
+    for (StageRun& run : stage_runs(plan)) {
+      if (run.name == stage_name(Stage::normals) || run.name == stage_name(Stage::bake))
+        for (const fs::path& file : recorded_inputs(pipeline, run)) run.inputs.push_back(file);
+      runs.push_back(std::move(run));
+    }
     for (StageRun& run : runs) {
       const fs::path stamp = pipeline.output / ".kiln" / asset.name / (run.name + ".command");
       rules.push_back({asset.name, std::move(run), stamp});

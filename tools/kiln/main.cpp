@@ -28,6 +28,12 @@ Pipeline take_pipeline(std::vector<std::string>& words) {
   return load_pipeline(file);
 }
 
+/// Where its mesh comes from.
+std::string mesh_text(const Asset& asset) {
+  if (!asset.square.empty()) return "a square of half-size " + asset.square;
+  return asset.archive.empty() ? asset.mesh.string() : asset.archive.string() + ":" + asset.member;
+}
+
 void add_words(CLI::App& command, std::vector<std::string>& words) {
   command
       .add_option("pipeline.yaml asset", words,
@@ -63,9 +69,8 @@ int main(int argc, char** argv) {
     list_command.callback([&] {
       const Pipeline pipeline = take_pipeline(words);
       for (const Asset& asset : pipeline.assets)
-        std::printf(
-            "%s\t%s\t%s\n", asset.name.c_str(), asset.on_request ? "on request" : "default",
-            (asset.archive.empty() ? asset.mesh.string() : asset.archive.string() + ":" + asset.member).c_str());
+        std::printf("%s\t%s\t%s\n", asset.name.c_str(), asset.on_request ? "on request" : "default",
+                    mesh_text(asset).c_str());
     });
 
     // What the Makefile calls.
@@ -84,6 +89,12 @@ int main(int argc, char** argv) {
     extract_command.add_option("member", member)->required();
     extract_command.add_option("-o,--output", mesh)->required();
     extract_command.callback([&] { extract_member(archive, member, mesh); });
+
+    double half_size = 0;
+    CLI::App& square_command = *app.add_subcommand("square", "Make a square mesh")->group("");
+    square_command.add_option("half_size", half_size)->required();
+    square_command.add_option("-o,--output", mesh)->required();
+    square_command.callback([&] { write_square(half_size, mesh); });
 
     try {
       app.parse(argc, argv);

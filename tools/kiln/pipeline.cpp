@@ -50,13 +50,13 @@ class Reader {
       throw BadInput(place(error.mark), error.msg, "YAML", "mend the line");
     }
     require(root.IsMap() && root.size() > 0, root, "nothing to build", "a mapping with 'assets'");
-    check_keys(root, {"output", "defaults", "budgets", "assets"});
+    check_keys(root, {"output", "defaults", "budgets", "assets", "scene"});
 
-    Pipeline pipeline{file_, folder_of(file_), "out", {}};
+    Pipeline pipeline{file_, folder_of(file_), "out", {}, {}};
     if (const YAML::Node output = root["output"]) pipeline.output = path(output);
     Settings defaults;
     if (const YAML::Node blocks = root["defaults"]) {
-      check_keys(blocks, stage_names());
+      check_keys(blocks, setting_blocks());
       defaults = settings(blocks);
     }
     Budgets budgets;
@@ -67,6 +67,7 @@ class Reader {
     require(assets.IsMap() && assets.size() > 0, assets, "no assets", "at least one asset, as 'NAME: {mesh: FILE}'");
     check_keys(assets, {});
     for (const auto& entry : assets) pipeline.assets.push_back(asset(entry.first, entry.second, defaults, budgets));
+    if (const YAML::Node scene = root["scene"]) pipeline.places = places(scene, pipeline.assets);
     return pipeline;
   }
 
@@ -82,6 +83,13 @@ class Reader {
   static std::vector<std::string> stage_names() {
     std::vector<std::string> names;
     for (const Stage stage : all_stages) names.push_back(stage_name(stage));
+    return names;
+  }
+
+  /// The blocks that hold settings.
+  static std::vector<std::string> setting_blocks() {
+    std::vector<std::string> names = stage_names();
+    names.push_back("material");
     return names;
   }
 
@@ -129,6 +137,50 @@ class Reader {
         entry.on = block.Scalar() == "true";
       else if (!block.IsNull())
         entry.settings = stage_settings(stage, block);
+    }
+    if (const YAML::Node material = map["material"]) add_material(material, result);
+    return result;
+  }
+
+  /// What a surface reflects is for the normals stage, which makes a map of it, and for light that bounces in the bake.
+  void add_material(const YAML::Node& block, Settings& settings) const {
+    static const std::map<std::string, std::string> names = {
+        {"albedo", "albedo"}, {"texture", "albedo-texture"}, {"encoding", "albedo-encoding"}};
+    check_keys(block, {"albedo", "texture", "encoding"});
+    if (block.size() == 0) return;
+    require(!block["albedo"].IsDefined() || !block["texture"].IsDefined(), block, "both albedo and texture",
+            "one of them");
+    for (const Stage stage : {Stage::normals, Stage::bake}) {
+      YAML::Node renamed;
+      for (const auto& entry : block) renamed[names.at(entry.first.Scalar())] = entry.second;
+      if (block["texture"].IsDefined()) path(block["texture"]);
+      // Settings of the stage itself come first.
+      settings[stage].settings.merge(stage_settings(stage, renamed));
+    }
+  }
+
+  /// Where the assets of the scene stand, by name.
+  std::map<std::string, std::string> places(const YAML::Node& scene, const std::vector<Asset>& assets) const {
+    std::vector<std::string> names;
+    for (const Asset& asset : assets) names.push_back(asset.name);
+    check_keys(scene, names);
+    std::map<std::string, std::string> result;
+    const StageOptions options(Stage::bake);
+    for (const auto& entry : scene) {
+      const Option& place = *options.find("place");
+      std::string text;
+      if (entry.second.IsSequence())
+        for (const YAML::Node& number : entry.second) text += (text.empty() ? "" : ",") + scalar(number, "a number");
+      else
+        text = scalar(entry.second, place.value_range);
+      try {
+        place.set(text);
+      } catch (const WrongUsage&) {
+        throw BadInput(this->place(entry.second.Mark()),
+                       fmt::format("'{}' for the place of {}", text, entry.first.Scalar()), place.value_range,
+                       "change the line");
+      }
+      result[entry.first.Scalar()] = text;
     }
     return result;
   }
@@ -206,13 +258,17 @@ class Reader {
             key, fmt::format("asset '{}'", result.name), "a name of letters, digits, '-', '_' and '.'");
 
     std::vector<std::string> known = {"mesh", "default", "budgets"};
-    const std::vector<std::string> stages = stage_names();
-    known.insert(known.end(), stages.begin(), stages.end());
+    const std::vector<std::string> blocks = setting_blocks();
+    known.insert(known.end(), blocks.begin(), blocks.end());
     check_keys(body, known);
     const YAML::Node mesh = body["mesh"];
     require(mesh.IsDefined(), body, fmt::format("asset '{}' without a mesh", result.name),
-            "'mesh: FILE' or 'mesh: {archive: FILE, member: NAME}'");
-    if (mesh.IsMap()) {
+            "'mesh: FILE', 'mesh: {archive: FILE, member: NAME}' or 'mesh: {square: HALF-SIZE}'");
+    if (mesh.IsMap() && mesh["square"].IsDefined()) {
+      check_keys(mesh, {"square"});
+      result.square = limit(mesh["square"]);
+      require(std::stod(result.square) > 0, mesh["square"], "'" + result.square + "'", "a number above 0");
+    } else if (mesh.IsMap()) {
       check_keys(mesh, {"archive", "member"});
       require(mesh["archive"].IsDefined() && mesh["member"].IsDefined(), mesh, "half an archive",
               "both archive and member");

@@ -16,6 +16,7 @@ struct Asset {
   std::filesystem::path mesh;     ///< a mesh file; empty: `member` of `archive`
   std::filesystem::path archive;  ///< a tar file, compressed or not
   std::string member;
+  std::string square;                       ///< half the side of a square, which is the mesh in place of a file
   bool on_request = false;                  ///< built only when named
   std::map<Stage, StageSettings> settings;  ///< a stage on request is in here where the asset passes it
   std::vector<std::string> budgets;         ///< "simplify.hausdorff<=0.012"
@@ -26,10 +27,11 @@ struct Pipeline {
   std::filesystem::path folder;  ///< of `file`: where commands run
   std::filesystem::path output;  ///< relative to `folder`, or absolute
   std::vector<Asset> assets;
+  std::map<std::string, std::string> places;  ///< of assets that stand in one scene, as kiln-bake's --place has them
 };
 
 /// Reads and checks a pipeline file. Throws BadInput that names the line for whatever is not understood: an unknown
-/// key, a key given twice, a value out of range, an asset without a mesh.
+/// key, a key given twice, a value out of range, an asset without a mesh, a scene of assets that are not there.
 Pipeline load_pipeline(const std::filesystem::path& file);
 
 /// The assets of these names, or, where there are none, those that are not built on request. Throws WrongUsage for a

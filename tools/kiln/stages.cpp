@@ -106,6 +106,10 @@ StageOptions::StageOptions(Stage stage) : options_(bind(stage, storage_)) {}
 std::string rival_of(Stage stage, const std::string& setting) {
   if (stage == Stage::simplify && setting == "faces") return "max-error";
   if (stage == Stage::simplify && setting == "max-error") return "faces";
+  if (stage == Stage::normals || stage == Stage::bake) {
+    if (setting == "albedo") return "albedo-texture";
+    if (setting == "albedo-texture") return "albedo";
+  }
   if (stage == Stage::atlas && setting == "size") return "texels-per-unit";
   if (stage == Stage::atlas && setting == "texels-per-unit") return "size";
   return "";
@@ -148,6 +152,11 @@ std::vector<StageRun> stage_runs(const AssetPlan& plan) {
                 {},
                 {plan.mesh, atlas_record, atlas, normals_record},
                 {bake_record}};
+  if (!plan.place.empty()) bake.command.insert(bake.command.end(), {"--place", plan.place});
+  for (const PlanNeighbour& neighbour : plan.neighbours) {
+    bake.command.insert(bake.command.end(), {"--neighbour", neighbour.text});
+    bake.inputs.push_back(neighbour.mesh);
+  }
   append_settings(bake.command, plan, Stage::bake);
   const int bands = effective(plan, Stage::bake, "bands").get<int>();
   for (int i = 0; i < bands * bands; ++i) bake.outputs.push_back(prt / fmt::format("coeff_0_{:02}.png", i));

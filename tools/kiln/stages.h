@@ -50,12 +50,20 @@ struct StageRun {
   std::vector<std::filesystem::path> outputs;  ///< the record, <stage>.json, first
 };
 
+/// Another asset of the scene, as the bake of one is told of it.
+struct PlanNeighbour {
+  std::filesystem::path mesh;
+  std::string text;  ///< the value of kiln-bake's --neighbour
+};
+
 /// What one asset is made of and how.
 struct AssetPlan {
   std::filesystem::path mesh;               ///< the high mesh
   std::filesystem::path folder;             ///< the asset's, in the output folder
   std::map<Stage, StageSettings> settings;  ///< a stage on request runs where it is in here
   std::vector<std::string> budgets;         ///< as kiln-report takes them: "simplify.hausdorff<=0.012"
+  std::string place;                        ///< in the scene; empty: it stands alone
+  std::vector<PlanNeighbour> neighbours;    ///< in that scene
 };
 
 /// The runs of the stages, in order.

@@ -35,7 +35,7 @@ std::vector<StepEvent> read_events(const fs::path& file) {
 
 int run_step(const std::string& asset, const std::string& stage, std::vector<std::string> command, int threads) {
   if (const char* messages = std::getenv(step_environment::messages)) dup2(std::atoi(messages), STDERR_FILENO);
-  if (stage != "extract") command.insert(command.end(), {"--threads", std::to_string(threads)});
+  if (stage != "extract" && stage != "square") command.insert(command.end(), {"--threads", std::to_string(threads)});
   ProcessSettings settings;
   if (std::getenv(step_environment::alone) == nullptr)
     settings.on_error_line = [&](const std::string& line) {
@@ -74,6 +74,14 @@ void extract_member(const fs::path& archive, const std::string& member, const fs
     throw BadInput(archive.string(), "has no file '" + member + "' that tar can extract", "a tar file with that member",
                    "check archive and member");
   if (staging / member != staged) fs::rename(staging / member, staged);
+  outputs.commit();
+}
+
+void write_square(double half_size, const fs::path& mesh) {
+  OutputSet outputs(folder_of(mesh));
+  outputs.add_text(mesh.filename().string(), fmt::format("v {1} 0 {0}\nv {0} 0 {0}\nv {0} 0 {1}\nv {1} 0 {1}\n"
+                                                         "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n",
+                                                         half_size, -half_size));
   outputs.commit();
 }
 

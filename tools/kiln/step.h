@@ -30,4 +30,7 @@ int run_step(const std::string& asset, const std::string& stage, std::vector<std
 /// Writes `member` of a tar file to `mesh`. Throws BadInput where there is none.
 void extract_member(const std::filesystem::path& archive, const std::string& member, const std::filesystem::path& mesh);
 
+/// Writes a square about the origin of the xz plane, facing +Y, as an OBJ file with texture coordinates.
+void write_square(double half_size, const std::filesystem::path& mesh);
+
 }  // namespace kiln

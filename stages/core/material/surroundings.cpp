@@ -1,0 +1,94 @@
+#include "material/surroundings.h"
+
+#include <sstream>
+#include <utility>
+
+#include "base/errors.h"
+#include "base/numbers.h"
+#include "mesh/mesh_file.h"
+
+namespace kiln {
+
+namespace {
+
+constexpr int most_hole_edges = 1'000'000;
+constexpr double ground_half_size_diagonals = 4;
+
+void move_to_asset(TriangleMesh& mesh, const Placement& placement, const Placement& asset) {
+  for (Eigen::Vector3f& p : mesh.positions) p = asset.to_object(placement.to_scene(p.cast<double>())).cast<float>();
+  compute_vertex_normals(mesh);
+}
+
+/// A square that faces +Y, in the scene's space.
+TriangleMesh ground_square(const Eigen::Vector3d& centre, double half_size) {
+  TriangleMesh mesh;
+  for (const auto& [x, z] : {std::pair(-1, 1), std::pair(1, 1), std::pair(1, -1), std::pair(-1, -1)})
+    mesh.positions.push_back((centre + half_size * Eigen::Vector3d(x, 0, z)).cast<float>());
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return mesh;
+}
+
+}  // namespace
+
+Neighbour parse_neighbour(const std::string& text) {
+  Neighbour neighbour;
+  std::string place;
+  OptionSet fields;
+  fields.text("place", place, "").integer("fill-holes", neighbour.repair.fill_hole_edges, 0, most_hole_edges, "");
+  add_material_options(fields, neighbour.material);
+
+  std::istringstream parts(text);
+  std::string part;
+  std::getline(parts, part, ';');
+  neighbour.file = part;
+  const auto refuse = [&](const std::string& found) {
+    throw WrongUsage("neighbour: found " + found + " in '" + text +
+                     "'; expected FILE[;place=X,Y,Z[,AZIMUTH[,SCALE]]][;albedo=...][;albedo-texture=...]"
+                     "[;albedo-encoding=...][;fill-holes=...]");
+  };
+  if (part.empty()) refuse("no file");
+  while (std::getline(parts, part, ';')) {
+    const std::size_t equals = part.find('=');
+    const Option* field = equals == std::string::npos ? nullptr : fields.find(part.substr(0, equals));
+    if (field == nullptr) refuse("'" + part + "'");
+    field->set(part.substr(equals + 1));
+  }
+  if (!place.empty()) neighbour.placement = parse_placement("neighbour: place", place);
+  return neighbour;
+}
+
+std::vector<PlacedMesh> load_surroundings(const Surroundings& surroundings, const BoundingBox& own,
+                                          const MaterialSettings& material, bool with_albedo) {
+  const Placement asset = parse_placement("place", surroundings.place);
+  std::vector<PlacedMesh> placed;
+  for (const std::string& text : surroundings.neighbours) {
+    const Neighbour neighbour = parse_neighbour(text);
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(neighbour.file, error))
+      throw BadInput(neighbour.file.string(), "does not exist", "a mesh for --neighbour", "check the path");
+    PlacedMesh& mesh = placed.emplace_back();
+    mesh.name = neighbour.file.string();
+    mesh.mesh = load_mesh(neighbour.file, nullptr, neighbour.repair);
+    // By places, so before it is moved.
+    if (with_albedo) mesh.material = load_albedo(neighbour.file, mesh.mesh, neighbour.material);
+    move_to_asset(mesh.mesh, neighbour.placement, asset);
+  }
+  if (surroundings.ground == "none") return placed;
+
+  const std::vector<double> numbers = parse_numbers("ground", surroundings.ground, -1e6, 1e6);
+  Eigen::Vector3d centre = asset.to_scene(own.centre().cast<double>());
+  centre.y() = numbers[0];
+  const double half_size =
+      numbers.size() > 1 ? numbers[1] : ground_half_size_diagonals * asset.scale * static_cast<double>(own.diagonal());
+  if (!(half_size > 0))
+    throw WrongUsage("ground: found '" + surroundings.ground + "'; expected HEIGHT[,HALF-SIZE], a size above 0");
+  PlacedMesh& ground = placed.emplace_back();
+  ground.name = "the ground";
+  ground.mesh = ground_square(centre, half_size);
+  move_to_asset(ground.mesh, {}, asset);
+  if (const auto constant = material.constant())
+    ground.material.albedo = SurfaceAlbedo::constant({(*constant)[0], (*constant)[1], (*constant)[2]});
+  return placed;
+}
+
+}  // namespace kiln

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "material/load_albedo.h"
+#include "material/material_settings.h"
+#include "material/surroundings_settings.h"
+#include "mesh/mesh_repair.h"
+#include "mesh/placement.h"
+#include "mesh/triangle_mesh.h"
+
+namespace kiln {
+
+/// Another mesh of the scene that an asset stands in.
+struct Neighbour {
+  std::filesystem::path file;
+  Placement placement;  ///< in the scene
+  MaterialSettings material;
+  MeshRepairSettings repair;
+};
+
+/// Reads "FILE[;place=X,Y,Z[,AZIMUTH[,SCALE]]][;albedo=A][;albedo-texture=PICTURE][;albedo-encoding=E]
+/// [;fill-holes=EDGES]", each value as the option of that name takes it. Throws WrongUsage.
+Neighbour parse_neighbour(const std::string& text);
+
+/// A mesh around an asset, in the asset's object space.
+struct PlacedMesh {
+  std::string name;  ///< its file, or "the ground"
+  TriangleMesh mesh;
+  LoadedAlbedo material;
+};
+
+/// Loads what stands around an asset whose box in its object space is `own`: the neighbours, in their order, then the
+/// ground, which lies below the middle of the box. The ground reflects what `material` gives as a constant. Albedo is
+/// loaded `with_albedo` alone. Throws WrongUsage, and BadInput for files that are missing or damaged.
+std::vector<PlacedMesh> load_surroundings(const Surroundings& surroundings, const BoundingBox& own,
+                                          const MaterialSettings& material, bool with_albedo);
+
+}  // namespace kiln
