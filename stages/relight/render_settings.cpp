@@ -46,10 +46,20 @@ OptionSet render_options(RenderSettings& settings) {
   return options;
 }
 
-std::vector<SceneView> views_of(const RenderSettings& settings, const BoundingBox& box) {
+CameraSettings camera_settings_of(const RenderSettings& settings) {
   const std::vector<double> angles = parse_numbers("camera", settings.camera, -360, 360);
   if (angles.size() != 2 || std::abs(angles[1]) > 90)
     throw WrongUsage("camera: found '" + settings.camera + "'; expected AZIMUTH,ELEVATION, an elevation of -90 to 90");
+  CameraSettings camera;
+  camera.azimuth_degrees = angles[0];
+  camera.elevation_degrees = angles[1];
+  camera.field_of_view_degrees = settings.field_of_view_degrees;
+  return camera;
+}
+
+std::vector<SceneView> views_of(const RenderSettings& settings, const BoundingBox& box) {
+  CameraSettings camera = camera_settings_of(settings);
+  const double first_azimuth_degrees = camera.azimuth_degrees;
   SceneView view;
   view.width = settings.width;
   view.height = settings.height;
@@ -58,15 +68,12 @@ std::vector<SceneView> views_of(const RenderSettings& settings, const BoundingBo
   view.look.specular = static_cast<float>(settings.specular);
   view.look.shininess = static_cast<float>(settings.shininess);
   view.shading = settings.shading;
-  CameraSettings camera;
-  camera.elevation_degrees = angles[1];
-  camera.field_of_view_degrees = settings.field_of_view_degrees;
   std::vector<SceneView> views;
   // Twice, so that the frame that needs the most distance sets that of all.
   for (int pass = settings.frames > 1 ? 0 : 1; pass < 2; ++pass) {
     views.clear();
     for (int frame = 0; frame < settings.frames; ++frame) {
-      camera.azimuth_degrees = angles[0] + 360.0 * frame / settings.frames;
+      camera.azimuth_degrees = first_azimuth_degrees + 360.0 * frame / settings.frames;
       view.camera = make_camera(box, camera, settings.width, settings.height);
       views.push_back(view);
     }

@@ -36,6 +36,9 @@ struct RenderSettings {
 
 OptionSet render_options(RenderSettings& settings);
 
+/// Where the camera stands. Throws WrongUsage.
+CameraSettings camera_settings_of(const RenderSettings& settings);
+
 /// How to draw what that box holds, one view for each frame: the camera goes around +Y, always as far away. Throws
 /// WrongUsage.
 std::vector<SceneView> views_of(const RenderSettings& settings, const BoundingBox& box);

@@ -1,6 +1,7 @@
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "gpu/egl_context.h"
+#include "relight/light/light_command.h"
 #include "render/render.h"
 
 int main(int argc, char** argv) {
@@ -20,19 +21,7 @@ int main(int argc, char** argv) {
         "place", paths.places, "Picture",
         "Where an asset stands, once for each in their order: X,Y,Z[,AZIMUTH[,SCALE]], object units and "
         "degrees about +Y (default the origin)");
-    command.list_option(
-        "light", lights.lights, "Light",
-        "A light, degrees: AZIMUTH,ELEVATION[,R,G,B] (0,0 is +Z; 90,0 is +X; a white surface that faces "
-        "it has radiance 1, or R,G,B), cone:AZIMUTH,ELEVATION,HALF-ANGLE[,R,G,B], "
-        "sphere:X,Y,Z,RADIUS[,R,G,B] (a ball; that radiance at the origin), "
-        "hemisphere:AZIMUTH,ELEVATION,R,G,B,R,G,B (above, below) or ambient:RADIANCE; may be repeated "
-        "(default 45,30 if there is no other)");
-    command.input_option("environment", lights.environment,
-                         "A latitude-longitude picture of radiance, EXR or HDR, or a folder of the six faces of a cube "
-                         "map, px to nz");
-    command.input_option("light-file", paths.light_file,
-                         "All of the lights, in a JSON file (stages/relight/README.md)");
-    command.options("Light", light_options(lights));
+    add_light_options(command, lights, paths.light_file);
     command.options("Picture", render_options(settings));
     command.parse(argc, argv);
     if (settings.technique == TechniqueChoice::all && file.extension() != ".png")

@@ -7,7 +7,7 @@
 #include "base/errors.h"
 #include "image/image_file.h"
 #include "relight/draw/scene_renderer.h"
-#include "relight/light/light_file.h"
+#include "relight/light/light_command.h"
 #include "relight/output/contact_sheet.h"
 #include "relight/output/picture.h"
 #include "relight/render_metrics.h"
@@ -78,11 +78,7 @@ RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& lig
   if (sheet && settings.frames > 1) throw WrongUsage("technique all: found --frames; expected one picture");
   if (paths.places.size() > paths.assets.size())
     throw WrongUsage("place: found " + std::to_string(paths.places.size()) + "; expected at most one for each asset");
-  const bool has_lights =
-      !light_settings.lights.empty() || light_settings.ambient != "none" || !light_settings.environment.empty();
-  if (!paths.light_file.empty() && has_lights)
-    throw WrongUsage("light-file: found lights on the command line, too; expected one or the other");
-  const LightSettings given = paths.light_file.empty() ? light_settings : read_light_file(paths.light_file);
+  const LightSettings given = chosen_lights(light_settings, paths.light_file);
 
   RenderScene scene;
   scene.specs = light_specs(given);
@@ -93,13 +89,7 @@ RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& lig
     scene.assets.push_back(load_prt_asset(folder));
     bands = std::max(bands, scene.assets.back().bands);
   }
-  if (!paths.compressed.empty()) {
-    scene.compressed = load_prt_asset(paths.compressed);
-    if (scene.compressed->bands != scene.assets.front().bands)
-      throw BadInput(paths.compressed.string(), "has " + std::to_string(scene.compressed->bands) + " bands",
-                     std::to_string(scene.assets.front().bands) + ", as the asset has",
-                     "name the output of kiln-compress for this asset");
-  }
+  if (!paths.compressed.empty()) scene.compressed = load_other_form(paths.compressed, scene.assets.front());
   scene.lights = scene_lights(given, bands);
   return scene;
 }

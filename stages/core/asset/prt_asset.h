@@ -93,6 +93,10 @@ PrtAsset load_prt_asset(const std::filesystem::path& folder);
 /// Reads a folder of kiln-compress; its README has the format.
 PrtAsset load_pca_asset(const std::filesystem::path& folder);
 
+/// Reads another form of `asset`, as kiln-compress makes it. Throws BadInput as load_prt_asset does, and where it has
+/// other bands.
+PrtAsset load_other_form(const std::filesystem::path& folder, const PrtAsset& asset);
+
 /// Transfer vectors of texels (numbered as Image has them), one after another: what planes, or weights and clusters,
 /// stand for. `vectors` has room for channels * bands^2 values for each texel.
 void decode_transfer(const PrtAsset& asset, std::span<const std::uint32_t> texels, std::span<float> vectors);

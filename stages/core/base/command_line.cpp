@@ -153,6 +153,10 @@ void CommandLine::finish(OutputSet& outputs, const Json& result) const {
 void CommandLine::finish_without_record(OutputSet& outputs, const Json& result) const {
   throw_if_interrupted();
   outputs.commit();
+  finish_without_output(result);
+}
+
+void CommandLine::finish_without_output(const Json& result) const {
   if (json_) std::printf("%s\n", result.dump().c_str());
 }
 

@@ -72,6 +72,9 @@ class CommandLine {
   /// The same without `<stage>.json`, for tools whose output is one file anywhere.
   void finish_without_record(OutputSet& outputs, const Json& result) const;
 
+  /// The same for tools that have no output: prints `result` on stdout if --json was given.
+  void finish_without_output(const Json& result) const;
+
  private:
   std::string program_;
   std::string stage_;

@@ -1,5 +1,6 @@
 #include "base/options.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
@@ -144,6 +145,13 @@ const Option* OptionSet::find(const std::string& name) const {
   for (const Option& option : options_)
     if (option.name == name) return &option;
   return nullptr;
+}
+
+OptionSet OptionSet::without(const std::vector<std::string>& names) const {
+  OptionSet rest;
+  for (const Option& option : options_)
+    if (std::find(names.begin(), names.end(), option.name) == names.end()) rest.options_.push_back(option);
+  return rest;
 }
 
 Json OptionSet::to_json() const {

@@ -88,6 +88,9 @@ class OptionSet {
   /// The option of that name, or null.
   const Option* find(const std::string& name) const;
 
+  /// The same options but those of these names, which a tool has no use for.
+  OptionSet without(const std::vector<std::string>& names) const;
+
   /// Every setting by name, for <stage>.json.
   Json to_json() const;
 

@@ -6,7 +6,8 @@
 
 namespace kiln {
 
-/// Width in pixels of a line of text (UTF-8) in DejaVu Sans of `size` pixels.
+/// Width in pixels of a line of text (ASCII: OpenImageIO 2.4 draws other characters wrongly) in DejaVu Sans of `size`
+/// pixels.
 int text_width(const std::string& text, int size);
 
 /// Draws a line of text into an RGB or RGBA picture, in grey of `brightness` 0 to 1, opaque; its baseline starts at

@@ -1,0 +1,105 @@
+#!/usr/bin/env bash
+# kiln-view in a window of a display that nobody sees (Xvfb): test_view.sh PROGRAM_FOLDER.
+set -euo pipefail
+programs=$1
+high=/usr/share/glmark2/models/bunny.obj
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+fail() { echo "FAILED: $*"; exit 1; }
+# A free display of its own; the software renderer, whatever the machine has.
+display() { xvfb-run --auto-servernum --server-args="-screen 0 800x600x24" env LIBGL_ALWAYS_SOFTWARE=1 "$@"; }
+same() { "$programs/compare_pictures" "$@" || fail "$1 is not $2"; }
+differ() { if "$programs/compare_pictures" "$@"; then fail "$1 is $2"; fi; }
+
+"$programs/kiln-simplify" $high -o low.drc --faces 300 --quiet
+"$programs/kiln-atlas" low.drc -o atlas.drc --size 128 --gutter 2 --quiet
+"$programs/kiln-normals" $high atlas.drc -o normals --quiet
+mkdir hare
+"$programs/kiln-bake" atlas.drc --detail normals --occluder $high -o hare/prt --backend embree --directions 256 --bands 4 --quiet
+"$programs/kiln-compress" hare/prt -o hare/small --clusters 1 --pca 4 --quiet
+
+echo "== without a display"
+status=0
+env -u DISPLAY -u WAYLAND_DISPLAY "$programs/kiln-view" hare 2>message || status=$?
+[ $status = 5 ] || fail "without a display the exit status is $status, not 5"
+grep -q "no display" message || fail "without a display it says: $(cat message)"
+
+echo "== the same pictures as kiln-render"
+look=(--light 60,35,1,0.8,0.5 --camera -30,15 --albedo 0.7 --exposure 0.5)
+cat >script <<'EOF'
+screenshot textured.png
+key 5
+screenshot compressed.png
+key 1
+screenshot phong.png
+key 3
+screenshot vertex.png
+key 4 f
+screenshot deferred.png
+key d
+screenshot difference.png
+key r h
+window keys.png
+key h
+window readout.png
+resize 311 200
+screenshot narrow.png
+drag left 100 0
+frames 3
+screenshot turned.png
+drag left -100 0
+screenshot back.png
+key s q
+screenshot never.png
+EOF
+display "$programs/kiln-view" hare "${look[@]}" --width 320 --height 240 --script script --screenshots shots --json >result ||
+  fail "the script ended with status $?"
+grep -q '"screenshots":\["textured.png"' result || fail "the result is: $(cat result)"
+[ -e never.png ] && fail "it goes on after q"
+render() { "$programs/kiln-render" hare/prt "${look[@]}" --gl-device software --quiet "$@"; }
+render -o r_textured.png --width 320 --height 240
+render -o r_compressed.png --width 320 --height 240 --technique compressed --compressed hare/small
+render -o r_phong.png --width 320 --height 240 --technique phong
+render -o r_vertex.png --width 320 --height 240 --technique vertex-prt
+render -o r_narrow.png --width 311 --height 200
+# The samples are the same; they are averaged and curved by the GPU here, by the CPU there, both in float32, so that a value
+# halfway between two bytes may fall to either.
+for name in textured compressed phong vertex narrow; do same $name.png r_$name.png 1; done
+same deferred.png r_textured.png 1
+same back.png r_narrow.png 1
+same shots/hare_001.png back.png 0
+# Pictures that are not to be the same are told apart by the same means.
+for name in compressed phong vertex difference; do differ $name.png textured.png 3; done
+differ turned.png back.png 3
+differ keys.png readout.png 3
+
+echo "== files that change"
+cat >script <<'EOF'
+screenshot first.png
+reload
+screenshot broken.png
+window message.png
+reload
+screenshot second.png
+EOF
+display "$programs/kiln-view" hare --width 240 --height 180 --script script 2>said &
+viewer=$!
+# Each change is one rename, so that the viewer sees all of it or nothing.
+wait_for() { until [ -e "$1" ]; do kill -0 $viewer 2>/dev/null || fail "the viewer ended before $1: $(cat said)"; sleep 0.2; done; }
+wait_for first.png
+cp hare/prt/ranges.json good.json
+echo '{' >broken.json
+mv broken.json hare/prt/ranges.json
+wait_for message.png
+sed 's/"max": 0\.2[0-9]*/"max": 0.4/' good.json >brighter.json
+cmp -s good.json brighter.json && fail "the test changed nothing"
+mv brighter.json hare/prt/ranges.json
+wait $viewer || fail "the viewer ended with status $?: $(cat said)"
+"$programs/kiln-render" hare/prt -o r_second.png --width 240 --height 180 --gl-device software --quiet
+same broken.png first.png 0
+same second.png r_second.png 1
+differ second.png first.png 3
+differ message.png broken.png 255 # one has panels and a backdrop: RGB, not RGBA
+grep -q "not read again: .*ranges.json" said || fail "of the broken file it says: $(cat said)"
+echo "all is as it should be"

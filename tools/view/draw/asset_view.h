@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "relight/draw/asset_renderer.h"
+#include "relight/render_settings.h"
+#include "view/draw/canvas.h"
+#include "view/draw/inspection.h"
+#include "view/files/view_scene.h"
+#include "view/state/view_state.h"
+
+namespace kiln {
+
+/// A scene of the viewer on the GPU: draws whatever a state shows. Needs the GL context in which it was made.
+class AssetView {
+ public:
+  /// Uploads what the state's technique needs. Throws as AssetRenderer does. Of `settings` it keeps the surface's look
+  /// and the number of incident-light samples.
+  AssetView(ViewScene scene, const RenderSettings& settings, const ViewState& state);
+
+  const ViewScene& scene() const { return scene_; }
+  const ViewLimits& limits() const { return limits_; }
+  const BoundingBox& box() const { return scene_.lights.box; }
+
+  /// Draws the picture of the canvas; its reference where the state shows a difference; its edges where it has them.
+  void draw(const ViewState& state, const Camera& camera, Canvas& canvas);
+
+  /// What was drawn last takes on the GPU by the state's technique.
+  std::uint64_t gpu_bytes(const ViewState& state);
+
+  /// The lowest and the highest value of a transfer coefficient over the asset.
+  std::pair<double, double> coefficient_range(int coefficient, Technique technique);
+
+ private:
+  AssetRenderer& renderer(const PrtAsset& asset, const LightChoice& light);
+  const AssetLight& light(const LightChoice& choice, int bands, const AssetRenderer& renderer);
+  void draw_lit(const ViewState& state, Technique technique, int bands, const Camera& camera, Canvas& canvas,
+                const Frame& frame);
+  Inspection& inspection();
+
+  ViewScene scene_;
+  ViewLimits limits_;
+  int wanted_samples_;
+  SurfaceLook look_;
+  std::map<const PrtAsset*, std::unique_ptr<AssetRenderer>> renderers_;
+  std::optional<Inspection> inspection_;
+  std::vector<std::pair<double, double>> decoded_ranges_;  // of the compressed form
+  LightChoice lit_by_;                                     // what lights_ are of
+  int lit_samples_ = 0;
+  std::map<int, AssetLight> lights_;  // by the bands used
+};
+
+}  // namespace kiln

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+
+#include "relight/draw/frame.h"
+
+namespace kiln {
+
+/// Where the pictures that the window is made of are drawn, supersampled; those that are rarely needed are made when
+/// they are.
+class Canvas {
+ public:
+  /// For a window of width x height pixels. `supersample` samples a pixel along each axis, or fewer, where the frames
+  /// would be too large.
+  Canvas(int width, int height, int supersample);
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  int supersample() const { return supersample_; }
+
+  const Frame& picture() const { return picture_; }
+  const Frame& reference();
+  const Frame& edges();
+  const AppearanceFrame& appearance();
+
+ private:
+  int width_, height_, supersample_;
+  Frame picture_;
+  std::optional<Frame> reference_, edges_;
+  std::optional<AppearanceFrame> appearance_;
+};
+
+}  // namespace kiln

@@ -1,0 +1,62 @@
+#include "view/draw/panel.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "image/text.h"
+
+namespace kiln {
+
+namespace {
+
+constexpr float title_brightness = 1.f, value_brightness = 0.92f, label_brightness = 0.6f;
+constexpr std::uint8_t ground = 18;
+constexpr float ground_alpha = 0.72f;
+
+/// How much of a pixel lies within a rectangle of that size with round corners.
+float rounded_share(int i, int j, int width, int height, double radius) {
+  const double x = std::max(std::abs(i + 0.5 - 0.5 * width) - (0.5 * width - radius), 0.0);
+  const double y = std::max(std::abs(j + 0.5 - 0.5 * height) - (0.5 * height - radius), 0.0);
+  return static_cast<float>(std::clamp(radius - std::hypot(x, y) + 0.5, 0.0, 1.0));
+}
+
+}  // namespace
+
+bool Panel::operator==(const Panel& other) const {
+  const auto same = [](const PanelRow& a, const PanelRow& b) { return a.label == b.label && a.value == b.value; };
+  return title == other.title && std::equal(rows.begin(), rows.end(), other.rows.begin(), other.rows.end(), same);
+}
+
+Image<std::uint8_t> panel_picture(const Panel& panel, double scale) {
+  const auto pixels = [&](double at_96_dpi) { return static_cast<int>(std::lround(at_96_dpi * scale)); };
+  const int size = pixels(13), title_size = pixels(15), line = pixels(20), margin = pixels(12), gap = pixels(14);
+  int labels = 0, values = 0;
+  for (const PanelRow& row : panel.rows) {
+    labels = std::max(labels, text_width(row.label, size));
+    values = std::max(values, text_width(row.value, size));
+  }
+  const int values_left = margin + (labels > 0 ? labels + gap : 0);
+  const int title_height = panel.title.empty() ? 0 : line + pixels(6);
+  const int width =
+      std::max(values_left + values, panel.title.empty() ? 0 : margin + text_width(panel.title, title_size)) + margin;
+  const int height = 2 * margin + title_height + static_cast<int>(panel.rows.size()) * line - (line - size);
+
+  Image<std::uint8_t> picture(width, height, 4, ground);
+  for (int j = 0; j < height; ++j)
+    for (int i = 0; i < width; ++i)
+      picture.at(i, j, 3) =
+          static_cast<std::uint8_t>(std::lround(255 * ground_alpha * rounded_share(i, j, width, height, pixels(7))));
+  int baseline = height - margin - size + pixels(2);
+  if (!panel.title.empty()) {
+    draw_text(picture, margin, baseline, panel.title, title_size, title_brightness);
+    baseline -= title_height;
+  }
+  for (const PanelRow& row : panel.rows) {
+    draw_text(picture, margin, baseline, row.label, size, label_brightness);
+    draw_text(picture, values_left, baseline, row.value, size, value_brightness);
+    baseline -= line;
+  }
+  return picture;
+}
+
+}  // namespace kiln

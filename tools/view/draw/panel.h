@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "image/image.h"
+
+namespace kiln {
+
+/// A row of a panel: a dim label, and what it is of.
+struct PanelRow {
+  std::string label;
+  std::string value;
+};
+
+struct Panel {
+  std::string title;  ///< empty: none
+  std::vector<PanelRow> rows;
+
+  bool operator==(const Panel&) const;
+};
+
+/// The panel as a picture (RGBA, straight alpha): bright text in two aligned columns on dark, half-transparent ground
+/// with round corners. `scale` is the display's, 1 for about 96 dots per inch. Throws MachineLacks without the font.
+Image<std::uint8_t> panel_picture(const Panel& panel, double scale);
+
+}  // namespace kiln

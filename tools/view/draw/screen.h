@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "gpu/gl_objects.h"
+#include "image/image.h"
+#include "relight/output/picture.h"
+#include "view/draw/canvas.h"
+#include "view/draw/panel.h"
+#include "view/state/view_state.h"
+
+namespace kiln {
+
+/// How the samples of a canvas become the pixels of the finished picture.
+struct Resolve {
+  Show show = Show::picture;
+  PictureSettings picture;                   ///< of Show::picture
+  float gain = 1;                            ///< of signed numbers: what makes 1 of those to be fully coloured
+  std::array<float, 3> weights = {1, 0, 0};  ///< of red, green and blue in a signed number
+  bool edges = false;
+};
+
+/// A panel in a corner of the window.
+struct PlacedPanel {
+  enum class Corner { upper_left, upper_right, lower_left };
+  Panel panel;
+  Corner corner = Corner::upper_left;
+};
+
+/// Finishes pictures, and shows them in the window with panels over them. Needs the GL context in which it was made.
+class Screen {
+ public:
+  Screen();
+
+  /// Finishes the picture of a canvas.
+  void resolve(Canvas& canvas, const Resolve& how);
+
+  /// The picture that was finished last: RGBA, straight alpha, or RGB where it has a background; as kiln-render has it.
+  Image<std::uint8_t> picture() const;
+
+  /// Draws it into the window's framebuffer, then the panels, at the display's scale.
+  void show(const std::vector<PlacedPanel>& panels, double scale);
+
+  /// What the window's framebuffer holds (RGB), after show() and before it is swapped.
+  Image<std::uint8_t> window() const;
+
+ private:
+  struct DrawnPanel {
+    Panel panel;
+    double scale = 1;
+    int width = 0, height = 0;
+    GlTexture texture;
+  };
+  const GlProgram& resolve_program(Show show, bool edges);
+  void draw_panel(DrawnPanel& drawn, const PlacedPanel& placed, double scale) const;
+
+  int width_ = 0, height_ = 0;
+  bool opaque_ = false;
+  GlTexture picture_;
+  GlFramebuffer framebuffer_;
+  GlVertexArray no_vertices_;
+  std::map<std::pair<Show, bool>, GlProgram> resolve_programs_;
+  GlProgram window_program_, panel_program_;
+  std::vector<DrawnPanel> panels_;
+};
+
+}  // namespace kiln

@@ -1,0 +1,44 @@
+#include "base/command_line.h"
+#include "relight/light/light_command.h"
+#include "view/viewer.h"
+
+int main(int argc, char** argv) {
+  using namespace kiln;
+  return run_program("kiln-view", [&] {
+    // Parse.
+    CommandLine command("kiln-view", "Shows a baked asset in a window, under lights that can be moved.");
+    ViewerSetup setup;
+    setup.look.width = 1280;
+    setup.look.height = 800;
+    std::filesystem::path folder, compressed, light_file, script;
+    command.input("FOLDER", folder,
+                  "An asset's folder with prt/ in it, or an output folder of kiln-bake or kiln-compress");
+    command.input_option("compressed", compressed,
+                         "The asset as kiln-compress made it, where it does not lie beside prt/");
+    command.input_option("script", script,
+                         std::string("Does what the file says, one step a line, then closes: ") + script_grammar);
+    add_light_options(command, setup.lights, light_file);
+    // A window has a GL device and frames of its own.
+    command.options("Picture", render_options(setup.look).without({"frames", "gl-device"}));
+    command.options("Window", viewer_options(setup));
+    command.app().footer("Keys:\n" + key_help_text());
+    command.parse(argc, argv);
+
+    // Load, before a window is opened: bad input is told of without a display, too.
+    setup.say = [&](const std::string& line) { command.say(line); };
+    setup.folders = find_asset_folders(folder, compressed);
+    setup.lights = chosen_lights(setup.lights, light_file);
+    ViewScene scene = load_view_scene(setup.folders, setup.lights);
+    first_state(scene, setup.lights, setup.look);
+    const std::vector<ScriptStep> steps = script.empty() ? std::vector<ScriptStep>() : read_script(script);
+
+    // Run.
+    const Stopwatch watch;
+    Viewer viewer(setup, std::move(scene), command.threads());
+    if (script.empty())
+      viewer.run();
+    else
+      viewer.run(steps);
+    command.finish_without_output(command.result(watch.seconds(), viewer.metrics()));
+  });
+}

@@ -1,0 +1,60 @@
+#include "view/state/orbit.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kiln {
+
+namespace {
+
+constexpr double degrees_per_pixel = 0.4;
+constexpr double nearest_zoom = 0.02, farthest_zoom = 20;
+
+double distance_of(const Orbit& orbit, const BoundingBox& box, int width, int height) {
+  const Camera home = make_camera(box, orbit.home, width, height);
+  return orbit.zoom * static_cast<double>((home.position - box.centre()).norm());
+}
+
+}  // namespace
+
+Orbit home_orbit(const CameraSettings& home) {
+  Orbit orbit;
+  orbit.home = home;
+  orbit.azimuth_degrees = home.azimuth_degrees;
+  orbit.elevation_degrees = home.elevation_degrees;
+  return orbit;
+}
+
+void turn_orbit(Orbit& orbit, double right_pixels, double down_pixels) {
+  orbit.azimuth_degrees = std::remainder(orbit.azimuth_degrees - degrees_per_pixel * right_pixels, 360);
+  orbit.elevation_degrees = std::clamp(orbit.elevation_degrees + degrees_per_pixel * down_pixels, -90.0, 90.0);
+}
+
+void pan_orbit(Orbit& orbit, const BoundingBox& box, double right_pixels, double down_pixels, int width, int height) {
+  const Camera camera = camera_of(orbit, box, width, height);
+  const double units_per_pixel = 2.0 * camera.half_height * distance_of(orbit, box, width, height) / height;
+  orbit.pan += units_per_pixel * (down_pixels * camera.up.cast<double>() - right_pixels * camera.right.cast<double>());
+}
+
+void zoom_orbit(Orbit& orbit, double steps) {
+  orbit.zoom = std::clamp(orbit.zoom * std::pow(0.9, steps), nearest_zoom, farthest_zoom);
+}
+
+Camera camera_of(const Orbit& orbit, const BoundingBox& box, int width, int height) {
+  CameraSettings settings = orbit.home;
+  settings.azimuth_degrees = orbit.azimuth_degrees;
+  settings.elevation_degrees = orbit.elevation_degrees;
+  Camera camera = make_camera(box, settings, width, height);
+  const bool is_home = orbit.zoom == 1 && orbit.pan.isZero(0) && orbit.azimuth_degrees == orbit.home.azimuth_degrees &&
+                       orbit.elevation_degrees == orbit.home.elevation_degrees;
+  if (is_home) return camera;  // kiln-render's, to the bit
+  const Eigen::Vector3d forward = camera.forward.cast<double>();
+  const double distance = distance_of(orbit, box, width, height), radius = 0.505 * static_cast<double>(box.diagonal());
+  camera.position = (box.centre().cast<double>() + orbit.pan - distance * forward).cast<float>();
+  const double centre_distance = distance - orbit.pan.dot(forward);
+  camera.near_distance = static_cast<float>(std::max(centre_distance - radius, 0.002 * radius));
+  camera.far_distance = static_cast<float>(std::max(centre_distance + radius, 0.004 * radius));
+  return camera;
+}
+
+}  // namespace kiln

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "view/draw/panel.h"
+#include "view/files/asset_forms.h"
+#include "view/state/view_lights.h"
+#include "view/state/view_state.h"
+
+namespace kiln {
+
+/// What the window measured.
+struct ViewFacts {
+  std::string asset;                                       ///< its name
+  double frame_milliseconds = 0;                           ///< mean of the last frames; 0: not yet known
+  std::uint64_t gpu_bytes = 0;                             ///< of the mesh, the textures and the light by the technique
+  double coefficient_lowest = 0, coefficient_highest = 0;  ///< of the coefficient shown
+};
+
+/// The panel that says what is shown, and how.
+Panel readout(const ViewState& state, const ViewLimits& limits, const AssetForms& forms, const GivenLights& lights,
+              const ViewFacts& facts);
+
+/// A message under a heading, in lines that fit a window.
+Panel message_panel(const std::string& heading, const std::string& message);
+
+/// The panel of keys.
+Panel help_panel();
+
+}  // namespace kiln

@@ -1,0 +1,169 @@
+#include "view/state/view_lights.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+#include "sh/basis.h"
+#include "sh/directions.h"
+#include "sh/rotation.h"
+
+namespace kiln {
+
+namespace {
+
+using Kind = LightSpec::Kind;
+
+constexpr double degree = std::numbers::pi / 180;
+
+bool has_direction(const LightSpec& spec) { return spec.kind != Kind::ambient; }
+
+Eigen::Vector3d from_centre(const LightSpec& ball, const BoundingBox& box) {
+  return Eigen::Vector3d(ball.position.data()) - box.centre().cast<double>();
+}
+
+/// Moves a light to an azimuth and an elevation; a ball around the box' centre.
+void move_light(LightSpec& spec, double azimuth_degrees, double elevation_degrees, const BoundingBox& box) {
+  spec.azimuth_degrees = azimuth_degrees;
+  spec.elevation_degrees = elevation_degrees;
+  if (spec.kind != Kind::sphere) return;
+  const Eigen::Vector3d centre = box.centre().cast<double>();
+  // The ball's own radiance stays: `colour` is what it makes of a surface at the origin, which is now nearer or
+  // farther.
+  const double before = Eigen::Vector3d(spec.position.data()).norm();
+  const Eigen::Vector3d place =
+      centre + from_centre(spec, box).norm() * direction_from_angles(azimuth_degrees, elevation_degrees).cast<double>();
+  const double reach = std::max(spec.radius, before), now = std::max(spec.radius, place.norm());
+  for (float& value : spec.colour) value = static_cast<float>(value * reach * reach / (now * now));
+  spec.position = {place.x(), place.y(), place.z()};
+}
+
+/// A light of the viewer's own. All give a white surface that faces them about radiance 1.
+LightSpec preset_light(const LightChoice& choice, const BoundingBox& box) {
+  LightSpec spec;
+  spec.azimuth_degrees = choice.azimuth_degrees;
+  spec.elevation_degrees = choice.elevation_degrees;
+  switch (choice.preset) {
+    case LightPreset::ball: {
+      spec.kind = Kind::sphere;
+      const double distance = 0.8 * static_cast<double>(box.diagonal());
+      const Eigen::Vector3d place =
+          box.centre().cast<double>() +
+          distance * direction_from_angles(choice.azimuth_degrees, choice.elevation_degrees).cast<double>();
+      spec.position = {place.x(), place.y(), place.z()};
+      spec.radius = 0.1 * distance;
+      // Radiance 1 at the box' centre, where `colour` is that at the origin.
+      const double at_origin = std::max(spec.radius, place.norm());
+      spec.colour.fill(static_cast<float>(distance * distance / (at_origin * at_origin)));
+      break;
+    }
+    case LightPreset::hemisphere:
+      spec.kind = Kind::hemisphere;
+      spec.colour = {0.75f, 0.9f, 1.1f};
+      spec.ground = {0.3f, 0.22f, 0.15f};
+      break;
+    case LightPreset::ambient:
+      spec.kind = Kind::ambient;
+      break;
+    default:
+      break;
+  }
+  return spec;
+}
+
+std::vector<LightSpec>::const_iterator main_light(const std::vector<LightSpec>& specs) {
+  return std::find_if(specs.begin(), specs.end(), has_direction);
+}
+
+std::string light_name(const LightSpec& spec) {
+  switch (spec.kind) {
+    case Kind::cone:
+      return "cone";
+    case Kind::sphere:
+      return "ball";
+    case Kind::hemisphere:
+      return "hemisphere";
+    case Kind::ambient:
+      return "ambient";
+    default:
+      return "directional";
+  }
+}
+
+}  // namespace
+
+LightChoice given_choice(const GivenLights& given, LightWindow window) {
+  LightChoice choice;
+  choice.window = window;
+  choice.environment = given.environment.has_value();
+  const auto light = main_light(given.specs);
+  if (light == given.specs.end()) {
+    if (given.environment) choice.azimuth_degrees = choice.elevation_degrees = 0;
+  } else if (light->kind == Kind::sphere) {
+    const Eigen::Vector3d place = from_centre(*light, given.box);
+    choice.azimuth_degrees = std::atan2(place.x(), place.z()) / degree;
+    choice.elevation_degrees = std::atan2(place.y(), std::hypot(place.x(), place.z())) / degree;
+  } else {
+    choice.azimuth_degrees = light->azimuth_degrees;
+    choice.elevation_degrees = light->elevation_degrees;
+  }
+  return choice;
+}
+
+SceneLights lights_of(const LightChoice& choice, const GivenLights& given) {
+  SceneLights lights;
+  lights.window = choice.window;
+  if (choice.preset == LightPreset::given)
+    lights.specs = given.specs;
+  else
+    lights.specs = {preset_light(choice, given.box)};
+  if (choice.environment) lights.environment = given.environment;
+  // Where nothing was dragged nothing moves, not even by rounding.
+  const LightChoice still = given_choice(given, choice.window);
+  if (choice.preset != LightPreset::given ||
+      (choice.azimuth_degrees == still.azimuth_degrees && choice.elevation_degrees == still.elevation_degrees))
+    return lights;
+  const auto light = main_light(given.specs);
+  if (light != given.specs.end()) {
+    move_light(lights.specs[static_cast<std::size_t>(light - given.specs.begin())], choice.azimuth_degrees,
+               choice.elevation_degrees, given.box);
+  } else if (lights.environment) {
+    const Eigen::AngleAxisd turn(choice.azimuth_degrees * degree, Eigen::Vector3d::UnitY());
+    lights.environment = ShRotation(lights.environment->bands, turn.toRotationMatrix())(*lights.environment);
+  }
+  return lights;
+}
+
+AssetLight light_for_asset(const SceneLights& lights, int bands, const PrtAsset& asset,
+                           const IncidentSamples& samples) {
+  AssetLight light = light_asset(lights, asset.bands, {}, samples.points);
+  for (LightCoefficients& sample : light.samples)
+    for (std::vector<float>& channel : sample.channels)
+      std::fill(channel.begin() + coefficient_count(bands), channel.end(), 0.f);
+  return light;
+}
+
+AssetLight light_of_coefficient(int coefficient, const PrtAsset& asset, const IncidentSamples& samples) {
+  const int count = coefficient_count(asset.bands);
+  LightCoefficients one{asset.bands, {3, std::vector<float>(static_cast<std::size_t>(count), 0.f)}};
+  for (int colour = 0; colour < 3; ++colour)
+    if (asset.channels == 1 || colour == coefficient / count)
+      one.channels[static_cast<std::size_t>(colour)][static_cast<std::size_t>(coefficient % count)] = 1;
+  AssetLight light;
+  light.samples.assign(samples.points.size(), one);
+  light.rest = {3, {3, std::vector<float>(9, 0.f)}};
+  return light;
+}
+
+std::string describe(const LightChoice& choice, const GivenLights& given) {
+  const std::vector<LightSpec> specs = lights_of(choice, given).specs;
+  const auto light = main_light(specs);
+  std::string text = specs.empty() ? "none" : light_name(light == specs.end() ? specs.front() : *light);
+  if (light != specs.end()) text += fmt::format(" {:.0f}, {:.0f}", choice.azimuth_degrees, choice.elevation_degrees);
+  if (specs.size() > 1) text += fmt::format(" and {} more", specs.size() - 1);
+  return text;
+}
+
+}  // namespace kiln

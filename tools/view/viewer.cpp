@@ -1,0 +1,308 @@
+#include "view/viewer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <tuple>
+
+#include "base/errors.h"
+#include "base/outputs.h"
+#include "base/progress.h"
+#include "gpu/program.h"
+#include "image/image_file.h"
+#include "view/state/readout.h"
+
+namespace kiln {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto message_time = std::chrono::seconds(6);
+constexpr auto watch_interval = std::chrono::milliseconds(300);
+constexpr double idle_seconds = 0.1;
+constexpr auto reload_patience = std::chrono::seconds(300);
+constexpr auto resize_patience = std::chrono::seconds(60);
+constexpr int frames_to_measure = 8;
+
+std::vector<fs::path> watched(const AssetFolders& folders) {
+  std::vector<fs::path> paths;
+  for (const fs::path& folder : {folders.plain, folders.compressed})
+    if (!folder.empty()) paths.push_back(folder);
+  return paths;
+}
+
+/// Whether the time of a frame of the one says something of the other's.
+bool same_kind(const ViewState& a, const ViewState& b) {
+  return a.technique == b.technique && a.shading == b.shading && a.show == b.show && a.mesh == b.mesh &&
+         a.light.preset == b.light.preset && a.bands == b.bands;
+}
+
+}  // namespace
+
+OptionSet viewer_options(ViewerSetup& setup) {
+  OptionSet options;
+  options.text("screenshots", setup.screenshots, "The folder that screenshots go to");
+  return options;
+}
+
+ViewState first_state(const ViewScene& scene, const LightSettings& lights, const RenderSettings& look) {
+  if (look.technique == TechniqueChoice::all)
+    throw WrongUsage("technique: found all; expected one, as kiln-view shows them one after another");
+  const PrtAsset& main = scene.forms.main();
+  ViewState state;
+  state.technique = technique_of(look, main);
+  require_technique(state.technique, scene.forms.of(state.technique));
+  views_of(look, scene.lights.box);  // refuses what is no look
+  picture_of(look);
+  state.orbit = home_orbit(camera_settings_of(look));
+  state.shading = look.shading;
+  state.light = given_choice(scene.lights, lights.window);
+  state.bands = main.bands;
+  state.exposure_stops = look.exposure_stops;
+  return state;
+}
+
+Viewer::Viewer(const ViewerSetup& setup, ViewScene scene, int software_threads)
+    : setup_(setup),
+      window_("kiln-view: " + setup.folders.name, setup.look.width, setup.look.height, software_threads),
+      home_(first_state(scene, setup.lights, setup.look)),
+      state_(home_),
+      asset_(std::make_unique<AssetView>(std::move(scene), setup.look, state_)),
+      watch_(watched(setup.folders)) {
+  window_.listen({[this](char key) { press_key(key); },
+                  [this](Drag what, double right, double down) {
+                    const Extent size = window_.framebuffer();
+                    drag(state_, what, right, down, asset_->box(), std::max(1, size.width), std::max(1, size.height));
+                    has_to_draw_ = true;
+                  },
+                  [this](double steps) {
+                    zoom_orbit(state_.orbit, steps);
+                    has_to_draw_ = true;
+                  },
+                  [this] { has_to_draw_ = true; }});
+}
+
+void Viewer::run() {
+  while (!window_.is_closing() && !is_closing_) {
+    throw_if_interrupted();
+    window_.wait(has_to_draw_ ? 0 : idle_seconds);
+    reload_if_changed();
+    if (!message_.empty() && Clock::now() > message_until_) {
+      message_.clear();
+      has_to_draw_ = true;
+    }
+    if (has_to_draw_) draw();
+  }
+}
+
+void Viewer::run(const std::vector<ScriptStep>& script) {
+  is_scripted_ = true;
+  draw();
+  for (const ScriptStep& step : script) {
+    throw_if_interrupted();
+    window_.wait(0);
+    if (window_.is_closing() || is_closing_) return;
+    do_step(step);
+  }
+}
+
+void Viewer::do_step(const ScriptStep& step) {
+  using Kind = ScriptStep::Kind;
+  switch (step.kind) {
+    case Kind::key:
+      press_key(step.key);
+      break;
+    case Kind::drag: {
+      const Extent size = window_.framebuffer();
+      drag(state_, step.what, step.x, step.y, asset_->box(), size.width, size.height);
+      break;
+    }
+    case Kind::wheel:
+      zoom_orbit(state_.orbit, step.x);
+      break;
+    case Kind::resize:
+      resize_window(static_cast<int>(step.x), static_cast<int>(step.y));
+      break;
+    case Kind::frames:
+      for (int k = 1; k < static_cast<int>(step.x); ++k) draw();
+      break;
+    case Kind::screenshot:
+    case Kind::window:
+      write_picture_file(step.file, step.kind == Kind::window);
+      return;
+    case Kind::reload:
+      wait_for_reload();
+      break;
+  }
+  if (!is_closing_) draw();
+}
+
+void Viewer::press_key(char key) {
+  const KeyResult result = press(state_, asset_->limits(), home_, key);
+  has_to_draw_ = true;
+  message_.clear();
+  if (!result.message.empty()) note(result.message);
+  if (result.wish == Wish::close) is_closing_ = true;
+  if (result.wish == Wish::screenshot) take_screenshot();
+}
+
+void Viewer::note(const std::string& message) {
+  message_ = message;
+  message_until_ = Clock::now() + message_time;
+  has_to_draw_ = true;
+}
+
+void Viewer::take_screenshot() {
+  fs::path file;
+  int number = 1;
+  do file = fs::path(setup_.screenshots) / fmt::format("{}_{:03}.png", setup_.folders.name, number++);
+  while (fs::exists(file));
+  try {
+    write_picture_file(file, false);
+    note("wrote " + fs::absolute(file).lexically_normal().string());
+  } catch (const BadInput& error) {
+    if (is_scripted_) throw;
+    note(error.what());
+  }
+  setup_.say(message_);
+}
+
+void Viewer::write_picture_file(const fs::path& file, bool with_panels) {
+  if (has_to_draw_) draw();
+  OutputSet outputs(folder_of(file));
+  if (with_panels) screen_.show(panels(), window_.content_scale());
+  write_png(outputs.add(file.filename().string()), with_panels ? screen_.window() : screen_.picture());
+  outputs.commit();
+  screenshots_.push_back(file.string());
+}
+
+void Viewer::resize_window(int width, int height) {
+  window_.resize(width, height);
+  const auto begun = Clock::now();
+  while (!(window_.framebuffer() == Extent(width, height))) {
+    throw_if_interrupted();
+    if (Clock::now() - begun > resize_patience)
+      throw MachineLacks(fmt::format("the display gave no window of {} x {} pixels", width, height));
+    window_.wait(idle_seconds);
+  }
+}
+
+bool Viewer::reload_if_changed() {
+  if (Clock::now() - looked_at_files_ < watch_interval) return false;
+  looked_at_files_ = Clock::now();
+  if (!watch_.changed()) return false;
+  try {
+    ViewScene scene = load_view_scene(setup_.folders, setup_.lights);
+    const bool had_all_bands = state_.bands == asset_->limits().bands;
+    auto asset = std::make_unique<AssetView>(std::move(scene), setup_.look, state_);
+    asset_ = std::move(asset);
+    home_.bands = asset_->limits().bands;
+    if (had_all_bands) state_.bands = home_.bands;
+    limit(state_, asset_->limits());
+    limit(home_, asset_->limits());
+    fault_.clear();
+    note("read again, as the files changed");
+  } catch (const BadInput& error) {
+    fault_ = error.what();
+  } catch (const MachineLacks& error) {
+    fault_ = error.what();
+  }
+  setup_.say(fault_.empty() ? message_ : "not read again: " + fault_);
+  clock_.restart();
+  has_to_draw_ = true;
+  return true;
+}
+
+void Viewer::wait_for_reload() {
+  const auto begun = Clock::now();
+  while (!reload_if_changed()) {
+    throw_if_interrupted();
+    if (Clock::now() - begun > reload_patience)
+      throw BadInput(setup_.folders.name, "did not change while the script waited", "changed files",
+                     "leave out reload, or change them");
+    window_.wait(idle_seconds);
+  }
+}
+
+Camera Viewer::camera(int width, int height) const { return camera_of(state_.orbit, asset_->box(), width, height); }
+
+void Viewer::draw() {
+  const Extent size = window_.framebuffer();
+  has_to_draw_ = false;
+  if (size.width == 0 || size.height == 0) return;
+  try {
+    draw_state(size.width, size.height);
+  } catch (const BadInput& error) {  // a file that is read when it is needed
+    if (state_.technique == home_.technique && state_.show == Show::picture && !state_.mesh) throw;
+    state_.technique = home_.technique;
+    state_.show = Show::picture;
+    state_.mesh = false;
+    note(error.what());
+    draw_state(size.width, size.height);
+  }
+  screen_.show(panels(), window_.content_scale());
+  window_.swap(!is_scripted_);
+  // A few frames more, so that there is a time to tell.
+  if (!is_scripted_ && clock_.measured() < frames_to_measure) has_to_draw_ = true;
+}
+
+void Viewer::draw_state(int width, int height) {
+  if (!canvas_ || canvas_->width() != width || canvas_->height() != height) {
+    canvas_.reset();  // first, so that both need not be there at once
+    canvas_ = std::make_unique<Canvas>(width, height, setup_.look.supersample);
+    clock_.restart();
+  }
+  if (!same_kind(state_, drawn_)) clock_.restart();
+  drawn_ = state_;
+  clock_.begin();
+  asset_->draw(state_, camera(width, height), *canvas_);
+  Resolve how;
+  how.show = state_.show;
+  how.edges = state_.mesh;
+  how.picture = picture_of(setup_.look);
+  how.picture.exposure_stops = state_.exposure_stops;
+  if (state_.show == Show::difference) {
+    how.gain = static_cast<float>(state_.difference_gain);
+    how.weights = {0.2126f, 0.7152f, 0.0722f};  // of Rec. 709's primaries in luminance
+  } else if (state_.show == Show::coefficient) {
+    const auto [lowest, highest] = asset_->coefficient_range(state_.coefficient, state_.technique);
+    how.gain = static_cast<float>(1 / std::max({std::abs(lowest), std::abs(highest), 1e-30}));
+    // Of three channels the two that are not shown are dark.
+    how.weights.fill(asset_->limits().channels == 1 ? 1.f / 3 : 1.f);
+  }
+  screen_.resolve(*canvas_, how);
+  glFinish();
+  clock_.end();
+}
+
+std::vector<PlacedPanel> Viewer::panels() {
+  using Corner = PlacedPanel::Corner;
+  std::vector<PlacedPanel> panels;
+  if (state_.readout) {
+    ViewFacts facts{setup_.folders.name, clock_.steady_milliseconds(), asset_->gpu_bytes(state_), 0, 0};
+    if (state_.show == Show::coefficient)
+      std::tie(facts.coefficient_lowest, facts.coefficient_highest) =
+          asset_->coefficient_range(state_.coefficient, state_.technique);
+    panels.push_back(
+        {readout(state_, asset_->limits(), asset_->scene().forms, asset_->scene().lights, facts), Corner::upper_left});
+  }
+  if (state_.help) panels.push_back({help_panel(), Corner::upper_right});
+  if (!fault_.empty())
+    panels.push_back({message_panel("Not read again; this is the asset as it was", fault_), Corner::lower_left});
+  else if (!message_.empty())
+    panels.push_back({message_panel("", message_), Corner::lower_left});
+  return panels;
+}
+
+Json Viewer::metrics() const {
+  const Extent size = window_.framebuffer();
+  return {{"renderer", window_.renderer()}, {"width", size.width},
+          {"height", size.height},          {"technique", technique_name(state_.technique)},
+          {"frames", clock_.frames()},      {"frame_milliseconds", clock_.mean_milliseconds()},
+          {"screenshots", screenshots_}};
+}
+
+}  // namespace kiln

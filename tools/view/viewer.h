@@ -1,0 +1,85 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/options.h"
+#include "relight/light/light_settings.h"
+#include "relight/render_settings.h"
+#include "view/draw/asset_view.h"
+#include "view/draw/screen.h"
+#include "view/files/file_watch.h"
+#include "view/frame_clock.h"
+#include "view/state/keys.h"
+#include "view/state/script.h"
+#include "view/window/window.h"
+
+namespace kiln {
+
+/// What the viewer was started with.
+struct ViewerSetup {
+  AssetFolders folders;
+  LightSettings lights;
+  RenderSettings look;
+  std::string screenshots = ".";                ///< the folder they go to
+  std::function<void(const std::string&)> say;  ///< for what the terminal should know, too
+};
+
+/// Those that are of the window alone.
+OptionSet viewer_options(ViewerSetup& setup);
+
+/// The state that the settings describe. Throws WrongUsage for settings that are none, and where the asset cannot be
+/// drawn so.
+ViewState first_state(const ViewScene& scene, const LightSettings& lights, const RenderSettings& look);
+
+/// A window with an asset in it.
+class Viewer {
+ public:
+  /// Throws MachineLacks where no window can be opened.
+  Viewer(const ViewerSetup& setup, ViewScene scene, int software_threads);
+
+  /// Until the person closes it.
+  void run();
+
+  /// Step by step, then closes. Throws BadInput where a picture cannot be written.
+  void run(const std::vector<ScriptStep>& script);
+
+  /// What was drawn by what, and how fast.
+  Json metrics() const;
+
+ private:
+  void press_key(char key);
+  void take_screenshot();
+  void write_picture_file(const std::filesystem::path& file, bool with_panels);
+  void do_step(const ScriptStep& step);
+  void resize_window(int width, int height);
+  bool reload_if_changed();
+  void wait_for_reload();
+  void draw();
+  void draw_state(int width, int height);
+  void note(const std::string& message);
+  std::vector<PlacedPanel> panels();
+  Camera camera(int width, int height) const;
+
+  ViewerSetup setup_;
+  Window window_;
+  Screen screen_;
+  ViewState home_, state_, drawn_;
+  std::unique_ptr<AssetView> asset_;
+  std::unique_ptr<Canvas> canvas_;
+  FileWatch watch_;
+  FrameClock clock_;
+  bool has_to_draw_ = true;
+  bool is_closing_ = false;
+  bool is_scripted_ = false;
+  std::string message_;  // on the screen until message_until_
+  std::string fault_;    // of the last reload, until one succeeds
+  std::chrono::steady_clock::time_point message_until_, looked_at_files_;
+  std::vector<std::string> screenshots_;
+};
+
+}  // namespace kiln
