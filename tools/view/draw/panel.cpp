@@ -11,7 +11,7 @@ namespace {
 
 constexpr float title_brightness = 1.f, value_brightness = 0.92f, label_brightness = 0.6f;
 constexpr std::uint8_t ground = 18;
-constexpr float ground_alpha = 0.72f;
+constexpr float ground_alpha = 0.78f;
 
 /// How much of a pixel lies within a rectangle of that size with round corners.
 float rounded_share(int i, int j, int width, int height, double radius) {

@@ -31,6 +31,12 @@ std::string with_commas(std::uint64_t number) {
   return digits;
 }
 
+std::string describe_environment(const LightChoice& light, const GivenLights& given) {
+  if (!light.environment) return "off";
+  const double turn_degrees = environment_turn_degrees(light, given);
+  return turn_degrees == 0 ? "on" : fmt::format("on, turned by {:.0f}", turn_degrees);
+}
+
 std::string shown(const ViewState& state, const ViewLimits& limits, const ViewFacts& facts) {
   switch (state.show) {
     case Show::normals:
@@ -65,7 +71,7 @@ Panel readout(const ViewState& state, const ViewLimits& limits, const AssetForms
   row("Shading", is_deferred ? "deferred" : "forward");
   row("Shows", shown(state, limits, facts));
   row("Light", describe(state.light, lights));
-  if (limits.has_environment) row("Environment", state.light.environment ? "on" : "off");
+  if (limits.has_environment) row("Environment", describe_environment(state.light, lights));
   row("Window", window_name(state.light.window));
   row("Bands", fmt::format("{} of {}", state.bands, limits.bands));
   row("Triangles", with_commas(asset.mesh.triangles.size()));

@@ -99,9 +99,8 @@ LightChoice given_choice(const GivenLights& given, LightWindow window) {
   choice.window = window;
   choice.environment = given.environment.has_value();
   const auto light = main_light(given.specs);
-  if (light == given.specs.end()) {
-    if (given.environment) choice.azimuth_degrees = choice.elevation_degrees = 0;
-  } else if (light->kind == Kind::sphere) {
+  if (light == given.specs.end()) return choice;
+  if (light->kind == Kind::sphere) {
     const Eigen::Vector3d place = from_centre(*light, given.box);
     choice.azimuth_degrees = std::atan2(place.x(), place.z()) / degree;
     choice.elevation_degrees = std::atan2(place.y(), std::hypot(place.x(), place.z())) / degree;
@@ -110,6 +109,11 @@ LightChoice given_choice(const GivenLights& given, LightWindow window) {
     choice.elevation_degrees = light->elevation_degrees;
   }
   return choice;
+}
+
+double environment_turn_degrees(const LightChoice& choice, const GivenLights& given) {
+  const bool is_main = choice.preset == LightPreset::given && main_light(given.specs) == given.specs.end();
+  return is_main ? std::remainder(choice.azimuth_degrees - LightChoice().azimuth_degrees, 360) : 0;
 }
 
 SceneLights lights_of(const LightChoice& choice, const GivenLights& given) {
@@ -130,7 +134,7 @@ SceneLights lights_of(const LightChoice& choice, const GivenLights& given) {
     move_light(lights.specs[static_cast<std::size_t>(light - given.specs.begin())], choice.azimuth_degrees,
                choice.elevation_degrees, given.box);
   } else if (lights.environment) {
-    const Eigen::AngleAxisd turn(choice.azimuth_degrees * degree, Eigen::Vector3d::UnitY());
+    const Eigen::AngleAxisd turn(environment_turn_degrees(choice, given) * degree, Eigen::Vector3d::UnitY());
     lights.environment = ShRotation(lights.environment->bands, turn.toRotationMatrix())(*lights.environment);
   }
   return lights;

@@ -21,9 +21,11 @@ struct GivenLights {
 LightChoice given_choice(const GivenLights& given, LightWindow window);
 
 /// The lights of a choice. The main light, which azimuth and elevation are of, is the first of the given ones that has
-/// a direction; a ball goes around the box' centre, as far away as it was. Where none has, the environment is turned by
-/// the azimuth.
+/// a direction; a ball goes around the box' centre, as far away as it was. Where none has, the environment is turned.
 SceneLights lights_of(const LightChoice& choice, const GivenLights& given);
+
+/// How far about +Y a choice turns the environment from where it was given; 0 where the main light is another.
+double environment_turn_degrees(const LightChoice& choice, const GivenLights& given);
 
 /// What they are to an asset at the origin, windowed, of which only the first `bands` bands are left.
 AssetLight light_for_asset(const SceneLights& lights, int bands, const PrtAsset& asset, const IncidentSamples& samples);

@@ -32,7 +32,7 @@ enum class LightPreset {
 /// What can be told of the lights without the asset.
 struct LightChoice {
   LightPreset preset = LightPreset::given;
-  double azimuth_degrees = 45;  ///< of the main light; of an environment alone, how far it was turned
+  double azimuth_degrees = 45;  ///< of the main light
   double elevation_degrees = 30;
   bool environment = false;
   LightWindow window = LightWindow::hann;
