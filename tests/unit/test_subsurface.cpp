@@ -9,6 +9,7 @@
 #include "bake/scene/vertex_receivers.h"
 #include "bake/subsurface/kernel_tables.h"
 #include "bake/subsurface/scattering.h"
+#include "bake/subsurface/subsurface.h"
 #include "bake/subsurface/surface_samples.h"
 #include "shapes.h"
 
@@ -354,6 +355,49 @@ TEST(Subsurface, VerticesHaveTheMeshsArea) {
   const TriangleMesh mesh = icosphere(3, 2);
   const std::vector<float> areas = vertex_areas(mesh, receivers_on_vertices(mesh).receivers);
   EXPECT_NEAR(std::accumulate(areas.begin(), areas.end(), 0.0), surface_area(mesh), 1e-4);
+}
+
+TEST(Subsurface, NamedMaterialsHaveTheirProfiles) {
+  SubsurfaceSettings settings;
+  EXPECT_TRUE(subsurface_profiles(settings).empty());
+  settings.material = "marble";
+  const std::vector<ScatterProfile> dipole = subsurface_profiles(settings);
+  ASSERT_EQ(dipole.size(), 3u);
+  EXPECT_EQ(dipole[0], marble);
+  settings.model = SubsurfaceModel::diffusion;
+  const std::vector<ScatterProfile> diffusion = subsurface_profiles(settings);
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(diffusion[c].total(), dipole[c].total(), 1e-12);
+  EXPECT_EQ(diffusion[0], ScatterProfile::diffusion(marble.total(), 1 / 2.1921));
+  settings = {.material = "custom", .scattering = "2.19", .absorption = "0.0021", .eta = 1.5};
+  EXPECT_EQ(subsurface_profiles(settings), std::vector<ScatterProfile>{marble});
+}
+
+TEST(Subsurface, TexelsScatterInMillimetres) {
+  // A square of two units as a chart of 80 texels a side, of which the high mesh has 1.2 times the area.
+  const TriangleMesh mesh = shapes::plane(4, 2);
+  const TexelReceivers receivers = receivers_on_low(mesh, 100, 100, nullptr);
+  std::vector<TransferVectors> even = {TransferVectors(receivers.texels.size(), 1)};
+  std::fill(even[0].values.begin(), even[0].values.end(), 0.5f);
+  SubsurfaceSettings settings = {.material = "custom", .scattering = "8,4,2", .absorption = "0.4,0.2,0.1"};
+  settings.mm_per_unit = 50;  // 100 mm, mean free paths under a millimetre
+  std::vector<TransferVectors> channels = even;
+  const SubsurfaceReport report = scatter_beneath({receivers, mesh, false, 4.8}, settings, channels);
+  EXPECT_NEAR(report.area_correction, 1.2, 1e-4);
+  EXPECT_NEAR(report.area_mm2, 4.8 * 50 * 50, 1);
+  ASSERT_EQ(channels.size(), 3u);
+  // The same albedo in all three, so the same reflectance; texels that a fifth too much area stands on matter little,
+  // because what is near is scaled to a plane's.
+  const auto middle = static_cast<std::size_t>(
+      std::find(receivers.texels.begin(), receivers.texels.end(), 50u * 100 + 50) - receivers.texels.begin());
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(report.reflectance[c], report.reflectance[0], 1e-12);
+    EXPECT_NEAR(channels[c].plane(0)[middle], 0.5 * report.reflectance[c], 0.1 * report.reflectance[c]);
+  }
+  // Another mesh's area is not this surface's.
+  channels = even;
+  EXPECT_EQ(scatter_beneath({receivers, mesh, false, 40}, settings, channels).area_correction, 1);
+  for (std::size_t c = 0; c < 3; ++c)
+    EXPECT_NEAR(channels[c].plane(0)[middle], 0.5 * report.reflectance[c], 0.01 * report.reflectance[c]);
 }
 
 }  // namespace
