@@ -25,6 +25,12 @@ env -u DISPLAY -u WAYLAND_DISPLAY "$programs/kiln-view" hare 2>message || status
 [ $status = 5 ] || fail "without a display the exit status is $status, not 5"
 grep -q "no display" message || fail "without a display it says: $(cat message)"
 
+echo "== without OpenGL 4.5"
+status=0
+MESA_GL_VERSION_OVERRIDE=4.2 display "$programs/kiln-view" hare 2>message || status=$?
+[ $status = 5 ] || fail "without OpenGL 4.5 the exit status is $status, not 5"
+grep -q "OpenGL 4.5" message || fail "without OpenGL 4.5 it says: $(cat message)"
+
 echo "== the same pictures as kiln-render"
 look=(--light 60,35,1,0.8,0.5 --camera -30,15 --albedo 0.7 --exposure 0.5)
 cat >script <<'EOF'
@@ -73,6 +79,14 @@ same shots/hare_001.png back.png 0
 for name in compressed phong vertex difference; do differ $name.png textured.png 3; done
 differ turned.png back.png 3
 differ keys.png readout.png 3
+
+echo "== a file that is read when it is needed"
+cp -r hare torn
+head -c 100 hare/prt/normal.png >torn/prt/normal.png
+printf 'screenshot before.png\nkey n\nscreenshot after.png\nkey 2\nscreenshot after2.png\n' >script
+display "$programs/kiln-view" torn --width 240 --height 180 --script script || fail "a torn normal map ended it with status $?"
+same after.png before.png 0
+same after2.png before.png 0
 
 echo "== files that change"
 cat >script <<'EOF'

@@ -47,6 +47,17 @@ TEST(Extent, ZeroIsAutomaticAndSquare) {
   EXPECT_THROW(options.find("size")->set("32x0"), WrongUsage);
 }
 
+TEST(OptionSet, LeavesOutThoseOfSomeNames) {
+  int frames = 1, width = 768;
+  OptionSet options;
+  options.integer("frames", frames, 1, 10, "Of a turntable").integer("width", width, 1, 8192, "Pixels");
+  const OptionSet rest = options.without({"frames", "height"});
+  EXPECT_EQ(rest.find("frames"), nullptr);
+  ASSERT_NE(rest.find("width"), nullptr);
+  rest.find("width")->set("640");
+  EXPECT_EQ(width, 640);
+}
+
 TEST(Colours, AreOneNumberOrThree) {
   EXPECT_EQ(parse_colours("0.5"), (std::array<double, 3>{0.5, 0.5, 0.5}));
   EXPECT_EQ(parse_colours("1, 2e-3,0"), (std::array<double, 3>{1, 2e-3, 0}));

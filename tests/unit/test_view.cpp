@@ -306,6 +306,7 @@ TEST(AssetFolders, AreFound) {
   EXPECT_EQ(find_asset_folders(asset / "prt" / "", "").name, "hare");
   EXPECT_EQ(find_asset_folders(asset / "prt", "").compressed, "");
   EXPECT_EQ(find_asset_folders(asset / "small", "").plain, "");
+  EXPECT_EQ(find_asset_folders(asset / "small", "").name, "hare");
   EXPECT_THROW(find_asset_folders(asset / "small", asset / "tiny"), WrongUsage);
   EXPECT_THROW(find_asset_folders(scratch.folder(), ""), BadInput);
   EXPECT_THROW(find_asset_folders(asset / "prt" / "ranges.json", ""), BadInput);
@@ -378,6 +379,18 @@ TEST(Panel, ColumnsAreAligned) {
       ink += picture.at(i, j, 0) > 150;
     }
   EXPECT_GT(ink, 20);
+}
+
+TEST(Panel, AStripFitsAndLosesNothing) {
+  const Panel panel{"hare", {{"Technique", "Phong"}, {"Light", "directional 45, 30"}, {"Bands", "5 of 5"}}};
+  EXPECT_EQ(strip_of(panel, 10000, 1).rows.size(), 1u);
+  const Panel strip = strip_of(panel, 240, 1);
+  EXPECT_GT(strip.rows.size(), 1u);
+  EXPECT_LE(panel_picture(strip, 1).width(), 240);
+  std::string all;
+  for (const PanelRow& row : strip.rows) all += row.value + " ";
+  for (const char* word : {"hare", "Technique: Phong", "Light: directional 45, 30", "Bands: 5 of 5"})
+    EXPECT_NE(all.find(word), std::string::npos) << all;
 }
 
 /// A sphere on the GPU, as the window would show it.

@@ -26,6 +26,7 @@ constexpr double idle_seconds = 0.1;
 constexpr auto reload_patience = std::chrono::seconds(300);
 constexpr auto resize_patience = std::chrono::seconds(60);
 constexpr int frames_to_measure = 8;
+constexpr double narrow_window_pixels = 1000;  // at 96 dots per inch: too narrow for a panel beside the asset
 
 std::vector<fs::path> watched(const AssetFolders& folders) {
   std::vector<fs::path> paths;
@@ -286,8 +287,11 @@ std::vector<PlacedPanel> Viewer::panels() {
     if (state_.show == Show::coefficient)
       std::tie(facts.coefficient_lowest, facts.coefficient_highest) =
           asset_->coefficient_range(state_.coefficient, state_.technique);
-    panels.push_back(
-        {readout(state_, asset_->limits(), asset_->scene().forms, asset_->scene().lights, facts), Corner::upper_left});
+    Panel panel = readout(state_, asset_->limits(), asset_->scene().forms, asset_->scene().lights, facts);
+    const double scale = window_.content_scale();
+    const int width = window_.framebuffer().width;
+    if (width < narrow_window_pixels * scale) panel = strip_of(panel, width - 2 * panel_margin(scale), scale);
+    panels.push_back({std::move(panel), Corner::upper_left});
   }
   if (state_.help) panels.push_back({help_panel(), Corner::upper_right});
   if (!fault_.empty())

@@ -21,6 +21,9 @@ struct Panel {
   bool operator==(const Panel&) const;
 };
 
+/// The same in as few lines as fit `width` pixels: for windows that have no room beside the asset.
+Panel strip_of(const Panel& panel, int width, double scale);
+
 /// The panel as a picture (RGBA, straight alpha): bright text in two aligned columns on dark, half-transparent ground
 /// with round corners. `scale` is the display's, 1 for about 96 dots per inch. Throws MachineLacks without the font.
 Image<std::uint8_t> panel_picture(const Panel& panel, double scale);

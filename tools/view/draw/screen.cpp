@@ -37,6 +37,8 @@ GlTexture make_byte_texture(int width, int height, const std::uint8_t* values) {
 
 }  // namespace
 
+int panel_margin(double scale) { return static_cast<int>(std::lround(14 * scale)); }
+
 Screen::Screen()
     : framebuffer_(make_framebuffer()),
       no_vertices_(make_vertex_array()),
@@ -101,7 +103,7 @@ void Screen::draw_panel(DrawnPanel& drawn, const PlacedPanel& placed, double sca
              make_byte_texture(picture.width(), picture.height(), picture.values().data())};
   }
   using Corner = PlacedPanel::Corner;
-  const int margin = static_cast<int>(std::lround(14 * scale));
+  const int margin = panel_margin(scale);
   const int left = placed.corner == Corner::upper_right ? width_ - margin - drawn.width : margin;
   const int bottom = placed.corner == Corner::lower_left ? margin : height_ - margin - drawn.height;
   glViewport(left, bottom, drawn.width, drawn.height);

@@ -32,6 +32,9 @@ struct PlacedPanel {
   Corner corner = Corner::upper_left;
 };
 
+/// How far panels are from the window's border, pixels.
+int panel_margin(double scale);
+
 /// Finishes pictures, and shows them in the window with panels over them. Needs the GL context in which it was made.
 class Screen {
  public:

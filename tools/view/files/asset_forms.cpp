@@ -30,13 +30,14 @@ fs::path compressed_folder_in(const fs::path& folder) {
   return found.empty() ? fs::path() : *std::min_element(found.begin(), found.end());
 }
 
-/// "bunny" of out/bunny/prt, of out/bunny and of out/bunny/.
+/// "bunny" of out/bunny, of out/bunny/prt, and of other folders beside prt/.
 std::string name_of(const fs::path& folder) {
   std::error_code error;
   fs::path whole = fs::weakly_canonical(folder, error);
   if (whole.empty()) whole = folder;
   if (!whole.has_filename()) whole = whole.parent_path();
-  return (whole.filename() == "prt" ? whole.parent_path() : whole).filename().string();
+  const bool is_part = is_asset_folder(whole) && is_asset_folder(whole.parent_path() / "prt");
+  return (is_part ? whole.parent_path() : whole).filename().string();
 }
 
 /// Throws BadInput where the asset has no colours.

@@ -50,7 +50,7 @@ std::string shown(const ViewState& state, const ViewLimits& limits, const ViewFa
       const int l = static_cast<int>(std::sqrt(i + 0.5)), m = i - l * (l + 1);
       const std::string channel =
           limits.channels > 1 ? fmt::format(", channel {}", state.coefficient / count) : std::string();
-      return fmt::format("t{} (l {}, m {}){}: {:.3f} (blue) to {:.3f} (red)", i, l, m, channel,
+      return fmt::format("t{} (l {}, m {}){}, {:.3f} to {:.3f}, blue below 0", i, l, m, channel,
                          facts.coefficient_lowest, facts.coefficient_highest);
     }
     case Show::picture:
