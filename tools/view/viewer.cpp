@@ -26,7 +26,9 @@ constexpr double idle_seconds = 0.1;
 constexpr auto reload_patience = std::chrono::seconds(300);
 constexpr auto resize_patience = std::chrono::seconds(60);
 constexpr int frames_to_measure = 8;
-constexpr double narrow_window_pixels = 1000;  // at 96 dots per inch: too narrow for a panel beside the asset
+// An asset is about as wide as the window is high. What is left on both sides, at 96 dots per inch, for a panel beside
+// it.
+constexpr double room_for_panel_pixels = 440;
 
 std::vector<fs::path> watched(const AssetFolders& folders) {
   std::vector<fs::path> paths;
@@ -282,15 +284,16 @@ void Viewer::draw_state(int width, int height) {
 std::vector<PlacedPanel> Viewer::panels() {
   using Corner = PlacedPanel::Corner;
   std::vector<PlacedPanel> panels;
-  if (state_.readout) {
+  const double scale = window_.content_scale();
+  const Extent window = window_.framebuffer();
+  const bool is_narrow = window.width - window.height < room_for_panel_pixels * scale;
+  if (state_.readout && !(state_.help && is_narrow)) {
     ViewFacts facts{setup_.folders.name, clock_.steady_milliseconds(), asset_->gpu_bytes(state_), 0, 0};
     if (state_.show == Show::coefficient)
       std::tie(facts.coefficient_lowest, facts.coefficient_highest) =
           asset_->coefficient_range(state_.coefficient, state_.technique);
     Panel panel = readout(state_, asset_->limits(), asset_->scene().forms, asset_->scene().lights, facts);
-    const double scale = window_.content_scale();
-    const int width = window_.framebuffer().width;
-    if (width < narrow_window_pixels * scale) panel = strip_of(panel, width - 2 * panel_margin(scale), scale);
+    if (is_narrow) panel = strip_of(panel, window.width - 2 * panel_margin(scale), scale);
     panels.push_back({std::move(panel), Corner::upper_left});
   }
   if (state_.help) panels.push_back({help_panel(), Corner::upper_right});

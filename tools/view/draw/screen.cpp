@@ -1,5 +1,6 @@
 #include "view/draw/screen.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "gpu/program.h"
@@ -33,6 +34,16 @@ GlTexture make_byte_texture(int width, int height, const std::uint8_t* values) {
   glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   return texture;
+}
+
+/// The panel at that scale, or smaller where the window is too small for it.
+Image<std::uint8_t> fitting_picture(const Panel& panel, double scale, const Extent& window) {
+  Image<std::uint8_t> picture = panel_picture(panel, scale);
+  const int margins = 2 * panel_margin(scale);
+  const double share = std::min(static_cast<double>(window.width - margins) / picture.width(),
+                                static_cast<double>(window.height - margins) / picture.height());
+  constexpr double least_share = 0.5;  // text that is smaller cannot be read
+  return share < 1 ? panel_picture(panel, std::max(share, least_share) * scale) : picture;
 }
 
 }  // namespace
@@ -97,10 +108,12 @@ Image<std::uint8_t> Screen::picture() const {
 }
 
 void Screen::draw_panel(DrawnPanel& drawn, const PlacedPanel& placed, double scale) const {
-  if (drawn.texture.name() == 0 || !(drawn.panel == placed.panel) || drawn.scale != scale) {
-    const Image<std::uint8_t> picture = panel_picture(placed.panel, scale);
-    drawn = {placed.panel, scale, picture.width(), picture.height(),
-             make_byte_texture(picture.width(), picture.height(), picture.values().data())};
+  const Extent window(width_, height_);
+  if (drawn.texture.name() == 0 || !(drawn.panel == placed.panel) || drawn.scale != scale || drawn.window != window) {
+    const Image<std::uint8_t> picture = fitting_picture(placed.panel, scale, window);
+    drawn = {placed.panel,     scale,
+             window,           picture.width(),
+             picture.height(), make_byte_texture(picture.width(), picture.height(), picture.values().data())};
   }
   using Corner = PlacedPanel::Corner;
   const int margin = panel_margin(scale);

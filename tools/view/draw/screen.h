@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/options.h"
 #include "gpu/gl_objects.h"
 #include "image/image.h"
 #include "relight/output/picture.h"
@@ -56,6 +57,7 @@ class Screen {
   struct DrawnPanel {
     Panel panel;
     double scale = 1;
+    Extent window;  ///< that it was made to fit
     int width = 0, height = 0;
     GlTexture texture;
   };
