@@ -1,6 +1,7 @@
 #include "raycast/gather.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -79,7 +80,7 @@ void add_gathered(const RayScene& scene, const BeamScene* beams, const BeamRecei
                                weights);
         wanted = weights.facing & ~weights.lit;
       }
-      bool any = false;
+      std::uint32_t hit_lanes = 0;
       for (std::size_t d = 0; d < block.size(); ++d) {
         if ((wanted >> d & 1) == 0) continue;
         float cosines[beam_lanes];
@@ -98,10 +99,13 @@ void add_gathered(const RayScene& scene, const BeamScene* beams, const BeamRecei
           add_weighted(radiance.values.data() + a * width, radiance.values.data() + b * width,
                        radiance.values.data() + c * width, cosine * (1 - u - v), cosine * u, cosine * v,
                        worker.sums.data() + lane * width, width);
-          any = true;
+          hit_lanes |= 1u << lane;
         }
       }
-      if (any) move_block(worker.sums.data(), worker.totals.data(), count * width);
+      for (; hit_lanes != 0; hit_lanes &= hit_lanes - 1) {
+        const std::size_t at = static_cast<std::size_t>(std::countr_zero(hit_lanes)) * width;
+        move_block(worker.sums.data() + at, worker.totals.data() + at, width);
+      }
     }
     for (std::size_t i = 0; i < width; ++i) {
       const auto plane = sums.plane(static_cast<int>(i));
