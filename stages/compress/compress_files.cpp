@@ -159,7 +159,10 @@ EncodedFiles encode_planes(const PrtAsset& asset, int bits, PngEffort effort) {
 Json save_compressed(OutputSet& outputs, const fs::path& input, const PrtAsset& asset, const CompressResult& result) {
   copy_into(outputs, input, asset.mesh_file);
   if (!asset.normals_file.empty()) copy_into(outputs, input, asset.normals_file);
-  if (!asset.albedo.file.empty()) copy_into(outputs, input, asset.albedo.file);
+  if (!asset.albedo.file.empty())
+    copy_into(outputs, input, asset.albedo.file);
+  else
+    outputs.remove_stale("albedo.png");
   for (const auto& [name, bytes] : result.files) {
     const fs::path file = outputs.add(name);
     std::ofstream stream(file, std::ios::binary);

@@ -93,6 +93,7 @@ TEST_F(AssetAlbedo, SurvivesCompression) {
     write({0.5, 0.25, 0.125});
     compress_as(components);
     EXPECT_EQ(load_prt_asset(folder("small")).albedo.constant, Eigen::Vector3f(0.5f, 0.25f, 0.125f));
+    EXPECT_FALSE(fs::exists(folder("small") / "albedo.png")) << "of the run before";
   }
 }
 
