@@ -3,10 +3,15 @@
 layout(location = 3) uniform float asset_number;  // from 1
 
 in vec2 surface_uv;
+layout(location = 0) out vec4 uv_and_asset;
+
+#if PRT_SAMPLES == 1
+void main() {
+  uv_and_asset = vec4(surface_uv, asset_number, 1.0);
+}
+#else
 in vec4 surface_contributions_low;
 in vec4 surface_contributions_high;
-
-layout(location = 0) out vec4 uv_and_asset;
 layout(location = 1) out vec4 contributions_low;
 layout(location = 2) out vec4 contributions_high;
 
@@ -15,3 +20,4 @@ void main() {
   contributions_low = surface_contributions_low;
   contributions_high = surface_contributions_high;
 }
+#endif

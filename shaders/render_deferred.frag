@@ -3,6 +3,8 @@
 #include "render_albedo.glsl"
 #include "render_contributions.glsl"
 
+layout(early_fragment_tests) in;  // the stencil, before the shader
+
 layout(location = 3) uniform float asset_number;
 layout(binding = 6) uniform sampler2D uv_and_asset;
 layout(binding = 7) uniform sampler2D contributions_low;

@@ -4,8 +4,12 @@
 #include "render_contributions.glsl"
 
 in vec2 surface_uv;
+#if PRT_SAMPLES > 1
 in vec4 surface_contributions_low;
 in vec4 surface_contributions_high;
+#else
+const vec4 surface_contributions_low = vec4(1.0), surface_contributions_high = vec4(0.0);
+#endif
 
 layout(location = 0) out vec4 radiance_and_coverage;
 

@@ -10,7 +10,7 @@ out vec2 surface_uv;
 #ifdef PHONG
 out vec3 surface_position;
 out vec3 surface_normal;
-#else
+#elif PRT_SAMPLES > 1
 out vec4 surface_contributions_low;
 out vec4 surface_contributions_high;
 #endif
@@ -20,7 +20,7 @@ void main() {
 #ifdef PHONG
   surface_position = position_object;
   surface_normal = normal_object;
-#else
+#elif PRT_SAMPLES > 1
   surface_contributions_low = contributions_low;
   surface_contributions_high = contributions_high;
 #endif

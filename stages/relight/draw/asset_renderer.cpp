@@ -63,7 +63,7 @@ const GlProgram& AssetRenderer::program(Pass pass) {
       made = load_program({"render_surface.vert", "render_prt.frag"}, defines);
       break;
     case Pass::appearance:
-      made = load_program({"render_surface.vert", "render_appearance.frag"}, {});
+      made = load_program({"render_surface.vert", "render_appearance.frag"}, defines);
       break;
     case Pass::deferred:
       made = load_program({"render_deferred.vert", "render_deferred.frag"}, defines);

@@ -4,7 +4,7 @@
 
 namespace kiln {
 
-/// Where pictures are drawn: linear radiance and coverage in float32, and depth.
+/// Where pictures are drawn: linear radiance and coverage in float32, depth, and a stencil for deferred shading.
 class Frame {
  public:
   Frame(int width, int height);
@@ -25,21 +25,32 @@ class Frame {
   GlFramebuffer framebuffer_;
 };
 
-/// The first pass of deferred shading: uv and the asset's number of every sample, contributions of incident-light
-/// samples (16-bit floats) where assets have several, and depth.
+/// The first pass of deferred shading of a frame: uv and the asset's number of every sample, contributions of
+/// incident-light samples (16-bit floats) where assets have several. Depth and stencil are the frame's, which must
+/// outlive this.
 class AppearanceFrame {
  public:
-  AppearanceFrame(int width, int height, bool with_contributions);
+  AppearanceFrame(const Frame& frame, bool with_contributions);
 
   /// Binds and clears it, with the state of Frame::begin.
   void begin() const;
 
-  /// Binds its textures for AssetRenderer::shade_appearance, and `into`, cleared, without a depth test.
-  void begin_shading(const Frame& into) const;
+  /// Of the draws that follow, until begin_shading: the asset's number goes into the stencil. Assets are numbered
+  /// from 1.
+  void begin_asset(int number) const;
+
+  /// Binds the frame, cleared but for its depth, and the textures that AssetRenderer::shade_appearance reads.
+  void begin_shading() const;
+
+  /// Only the samples of that asset are shaded: the stencil keeps the shader from running for others.
+  void begin_shading_asset(int number) const;
+
+  /// Back to the state of Frame::begin.
+  void end_shading() const;
 
  private:
-  int width_, height_;
-  GlTexture uv_and_asset_, contributions_low_, contributions_high_, depth_;
+  const Frame& frame_;
+  GlTexture uv_and_asset_, contributions_low_, contributions_high_;
   GlFramebuffer framebuffer_;
 };
 
