@@ -114,7 +114,7 @@ Json albedo_entry(const DetailMaps& detail, const MaterialSettings& material) {
   const Eigen::Vector3f constant =
       given ? Eigen::Vector3f((*given)[0], (*given)[1], (*given)[2]) : detail.constant_albedo;
   if (!given && !detail.albedo.values().empty()) return albedo_name;
-  return constant.isOnes(0) ? Json() : Json{constant.x(), constant.y(), constant.z()};
+  return given || detail.albedo_known ? Json{constant.x(), constant.y(), constant.z()} : Json();
 }
 
 Json describe_subsurface(const SubsurfaceReport& report) {
@@ -133,7 +133,7 @@ Json describe_subsurface(const SubsurfaceReport& report) {
 /// Gives what came of the seams, for bake.json.
 Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeResult& result,
                     const BakeSettings& settings) {
-  AssetFiles files{"atlas.drc", "", scene.albedo};
+  AssetFiles files{"atlas.drc", "", scene.normal_space, scene.albedo};
   fs::copy_file(paths.atlas, outputs.add(files.mesh), fs::copy_options::overwrite_existing);
   if (!paths.detail.empty()) {
     files.normals = "normal.png";
@@ -174,7 +174,10 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
   std::optional<DetailMaps> detail;
   if (!paths.detail.empty()) {
     detail = load_detail_maps(paths.detail, atlas);
-    if (!settings.bake_albedo && !settings.subsurface.wanted()) scene.albedo = albedo_entry(*detail, settings.material);
+    // What is in the transfer must not be multiplied again: as if the surface were white.
+    const bool within = settings.bake_albedo || settings.subsurface.wanted();
+    scene.albedo = within ? Json{1, 1, 1} : albedo_entry(*detail, settings.material);
+    scene.normal_space = detail->normal_space;
   }
 
   if (settings.receiver == BakeReceiver::high) {

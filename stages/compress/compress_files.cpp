@@ -42,10 +42,11 @@ void add_names(Json& head, const PrtAsset& asset) {
   head["basis"] = basis_of_files;
   head["mesh"] = asset.mesh_file;
   if (!asset.normals_file.empty()) head["normals"] = asset.normals_file;
+  if (asset.normal_space == NormalSpace::tangent) head["normal_space"] = "tangent";
   const Eigen::Vector3f& constant = asset.albedo.constant;
   if (!asset.albedo.file.empty())
     head["albedo"] = asset.albedo.file;
-  else if (!constant.isOnes(0))
+  else if (asset.albedo.known)
     head["albedo"] = {constant.x(), constant.y(), constant.z()};
 }
 

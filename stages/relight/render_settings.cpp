@@ -20,6 +20,7 @@ OptionSet render_options(RenderSettings& settings) {
                {"compressed", TechniqueChoice::compressed},
                {"all", TechniqueChoice::all}},
               "How to shade; auto is what the asset was made for, all a sheet of every technique it can be drawn by")
+      .toggle("side-by-side", settings.side_by_side, "Each asset by itself on a sheet, with its folder's name")
       .integer_or_auto("incident-samples", settings.incident_samples, 1, most_incident_samples,
                        "Points around each asset at which the incident light is computed; auto: 8 if a light is a "
                        "sphere, else 1")
@@ -36,7 +37,10 @@ OptionSet render_options(RenderSettings& settings) {
       .integer("height", settings.height, 1, 8192, "Of the picture, pixels")
       .integer("supersample", settings.supersample, 1, 8,
                "Samples per pixel along each axis, averaged in linear radiance")
-      .text("albedo", settings.albedo, "Linear reflectance of 0 to 1: one number or R,G,B")
+      .text("albedo", settings.albedo,
+            "Linear reflectance of 0 to 1, one number or R,G,B, times the asset's own; auto: 1 where the asset knows "
+            "its own, "
+            "else 0.8")
       .text("background", settings.background,
             "Linear colour behind the asset: none (transparent), one number or R,G,B")
       .number("exposure", settings.exposure_stops, -20, 20, "Doubles the brightness of a PNG so many times")
@@ -64,7 +68,7 @@ std::vector<SceneView> views_of(const RenderSettings& settings, const BoundingBo
   view.width = settings.width;
   view.height = settings.height;
   view.supersample = settings.supersample;
-  view.look.albedo = parse_colour("albedo", settings.albedo, 0, 1);
+  if (settings.albedo != "auto") view.look.albedo = parse_colour("albedo", settings.albedo, 0, 1);
   view.look.specular = static_cast<float>(settings.specular);
   view.look.shininess = static_cast<float>(settings.shininess);
   view.shading = settings.shading;

@@ -17,22 +17,28 @@ enum class TechniqueChoice { automatic, phong, normal_map, vertex_prt, textured_
 /// How assets are drawn.
 struct RenderSettings {
   TechniqueChoice technique = TechniqueChoice::automatic;
-  int incident_samples = 0;  ///< points of incident light around each asset; 0: 8 where a light is local, else 1
+  bool side_by_side = false;  ///< several assets, each by itself on a sheet
+  int incident_samples = 0;   ///< points of incident light around each asset; 0: 8 where a light is local, else 1
   Shading shading = Shading::forward;
   double specular = 0;  ///< of the Phong techniques: reflectance of the highlight
   double shininess = 32;
   std::string camera = "20,12";  ///< azimuth and elevation, degrees
   double field_of_view_degrees = 30;
-  int frames = 1;              ///< of a turntable
-  int width = 768;             ///< pixels
-  int height = 768;            ///< pixels
-  int supersample = 2;         ///< samples per pixel along each axis
-  std::string albedo = "0.8";  ///< linear, one number or R,G,B
+  int frames = 1;               ///< of a turntable
+  int width = 768;              ///< pixels
+  int height = 768;             ///< pixels
+  int supersample = 2;          ///< samples per pixel along each axis
+  std::string albedo = "auto";  ///< linear, one number or R,G,B, times the asset's own
   std::string background = "none";
   double exposure_stops = 0;
   ToneCurve tone = ToneCurve::srgb;
   std::string gl_device = "auto";
 };
+
+/// Whether the picture is a sheet of pictures.
+inline bool is_sheet(const RenderSettings& settings) {
+  return settings.side_by_side || settings.technique == TechniqueChoice::all;
+}
 
 OptionSet render_options(RenderSettings& settings);
 

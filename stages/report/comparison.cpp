@@ -194,13 +194,11 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   view.albedo = static_cast<float>(albedo);
   view.surface_albedo = high_albedo(asset, high_file, high);
   view.surroundings = surroundings_of(asset, high);
-  std::vector<LightCoefficients> coefficients;
-  for (const LightSpec& spec : specs)
-    coefficients.push_back(light_coefficients(std::span(&spec, 1), asset.bands, LightWindow::hann));
+  view.bands = asset.bands;
   // Not the bake's own directions: an error of theirs must not cancel.
   const std::vector<Eigen::Vector3f> directions =
       sample_directions(Sampling::fibonacci, settings.directions, static_cast<std::uint64_t>(run.seed) + 1);
-  std::vector<Image<float>> references = reference_pictures(high, view, coefficients, directions, run.progress);
+  std::vector<Image<float>> references = reference_pictures(high, view, specs, directions, run.progress);
   comparison.reference_seconds = reference_watch.seconds();
 
   for (std::size_t k = 0; k < lights.size(); ++k) {

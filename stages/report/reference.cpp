@@ -59,10 +59,17 @@ TriangleMesh joined(const TriangleMesh& first, const TriangleMesh& second) {
   return both;
 }
 
+/// What comes in at a point.
+LightCoefficients incident_light(const LightSpec& light, const ReferenceView& view, const Eigen::Vector3f& point) {
+  LightCoefficients incident = light_coefficients(light, view.bands, point.cast<double>());
+  apply_window(incident, view.window);
+  return incident;
+}
+
 }  // namespace
 
 std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
-                                             std::span<const LightCoefficients> lights,
+                                             std::span<const LightSpec> lights,
                                              std::span<const Eigen::Vector3f> directions,
                                              const ProgressFunction& progress) {
   const VisiblePoints points = visible_points(RayScene(mesh), mesh, view);
@@ -77,16 +84,18 @@ std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const Ref
     const std::size_t size = std::min(batch_receivers, count - begin);
     const Receivers receivers{std::span(points.positions).subspan(begin, size),
                               std::span(points.normals).subspan(begin, size)};
-    const TransferVectors transfer = transfer_by_rays(scene, receivers, directions, lights.front().bands, ray_offset);
+    const TransferVectors transfer = transfer_by_rays(scene, receivers, directions, view.bands, ray_offset);
     for (std::size_t light = 0; light < lights.size(); ++light) {
+      const bool local = lights[light].kind == LightSpec::Kind::sphere;
+      LightCoefficients incident = incident_light(lights[light], view, Eigen::Vector3f::Zero());
       for (std::size_t r = 0; r < size; ++r) {
+        if (local) incident = incident_light(lights[light], view, receivers.positions[r]);
         const std::size_t pixel = points.pixels[begin + r];
         const std::span<float> values =
             pictures[light].pixel(static_cast<int>(pixel % view.width), static_cast<int>(pixel / view.width));
         for (int c = 0; c < 3; ++c) {
           double radiance = 0;
-          for (int i = 0; i < transfer.coefficients; ++i)
-            radiance += lights[light].channels[c][i] * transfer.plane(i)[r];
+          for (int i = 0; i < transfer.coefficients; ++i) radiance += incident.channels[c][i] * transfer.plane(i)[r];
           values[c] += share * points.albedos[begin + r][c] * static_cast<float>(radiance);
         }
         values[3] += share;

@@ -9,7 +9,7 @@
 #include "material/surface_albedo.h"
 #include "mesh/camera.h"
 #include "mesh/triangle_mesh.h"
-#include "sh/lights.h"
+#include "sh/light_spec.h"
 
 namespace kiln {
 
@@ -22,14 +22,16 @@ struct ReferenceView {
   float albedo = 0.8f;           ///< of the whole surface, times
   SurfaceAlbedo surface_albedo;  ///< the mesh's own
   TriangleMesh surroundings;     ///< casts shadows and is not seen
+  int bands = 5;                 ///< that light is projected on
+  LightWindow window = LightWindow::hann;
 };
 
-/// Pictures of a mesh under each of `lights` (three channels each, all of the same bands): the first hit of each
-/// sample's ray, shaded by the transfer integral over `directions` (rays against the mesh itself, its normals
-/// interpolated; and what stands around) and projected on the lights' bands. No atlas, no texture, no rasteriser: what
-/// the baked asset approximates. RGBA in linear radiance, alpha is coverage and the colours are multiplied by it.
+/// Pictures of a mesh under each of `lights`: the first hit of each sample's ray, shaded by the transfer integral over
+/// `directions` (rays against the mesh itself, its normals interpolated, and what stands around) and projected on the
+/// view's bands; a light near the mesh is that of every point. No atlas, no texture, no rasteriser: what the baked asset
+/// approximates. RGBA in linear radiance, alpha is coverage and the colours are multiplied by it.
 std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
-                                             std::span<const LightCoefficients> lights,
+                                             std::span<const LightSpec> lights,
                                              std::span<const Eigen::Vector3f> directions,
                                              const ProgressFunction& progress = no_progress);
 

@@ -1,10 +1,11 @@
 // Time of a frame and GPU memory of every technique, as Chapter 2010, tables 6.1 and 6.2, and of deferred shading where
-// many surfaces lie behind one another. Prints Markdown.
+// many surfaces lie behind one another; and the error of a few samples of incident light near a mesh. Prints Markdown.
 //
 //   bench_techniques PRT [--compressed FOLDER] [--width 1280] [--height 720] [--rounds 20] [--gl-device auto]
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -14,6 +15,9 @@
 #include "gpu/egl_context.h"
 #include "relight/draw/scene_renderer.h"
 #include "relight/render_settings.h"
+#include "sh/basis.h"
+#include "sh/directions.h"
+#include "sh/transfer.h"
 
 namespace {
 
@@ -118,6 +122,57 @@ void compare_shading(const Arguments& arguments, const PrtAsset& asset) {
   }
 }
 
+/// The error of lighting an unshadowed mesh by `count` samples of incident light, against the light of every vertex:
+/// the relative L2 of exit radiance over 18 directions to a ball that stands `distance` half-diagonals from the centre.
+/// `inverse_distance`: contributions as Chapter 2010 means them, 1 / D_s.
+double error_of_samples(const TriangleMesh& mesh, int count, double distance, bool inverse_distance) {
+  const BoundingBox box = bounding_box(mesh);
+  const double unit = 0.5 * static_cast<double>(box.diagonal());
+  IncidentSamples samples = place_incident_samples(mesh, count);
+  const auto points = static_cast<std::size_t>(samples.count());
+  if (inverse_distance)
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      double sum = 0;
+      for (std::size_t k = 0; k < points; ++k)
+        sum += 1 / std::max(1e-6 * unit, static_cast<double>((mesh.positions[v] - samples.points[k]).norm()));
+      for (std::size_t k = 0; k < points; ++k)
+        samples.contributions[v * points + k] = static_cast<float>(
+            1 / std::max(1e-6 * unit, static_cast<double>((mesh.positions[v] - samples.points[k]).norm())) / sum);
+    }
+  constexpr int bands = 5;
+  const ShBasis basis(bands);
+  double difference = 0, whole = 0;
+  for (int azimuth = 0; azimuth < 360; azimuth += 60)
+    for (const int elevation : {-30, 20, 60}) {
+      LightSpec ball{.kind = LightSpec::Kind::sphere, .radius = 0.05 * unit};
+      const Eigen::Vector3f towards = direction_from_angles(azimuth, elevation);
+      for (int axis = 0; axis < 3; ++axis) ball.position[axis] = box.centre()[axis] + distance * unit * towards[axis];
+      const SceneLights lights{{ball}, std::nullopt, LightWindow::hann};
+      const AssetLight light = light_asset(lights, bands, {}, samples.points);
+      for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        const std::vector<float> transfer = unoccluded_transfer(basis, mesh.normals[v]);
+        const double exact =
+            dot_product(transfer, lights.incident(bands, mesh.positions[v].cast<double>()).channels[0]);
+        double blended = 0;
+        for (std::size_t k = 0; k < points; ++k)
+          blended += samples.contributions[v * points + k] * dot_product(transfer, light.samples[k].channels[0]);
+        difference += (blended - exact) * (blended - exact);
+        whole += exact * exact;
+      }
+    }
+  return std::sqrt(difference / whole);
+}
+
+void compare_samples(const TriangleMesh& mesh) {
+  std::printf("\n| samples | contributions | ball at 1.3 half-diagonals | 2 | 4 |\n| --- | --- | --- | --- | --- |\n");
+  for (const auto& [count, inverse] : {std::pair{1, false}, {6, true}, {6, false}, {8, true}, {8, false}}) {
+    std::printf("| %d | %s |", count, count == 1 ? "" : inverse ? "1 / distance" : "moving least squares");
+    for (const double distance : {1.3, 2.0, 4.0})
+      std::printf(" %.1f %% |", 100 * error_of_samples(mesh, count, distance, inverse));
+    std::printf("\n");
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -139,5 +194,6 @@ int main(int argc, char** argv) {
                 asset.mesh.triangles.size());
     compare_techniques(arguments, asset, compressed);
     compare_shading(arguments, asset);
+    compare_samples(asset.mesh);
   });
 }

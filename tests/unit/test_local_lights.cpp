@@ -129,7 +129,7 @@ TEST(LocalLight, GpuAndCpuAgree) {
       AssetRenderer renderer(asset, 6);
       SceneView view = small_view(asset.mesh, 10, 60);
       view.shading = shading;
-      view.look.albedo = {1, 0.6f, 0.3f};
+      view.look.albedo = std::array{1.f, 0.6f, 0.3f};
       const Image<float> gpu = render_scene({{&renderer, {}, Technique::textured_prt}}, lights, view);
 
       // On the CPU: texels under the light of each sample, blended by contributions that are linear over a triangle.
@@ -137,7 +137,7 @@ TEST(LocalLight, GpuAndCpuAgree) {
       const AssetLight light = light_asset(lights, 3, {}, samples.points);
       std::vector<Image<float>> lit;
       for (const LightCoefficients& sample : light.samples)
-        lit.push_back(relight_texels(asset, sample, view.look.albedo));
+        lit.push_back(relight_texels(asset, sample, *view.look.albedo));
       double largest = 0, brightest = 0;
       for (int j = 0; j < view.height; ++j)
         for (int i = 0; i < view.width; ++i) {

@@ -413,7 +413,7 @@ TEST(Relight, ManyPlanesGoThrough) {
   LightCoefficients light = constant_light(24, std::array<float, 3>{0, 0, 0});
   light.channels[2][575] = 1;  // the last plane of all
   SceneView view = small_view(asset.mesh, 0, 60);
-  view.look.albedo = {1, 1, 1};
+  view.look.albedo = std::array{1.f, 1.f, 1.f};
   const Image<float> gpu = drawn(asset, light, view);
   const Image<float> cpu = relight_texels(asset, light, {1, 1, 1});
   const auto [low, high] = std::minmax_element(cpu.values().begin(), cpu.values().end());

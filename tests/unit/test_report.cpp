@@ -13,7 +13,11 @@
 #include "report/reference.h"
 #include "report/report_settings.h"
 #include "report/tradeoff.h"
+#include "sh/basis.h"
 #include "sh/directions.h"
+#include "sh/light_spec.h"
+#include "sh/transfer.h"
+#include "sh/windows.h"
 
 namespace kiln {
 namespace {
@@ -122,8 +126,8 @@ TEST(Reference, SphereInAFurnaceHasItsAlbedo) {
   view.width = view.height = 24;
   view.camera = make_camera(bounding_box(mesh), {}, view.width, view.height);
   view.albedo = 0.6f;
-  const float ones[] = {1, 1, 1};
-  const LightCoefficients lights[] = {constant_light(3, ones)};
+  view.bands = 3;
+  const LightSpec lights[] = {{.kind = LightSpec::Kind::ambient}};
   const auto directions = sample_directions(Sampling::fibonacci, 2048, 1);
   const std::vector<Image<float>> pictures = reference_pictures(mesh, view, lights, directions);
   int whole = 0;
@@ -138,6 +142,36 @@ TEST(Reference, SphereInAFurnaceHasItsAlbedo) {
   EXPECT_EQ(pictures[0].at(0, 0, 3), 0);
 }
 
+TEST(Reference, LightNearTheMeshIsThatOfEveryPoint) {
+  const TriangleMesh mesh = sphere(64);
+  ReferenceView view;
+  view.width = view.height = 24;
+  view.supersample = 1;
+  view.camera = make_camera(bounding_box(mesh), {}, view.width, view.height);
+  view.albedo = 1;
+  const LightSpec ball = parse_light_spec("sphere:0.5,1,2,0.1");
+  const auto directions = sample_directions(Sampling::fibonacci, 2048, 1);
+  const Image<float> picture = reference_pictures(mesh, view, std::span(&ball, 1), directions).front();
+  const RayScene scene(mesh);
+  const ShBasis basis(5);
+  double nearest = 0, largest = 0;
+  for (int j = 0; j < view.height; ++j)
+    for (int i = 0; i < view.width; ++i) {
+      if (picture.at(i, j, 3) < 0.9999f) continue;
+      const Eigen::Vector3f direction = view.camera.pixel_direction(i, j, view.width, view.height);
+      const Eigen::Vector3f point =
+          view.camera.position + scene.first_hit(view.camera.position, direction, 0, 100).distance * direction;
+      LightCoefficients light = light_coefficients(ball, 5, point.cast<double>());
+      apply_window(light, LightWindow::hann);
+      const double expected = dot_product(unoccluded_transfer(basis, point.normalized()), light.channels[0]);
+      largest = std::max(largest, std::abs(picture.at(i, j, 0) - expected));
+      nearest = std::max(nearest, expected);
+    }
+  // Quadrature of 2,048 directions, and facets that shade a little what the light just grazes.
+  EXPECT_LT(largest, 0.02 * nearest);
+  EXPECT_GT(nearest, 2);  // the near side has more than the origin would
+}
+
 TEST(Reference, SurfacesHaveTheirOwnAlbedo) {
   // Every vertex of the sphere has a colour that tells where it is; in a furnace of radiance 1 that is its radiance.
   const TriangleMesh mesh = sphere(64);
@@ -150,8 +184,8 @@ TEST(Reference, SurfacesHaveTheirOwnAlbedo) {
   view.supersample = 1;
   view.albedo = 0.5f;
   view.surface_albedo = SurfaceAlbedo::of_vertices(colors, mesh.triangles);
-  const float ones[] = {1, 1, 1};
-  const LightCoefficients lights[] = {constant_light(3, ones)};
+  view.bands = 3;
+  const LightSpec lights[] = {{.kind = LightSpec::Kind::ambient}};
   const auto directions = sample_directions(Sampling::fibonacci, 2048, 1);
   const Image<float> picture = reference_pictures(mesh, view, lights, directions).front();
   const RayScene scene(mesh);

@@ -56,7 +56,7 @@ TEST(Technique, PhongIsLambertsCosineAndAHighlight) {
   write_asset(scratch.folder(), mesh, unoccluded_stack(mesh, 48, 32, 2, 8));
   const PrtAsset asset = load_prt_asset(scratch.folder());
   SceneView view = small_view(mesh, -35, 25);
-  view.look.albedo = {0.8f, 0.5f, 0.1f};
+  view.look.albedo = std::array{0.8f, 0.5f, 0.1f};
   view.look.specular = 0.3f;
   view.look.shininess = 20;
   const Image<float> picture = sphere_drawn(asset, Technique::phong, {"-70,40", "ambient:0.25"}, view);
@@ -69,7 +69,7 @@ TEST(Technique, PhongIsLambertsCosineAndAHighlight) {
     // Positions on facets lie up to 2e-4 too deep; where the light just grazes, the highlight starts with a jump.
     if (std::abs(cosine) < 0.01f) return;
     for (int c = 0; c < 3; ++c)
-      ASSERT_NEAR(picture.at(i, j, c), view.look.albedo[c] * (std::max(0.f, cosine) + 0.25f) + highlight, 0.01)
+      ASSERT_NEAR(picture.at(i, j, c), (*view.look.albedo)[c] * (std::max(0.f, cosine) + 0.25f) + highlight, 0.01)
           << i << ", " << j;
   });
 }
@@ -81,7 +81,7 @@ TEST(Technique, PhongTakesBallsAtTheirPlace) {
   write_asset(scratch.folder(), mesh, unoccluded_stack(mesh, 48, 32, 2, 8));
   const PrtAsset asset = load_prt_asset(scratch.folder());
   SceneView view = small_view(mesh, 30, 10);
-  view.look.albedo = {1, 1, 1};
+  view.look.albedo = std::array{1.f, 1.f, 1.f};
   const Image<float> picture = sphere_drawn(asset, Technique::phong, {"sphere:1,2,2,0.1"}, view);
   const Eigen::Vector3f ball(1, 2, 2);
   visit_sphere(view, [&](int i, int j, const Eigen::Vector3f& normal) {

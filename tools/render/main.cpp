@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
     add_light_options(command, lights, paths.light_file);
     command.options("Picture", render_options(settings));
     command.parse(argc, argv);
-    if (settings.technique == TechniqueChoice::all && file.extension() != ".png")
+    if (is_sheet(settings) && file.extension() != ".png")
       throw WrongUsage("output: found '" + file.string() + "'; expected a name that ends in .png for a sheet");
     require_picture_name(file);
     picture_of(settings);

@@ -36,46 +36,79 @@ std::string frame_name(const std::string& name, int frame) {
   return fmt::format("{}_{:03}{}", path.stem().string(), frame, path.extension().string());
 }
 
-/// The asset by every technique that it, and its compressed form, can be drawn by.
-Json write_sheet(OutputSet& outputs, const std::string& name, const RenderScene& scene, const RenderSettings& settings,
-                 const EglContext& context) {
-  const PrtAsset& asset = scene.assets.front();
-  const int samples = incident_samples_of(settings, scene.lights.is_local());
-  const PictureSettings picture = picture_of(settings);
-  std::vector<SheetCell> cells;
-  Json drawn = Json::array(), metrics;
+/// One picture of a sheet.
+struct Cell {
+  const PrtAsset* asset = nullptr;
+  Placement placement;
+  Technique technique = Technique::textured_prt;
+  std::string caption;
+};
+
+/// The asset by every technique that it, and its compressed form, can be drawn by; or each asset by itself.
+std::vector<Cell> cells_of(const RenderScene& scene, const RenderSettings& settings) {
+  std::vector<Cell> cells;
+  if (settings.technique != TechniqueChoice::all) {
+    for (std::size_t k = 0; k < scene.assets.size(); ++k) {
+      const PrtAsset& asset = scene.assets[k];
+      const Technique technique = technique_of(settings, asset);
+      require_technique(technique, asset);
+      cells.push_back(
+          {&asset, scene.placements[k], technique, scene.names[k] + ": " + technique_caption(technique, asset)});
+    }
+    return cells;
+  }
   for (const Technique technique : all_techniques) {
-    const PrtAsset& source = technique == Technique::compressed && scene.compressed ? *scene.compressed : asset;
+    const bool other_form = technique == Technique::compressed && scene.compressed;
+    const PrtAsset& asset = other_form ? *scene.compressed : scene.assets.front();
     try {
-      require_technique(technique, source);
+      require_technique(technique, asset);
     } catch (const WrongUsage&) {
       continue;  // a sheet shows what there is
     }
+    cells.push_back({&asset, scene.placements.front(), technique, technique_caption(technique, asset)});
+  }
+  return cells;
+}
+
+Json write_sheet(OutputSet& outputs, const std::string& name, const RenderScene& scene, const RenderSettings& settings,
+                 const EglContext& context) {
+  const int samples = incident_samples_of(settings, scene.lights.is_local());
+  const PictureSettings picture = picture_of(settings);
+  std::vector<SheetCell> pictures;
+  Json drawn = Json::array(), metrics;
+  for (const Cell& cell : cells_of(scene, settings)) {
     Uploaded uploaded;
-    uploaded.add(source, scene.placements.front(), technique, samples);
+    uploaded.add(*cell.asset, cell.placement, cell.technique, samples);
     const SceneView view = views_of(settings, scene_box(uploaded.assets)).front();
     const Image<float> radiance = render_scene(uploaded.assets, scene.lights, view);
-    const GpuMemory memory = uploaded.renderers.front()->memory(technique);
-    cells.push_back({picture_from_radiance(radiance, picture),
-                     {technique_caption(technique, source),
-                      fmt::format("{:.2f} MB a mesh, {} bytes a vertex", static_cast<double>(memory.per_mesh) / 1e6,
-                                  memory.per_vertex)}});
+    const GpuMemory memory = uploaded.renderers.front()->memory(cell.technique);
+    pictures.push_back({picture_from_radiance(radiance, picture),
+                        {cell.caption, fmt::format("{:.2f} MB a mesh, {} bytes a vertex",
+                                                   static_cast<double>(memory.per_mesh) / 1e6, memory.per_vertex)}});
     metrics = render_metrics(uploaded.assets, scene.specs, radiance, context);
     drawn.push_back(metrics["assets"][0]);
+    drawn.back()["mean_radiance"] = metrics["mean_radiance"];
   }
-  write_png(outputs.add(name), contact_sheet(cells));
+  write_png(outputs.add(name), contact_sheet(pictures));
   metrics["assets"] = drawn;
   return metrics;
+}
+
+/// The name of an asset's folder: of what holds prt/, where that says more.
+std::string name_of(const fs::path& folder) {
+  const fs::path whole = fs::absolute(folder / "x").lexically_normal().parent_path();
+  return whole.filename() == "prt" ? (whole.parent_path().filename() / "prt").string() : whole.filename().string();
 }
 
 }  // namespace
 
 RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& light_settings,
                               const RenderSettings& settings) {
-  const bool sheet = settings.technique == TechniqueChoice::all;
-  if (paths.assets.size() > 1 && (sheet || !paths.compressed.empty()))
+  const bool all = settings.technique == TechniqueChoice::all;
+  if (paths.assets.size() > 1 && (all || !paths.compressed.empty()))
     throw WrongUsage("technique all and --compressed: found several assets; expected one");
-  if (sheet && settings.frames > 1) throw WrongUsage("technique all: found --frames; expected one picture");
+  if (is_sheet(settings) && settings.frames > 1)
+    throw WrongUsage("technique all and --side-by-side: found --frames; expected one picture");
   if (paths.places.size() > paths.assets.size())
     throw WrongUsage("place: found " + std::to_string(paths.places.size()) + "; expected at most one for each asset");
   const LightSettings given = chosen_lights(light_settings, paths.light_file);
@@ -87,6 +120,7 @@ RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& lig
   int bands = 0;
   for (const fs::path& folder : paths.assets) {
     scene.assets.push_back(load_prt_asset(folder));
+    scene.names.push_back(name_of(folder));
     bands = std::max(bands, scene.assets.back().bands);
   }
   if (!paths.compressed.empty()) scene.compressed = load_other_form(paths.compressed, scene.assets.front());
@@ -96,7 +130,7 @@ RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& lig
 
 Json render_to_files(OutputSet& outputs, const std::string& name, const RenderScene& scene,
                      const RenderSettings& settings, const EglContext& context, const ProgressFunction& progress) {
-  if (settings.technique == TechniqueChoice::all) return write_sheet(outputs, name, scene, settings, context);
+  if (is_sheet(settings)) return write_sheet(outputs, name, scene, settings, context);
   Uploaded uploaded;
   const int samples = incident_samples_of(settings, scene.lights.is_local());
   for (std::size_t k = 0; k < scene.assets.size(); ++k) {

@@ -27,6 +27,7 @@ struct RenderPaths {
 
 struct RenderScene {
   std::vector<PrtAsset> assets;
+  std::vector<std::string> names;  ///< of their folders
   std::vector<Placement> placements;
   std::optional<PrtAsset> compressed;  ///< another form of the only asset
   std::vector<LightSpec> specs;

@@ -165,6 +165,7 @@ PlaneSeams write_planes(OutputSet& outputs, const std::vector<TransferVectors>& 
   ranges["basis"] = basis_name;
   ranges["mesh"] = files.mesh;
   if (!files.normals.empty()) ranges["normals"] = files.normals;
+  if (!files.normals.empty() && files.normal_space == NormalSpace::tangent) ranges["normal_space"] = "tangent";
   if (!files.albedo.is_null()) ranges["albedo"] = files.albedo;
   ranges["planes"] = planes;
   outputs.add_text("ranges.json", ranges.dump(2) + "\n");

@@ -74,7 +74,8 @@ void require_drawable(const TriangleMesh& mesh, const std::filesystem::path& fil
 PrtAlbedo read_albedo(const Fields& fields, const std::filesystem::path& folder, int width, int height,
                       const std::string& remedy) {
   PrtAlbedo albedo;
-  if (!fields.has("albedo")) return albedo;
+  albedo.known = fields.has("albedo");
+  if (!albedo.known) return albedo;
   const std::string expected = "the name of a picture, or three numbers of 0 to 1";
   const nlohmann::json& value = fields.get("albedo", expected);
   if (value.is_array()) {

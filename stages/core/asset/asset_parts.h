@@ -41,7 +41,7 @@ template <>
 Image<std::uint16_t> read_grey(const std::filesystem::path& file, int width, int height, const std::string& remedy);
 
 /// `albedo` of the JSON that describes an asset of that size: the name of an sRGB-encoded picture, or three linear
-/// numbers of 0 to 1; left out where the surface is white. Throws BadInput.
+/// numbers of 0 to 1; left out where it is not known. Throws BadInput.
 PrtAlbedo read_albedo(const Fields& fields, const std::filesystem::path& folder, int width, int height,
                       const std::string& remedy);
 

@@ -50,7 +50,8 @@ struct PrtClusters {
 /// The share of light that the asset's surface reflects, which its transfer leaves out: exit radiance is this times
 /// the sum of light and transfer coefficients.
 struct PrtAlbedo {
-  std::string file;             ///< of the picture, relative to the asset's folder; empty: none
+  bool known = false;  ///< whether the asset says anything of it; if not, a grey of the consumer's choice will do
+  std::string file;    ///< of the picture, relative to the asset's folder; empty: none
   Image<std::uint8_t> picture;  ///< 3 channels, sRGB-encoded, of the asset's size; empty where it is constant
   Eigen::Vector3f constant = Eigen::Vector3f::Ones();  ///< linear; where there is no picture
 };

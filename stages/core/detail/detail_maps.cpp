@@ -82,6 +82,7 @@ void read_albedo(const std::filesystem::path& folder, const nlohmann::json& reco
   if (!albedo.is_object() || (!albedo.empty() && !albedo.contains("source")))
     refuse(folder / "normals.json", "albedo " + albedo.dump(), "the result of kiln-normals");
   if (albedo.empty()) return;
+  maps.albedo_known = albedo["source"] != "none";
   if (albedo.contains("constant")) {
     const nlohmann::json& values = albedo["constant"];
     const auto is_share = [](const nlohmann::json& v) { return v.is_number() && v >= 0 && v <= 1; };
@@ -175,6 +176,7 @@ DetailMaps load_detail_maps(const std::filesystem::path& folder, const TriangleM
   if (maps.position.width() != maps.width || maps.position.height() != maps.height || maps.position.channels() != 3)
     refuse(folder / "position.exr", size_text(maps.position), expected);
 
+  maps.normal_space = space;
   read_albedo(folder, record, maps);
 
   // Made from this very atlas.

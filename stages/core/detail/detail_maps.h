@@ -16,11 +16,13 @@ namespace kiln {
 struct DetailMaps {
   int width = 0;
   int height = 0;
-  std::vector<std::uint8_t> covered;  ///< 1 or 0 per texel, rows from the bottom
-  Image<float> position;              ///< 3 channels, object space; gutters filled
-  Image<float> normal_object;         ///< 3 channels, unit vectors in object space; gutters filled
-  Image<float> albedo;                ///< 3 channels, linear, gutters filled; empty where it is constant
+  std::vector<std::uint8_t> covered;               ///< 1 or 0 per texel, rows from the bottom
+  Image<float> position;                           ///< 3 channels, object space; gutters filled
+  Image<float> normal_object;                      ///< 3 channels, unit vectors in object space; gutters filled
+  NormalSpace normal_space = NormalSpace::object;  ///< of the map as it is in the file
+  Image<float> albedo;                             ///< 3 channels, linear, gutters filled; empty where it is constant
   Eigen::Vector3f constant_albedo = Eigen::Vector3f::Ones();  ///< linear, where there is no map of it
+  bool albedo_known = false;                                  ///< whether the normals stage found or was given one
 
   /// Linear, of a texel.
   Eigen::Vector3f albedo_at(int i, int j) const;

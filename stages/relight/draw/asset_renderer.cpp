@@ -23,9 +23,9 @@ bool is_textured(Technique technique) {
 }
 
 /// The buffer of shaders/render_phong.frag.
-std::vector<float> phong_buffer(const AssetLight& light, const SurfaceLook& look, const Eigen::Vector3f& eye) {
-  std::vector<float> values = {look.albedo[0], look.albedo[1], look.albedo[2], look.specular,
-                               eye[0],         eye[1],         eye[2],         look.shininess};
+std::vector<float> phong_buffer(const AssetLight& light, const std::array<float, 3>& albedo, const SurfaceLook& look,
+                                const Eigen::Vector3f& eye) {
+  std::vector<float> values = {albedo[0], albedo[1], albedo[2], look.specular, eye[0], eye[1], eye[2], look.shininess};
   const LightCoefficients rest = scale_light(irradiance(light.rest), 1 / std::numbers::pi);
   for (std::size_t i = 0; i < 9; ++i)
     for (std::size_t c = 0; c < 4; ++c) values.push_back(c < 3 ? rest.channels[c][i] : 0);
@@ -41,23 +41,42 @@ std::vector<float> phong_buffer(const AssetLight& light, const SurfaceLook& look
 AssetRenderer::AssetRenderer(const PrtAsset& asset, int incident_samples)
     : asset_(asset),
       samples_(place_incident_samples(asset.mesh, incident_samples)),
-      mesh_(upload_mesh(asset.mesh, samples_)) {}
+      mesh_(upload_mesh(asset.mesh, samples_)),
+      albedo_map_(upload_albedo(asset)) {}
+
+std::array<float, 3> AssetRenderer::albedo() const {
+  constexpr float grey = 0.8f;
+  std::array<float, 3> albedo;
+  for (int c = 0; c < 3; ++c)
+    albedo[static_cast<std::size_t>(c)] = look_.albedo
+                                              ? (*look_.albedo)[static_cast<std::size_t>(c)] * asset_.albedo.constant[c]
+                                              : (asset_.albedo.known ? asset_.albedo.constant[c] : grey);
+  return albedo;
+}
+
+void AssetRenderer::bind_albedo() const {
+  if (albedo_map_.texture.name() != 0) glBindTextureUnit(albedo_unit, albedo_map_.texture.name());
+}
 
 const GlProgram& AssetRenderer::program(Pass pass) {
   if (const auto found = programs_.find(pass); found != programs_.end()) return found->second;
   ShaderDefines defines = {{"PRT_SAMPLES", std::to_string(samples_.count())}};
   if (is_clustered()) defines.emplace_back("PRT_CLUSTERED", "1");
+  if (albedo_map_.texture.name() != 0) defines.emplace_back("ALBEDO_MAP", "1");
+  ShaderDefines phong = defines;
+  phong.emplace_back("PHONG", "1");
+  ShaderDefines normal_mapped = phong;
+  normal_mapped.emplace_back("NORMAL_MAP", "1");
   GlProgram made;
   switch (pass) {
     case Pass::phong:
-      made = load_program({"render_surface.vert", "render_phong.frag"}, {{"PHONG", "1"}});
+      made = load_program({"render_surface.vert", "render_phong.frag"}, phong);
       break;
     case Pass::normal_map:
-      made = load_program({"render_surface.vert", "render_phong.frag"}, {{"PHONG", "1"}, {"NORMAL_MAP", "1"}});
+      made = load_program({"render_surface.vert", "render_phong.frag"}, normal_mapped);
       break;
     case Pass::vertex_prt:
-      made = load_program({"render_vertex_prt.vert", "render_vertex_prt.frag"},
-                          {{"PRT_SAMPLES", std::to_string(samples_.count())}});
+      made = load_program({"render_vertex_prt.vert", "render_vertex_prt.frag"}, defines);
       break;
     case Pass::prt:
       made = load_program({"render_surface.vert", "render_prt.frag"}, defines);
@@ -86,15 +105,15 @@ void AssetRenderer::prepare(Technique technique) {
 void AssetRenderer::set_light(const AssetLight& light, const SurfaceLook& look) {
   if (light.samples.size() != samples_.points.size())
     throw std::invalid_argument("AssetRenderer: the light must have one sample for each of the asset's points");
+  set_light_ = light;
+  look_ = look;
   std::vector<std::vector<PlaneWeights>> plane_weights, vertex_weights;
   for (const LightCoefficients& sample : light.samples) {
-    if (!asset_.is_per_vertex()) plane_weights.push_back(cluster_weights(asset_, sample, look.albedo));
-    vertex_weights.push_back({vector_weights(asset_, sample, look.albedo)});
+    if (!asset_.is_per_vertex()) plane_weights.push_back(cluster_weights(asset_, sample, albedo()));
+    vertex_weights.push_back({vector_weights(asset_, sample, albedo())});
   }
   if (!plane_weights.empty()) light_ = upload_light(plane_weights);
   vertex_light_ = upload_light(vertex_weights);
-  set_light_ = light;
-  look_ = look;
 }
 
 void AssetRenderer::bind_prt(const GlProgram& used, const UploadedTexture& light, int layers, int clusters) const {
@@ -114,9 +133,10 @@ void AssetRenderer::draw(Technique technique, const Eigen::Matrix4f& clip_from_o
                          const Eigen::Vector3f& eye_object) {
   prepare(technique);
   if (!set_light_) throw std::logic_error("AssetRenderer: no light was set");
+  bind_albedo();
   if (technique == Technique::phong || technique == Technique::normal_map) {
     const GlProgram& used = program(technique == Technique::phong ? Pass::phong : Pass::normal_map);
-    std::vector<float> values = phong_buffer(*set_light_, look_, eye_object);
+    std::vector<float> values = phong_buffer(*set_light_, albedo(), look_, eye_object);
     phong_lights_ = make_buffer(std::span<const float>(values));
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, phong_binding, phong_lights_.name());
     glBindTextureUnit(normal_map_unit, normal_map_.texture.name());
@@ -151,6 +171,7 @@ void AssetRenderer::shade_appearance(int number) {
   if (!set_light_) throw std::logic_error("AssetRenderer: no light was set");
   const GlProgram& used = program(Pass::deferred);
   bind_planes(used);
+  bind_albedo();
   glProgramUniform1f(used.name(), asset_number_location, static_cast<float>(number));
   glUseProgram(used.name());
   glBindVertexArray(mesh_.vertices.name());  // core profile wants one, the shader reads nothing of it
@@ -167,12 +188,13 @@ GpuMemory AssetRenderer::memory(Technique technique) const {
   if (phong) memory.per_vertex += 3 * number;
   if (technique != Technique::phong && technique != Technique::vertex_prt) memory.per_vertex += 2 * number;
   if (!phong && samples_.count() > 1) memory.per_vertex += most_incident_samples * number;
-  if (technique == Technique::normal_map) memory.per_mesh = normal_map_.bytes;
+  if (technique == Technique::normal_map) memory.per_mesh += normal_map_.bytes;
   if (technique == Technique::vertex_prt) {
-    memory.per_mesh = vertex_light_.bytes;
+    memory.per_mesh += vertex_light_.bytes;
     memory.per_vertex += vertex_transfer_.bytes / std::max<std::size_t>(1, mesh_.vertex_count);
   }
-  if (is_textured(technique)) memory.per_mesh = planes_.bytes + cluster_ids_.bytes + light_.bytes;
+  memory.per_mesh += albedo_map_.bytes;
+  if (is_textured(technique)) memory.per_mesh += planes_.bytes + cluster_ids_.bytes + light_.bytes;
   return memory;
 }
 

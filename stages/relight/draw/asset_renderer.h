@@ -18,9 +18,10 @@ namespace kiln {
 
 /// The surface, as far as it is not in the transfer.
 struct SurfaceLook {
-  std::array<float, 3> albedo = {0.8f, 0.8f, 0.8f};  ///< linear
-  float specular = 0;                                ///< of the Phong techniques alone: reflectance of the highlight
-  float shininess = 32;                              ///< of these: the power of its cosine
+  /// Linear, times the asset's own; none: 1 where the asset knows its own, else a grey of 0.8.
+  std::optional<std::array<float, 3>> albedo;
+  float specular = 0;    ///< of the Phong techniques alone: reflectance of the highlight
+  float shininess = 32;  ///< of these: the power of its cosine
 };
 
 /// What a technique takes on the GPU, in bytes, as in Chapter 2010, table 6.2.
@@ -66,6 +67,8 @@ class AssetRenderer {
   enum class Pass { phong, normal_map, vertex_prt, prt, appearance, deferred };
   const GlProgram& program(Pass pass);
   void bind_prt(const GlProgram& program, const UploadedTexture& light, int layers, int clusters) const;
+  std::array<float, 3> albedo() const;
+  void bind_albedo() const;
   void bind_planes(const GlProgram& program) const;
   void draw_triangles(const GlProgram& program, const Eigen::Matrix4f& clip_from_object) const;
   bool is_clustered() const { return asset_.clusters && asset_.clusters->count > 1; }
@@ -74,7 +77,7 @@ class AssetRenderer {
   IncidentSamples samples_;
   UploadedMesh mesh_;
   std::map<Pass, GlProgram> programs_;
-  UploadedTexture planes_, cluster_ids_, normal_map_;
+  UploadedTexture planes_, cluster_ids_, normal_map_, albedo_map_;
   UploadedVertexTransfer vertex_transfer_;
   UploadedTexture light_, vertex_light_;
   GlBuffer phong_lights_;
