@@ -70,6 +70,9 @@ std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSetti
   return meshes;
 }
 
+/// Whether the transfer has it: then it must not be multiplied again, as if the surface were white.
+bool has_albedo_within(const BakeSettings& settings) { return settings.bake_albedo || settings.subsurface.wanted(); }
+
 BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings) {
   if (!paths.detail.empty())
     throw WrongUsage(
@@ -91,6 +94,9 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
     scene.vertex_mesh.normals[scene.receivers.texels[r]] = scene.receivers.normals[r];
   scene.vertex_metrics = {{"receiver_distance_largest", vertices.largest_distance},
                           {"vertices_facing_away", vertices.facing_away}};
+  if (has_albedo_within(settings)) scene.albedo = Json{1, 1, 1};
+  if (const auto given = settings.material.constant(); given && !has_albedo_within(settings))
+    scene.albedo = Json{(*given)[0], (*given)[1], (*given)[2]};
   return scene;
 }
 
@@ -174,9 +180,7 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
   std::optional<DetailMaps> detail;
   if (!paths.detail.empty()) {
     detail = load_detail_maps(paths.detail, atlas);
-    // What is in the transfer must not be multiplied again: as if the surface were white.
-    const bool within = settings.bake_albedo || settings.subsurface.wanted();
-    scene.albedo = within ? Json{1, 1, 1} : albedo_entry(*detail, settings.material);
+    scene.albedo = has_albedo_within(settings) ? Json{1, 1, 1} : albedo_entry(*detail, settings.material);
     scene.normal_space = detail->normal_space;
   }
 
@@ -253,7 +257,7 @@ Json save_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scen
   Json places;  // what they are and how many
   if (settings.per_vertex) {
     const std::vector<std::uint32_t> sources =
-        write_vertex_planes(outputs, result.channels, scene.receivers, scene.vertex_mesh, settings.bits);
+        write_vertex_planes(outputs, result.channels, scene.receivers, scene.vertex_mesh, settings.bits, scene.albedo);
     stored = read_vertex_planes(outputs.staging(), scene.receivers, sources);
     places = {{"vertices", sources.size()}};
     places.update(scene.vertex_metrics);

@@ -18,7 +18,8 @@ constexpr int group_size = 4;  // coefficients of one attribute: a shader's vec4
 }  // namespace
 
 std::vector<std::uint32_t> write_vertex_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels,
-                                               const TexelReceivers& receivers, const TriangleMesh& mesh, int bits) {
+                                               const TexelReceivers& receivers, const TriangleMesh& mesh, int bits,
+                                               const Json& albedo) {
   if (receivers.texels.size() != mesh.positions.size())
     throw std::invalid_argument("write_vertex_planes: one receiver per vertex is needed");
 
@@ -63,6 +64,7 @@ std::vector<std::uint32_t> write_vertex_planes(OutputSet& outputs, const std::ve
   ranges["vertices"] = sources.size();
   ranges["basis"] = basis_name;
   ranges["mesh"] = vertex_mesh_name;
+  if (!albedo.is_null()) ranges["albedo"] = albedo;
   ranges["planes"] = planes;
   outputs.add_text("ranges.json", ranges.dump(2) + "\n");
   remove_stale_planes(outputs, {});

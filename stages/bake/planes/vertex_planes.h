@@ -19,7 +19,8 @@ inline constexpr char vertex_mesh_name[] = "vertices.drc";
 /// entry of `channels` per channel, all for the same receivers, one per vertex of the mesh. Planes that a textured bake
 /// left in the folder are removed. Gives the vertex of `mesh` that each vertex of the file is.
 std::vector<std::uint32_t> write_vertex_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels,
-                                               const TexelReceivers& receivers, const TriangleMesh& mesh, int bits);
+                                               const TexelReceivers& receivers, const TriangleMesh& mesh, int bits,
+                                               const Json& albedo = {});
 
 /// Transfer as it reads back from the files in `folder` that write_vertex_planes wrote, in the order of `receivers`;
 /// `sources` is what it gave.
