@@ -28,8 +28,8 @@ struct ReferenceView {
 
 /// Pictures of a mesh under each of `lights`: the first hit of each sample's ray, shaded by the transfer integral over
 /// `directions` (rays against the mesh itself, its normals interpolated, and what stands around) and projected on the
-/// view's bands; a light near the mesh is that of every point. No atlas, no texture, no rasteriser: what the baked asset
-/// approximates. RGBA in linear radiance, alpha is coverage and the colours are multiplied by it.
+/// view's bands; a light near the mesh is that of every point. No atlas, no texture, no rasteriser: what the baked
+/// asset approximates. RGBA in linear radiance, alpha is coverage and the colours are multiplied by it.
 std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
                                              std::span<const LightSpec> lights,
                                              std::span<const Eigen::Vector3f> directions,
