@@ -96,7 +96,7 @@ void compare_techniques(const Arguments& arguments, const PrtAsset& asset, const
 /// A queue of the same asset, each behind the one before, drawn from the last to the first: the worst order.
 void compare_shading(const Arguments& arguments, const PrtAsset& asset) {
   const Frame frame(arguments.width, arguments.height);
-  const AppearanceFrame appearance(frame, false);
+  const AppearanceFrame appearance(arguments.width, arguments.height, false);
   std::printf(
       "\n| surfaces behind one another | forward, ms | deferred, ms | forward / deferred |\n| --- | --- | --- | --- "
       "|\n");

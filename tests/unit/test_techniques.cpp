@@ -211,6 +211,47 @@ TEST(Technique, MemoryCountsWhatIsUploaded) {
   EXPECT_EQ(renderer.memory(Technique::vertex_prt).per_vertex, 12u + 28 * 4);
 }
 
+TEST(Technique, TheAssetsOwnAlbedoIsInEvery) {
+  // A sphere in a furnace of radiance 1, unshadowed: every technique shows the albedo itself.
+  const Scratch scratch;
+  const TriangleMesh mesh = shapes::cube_sphere(8);
+  const auto context = software_context();
+  write_asset(scratch.folder(), mesh, unoccluded_stack(mesh, 48, 32, 3, 8));
+  Image<std::uint8_t> map(48, 32, 3);
+  for (std::size_t k = 0; k < map.values().size(); k += 3) {
+    map.values()[k] = 255;
+    map.values()[k + 1] = 188;  // 0.503 in linear light: IEC 61966-2-1
+  }
+  write_png(scratch.folder() / "albedo.png", map);
+  write_png(scratch.folder() / "normal.png", Image<std::uint16_t>(48, 32, 3, 65535));
+  nlohmann::json ranges = nlohmann::json::parse(read_text(scratch.folder() / "ranges.json"));
+  ranges["albedo"] = "albedo.png";
+  std::ofstream(scratch.folder() / "ranges.json") << ranges.dump();
+  const PrtAsset asset = load_prt_asset(scratch.folder());
+  SceneView view = small_view(mesh, 20, 12);
+  for (const Technique technique :
+       {Technique::phong, Technique::normal_map, Technique::vertex_prt, Technique::textured_prt})
+    for (const Shading shading : {Shading::forward, Shading::deferred}) {
+      if (shading == Shading::deferred && technique != Technique::textured_prt) continue;
+      view.shading = shading;
+      view.look = {};
+      const Image<float> natural = sphere_drawn(asset, technique, {"ambient:1"}, view);
+      view.look.albedo = std::array{0.5f, 0.5f, 0.5f};
+      const Image<float> halved = sphere_drawn(asset, technique, {"ambient:1"}, view);
+      view.look.own_albedo = false;
+      const Image<float> grey = sphere_drawn(asset, technique, {"ambient:1"}, view);
+      visit_sphere(view, [&](int i, int j, const Eigen::Vector3f&) {
+        const float expected[3] = {1, 0.503f, 0};
+        for (int c = 0; c < 3; ++c) {
+          // Tables that decode sRGB in 8 bits, and harmonics of float32.
+          ASSERT_NEAR(natural.at(i, j, c), expected[c], 2e-3) << technique_name(technique);
+          ASSERT_NEAR(halved.at(i, j, c), 0.5f * expected[c], 1e-3) << technique_name(technique);
+          ASSERT_NEAR(grey.at(i, j, c), 0.5f, 1e-3) << technique_name(technique);
+        }
+      });
+    }
+}
+
 TEST(LightFile, ReadsWhatTheCommandLineTakes) {
   const Scratch scratch;
   const fs::path file = scratch.folder() / "lights.json";

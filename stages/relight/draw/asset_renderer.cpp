@@ -42,20 +42,20 @@ AssetRenderer::AssetRenderer(const PrtAsset& asset, int incident_samples)
     : asset_(asset),
       samples_(place_incident_samples(asset.mesh, incident_samples)),
       mesh_(upload_mesh(asset.mesh, samples_)),
-      albedo_map_(upload_albedo(asset)) {}
+      albedo_map_(upload_albedo(asset.albedo.picture)),
+      white_(upload_albedo(Image<std::uint8_t>(1, 1, 3, 255))) {}
 
 std::array<float, 3> AssetRenderer::albedo() const {
   constexpr float grey = 0.8f;
-  std::array<float, 3> albedo;
-  for (int c = 0; c < 3; ++c)
-    albedo[static_cast<std::size_t>(c)] = look_.albedo
-                                              ? (*look_.albedo)[static_cast<std::size_t>(c)] * asset_.albedo.constant[c]
-                                              : (asset_.albedo.known ? asset_.albedo.constant[c] : grey);
+  const bool own = look_.own_albedo && asset_.albedo.known;
+  std::array<float, 3> albedo = look_.albedo.value_or(own ? std::array{1.f, 1.f, 1.f} : std::array{grey, grey, grey});
+  for (std::size_t c = 0; own && c < 3; ++c) albedo[c] *= asset_.albedo.constant[static_cast<Eigen::Index>(c)];
   return albedo;
 }
 
 void AssetRenderer::bind_albedo() const {
-  if (albedo_map_.texture.name() != 0) glBindTextureUnit(albedo_unit, albedo_map_.texture.name());
+  if (albedo_map_.texture.name() != 0)
+    glBindTextureUnit(albedo_unit, (look_.own_albedo ? albedo_map_ : white_).texture.name());
 }
 
 const GlProgram& AssetRenderer::program(Pass pass) {

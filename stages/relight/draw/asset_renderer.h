@@ -20,8 +20,9 @@ namespace kiln {
 struct SurfaceLook {
   /// Linear, times the asset's own; none: 1 where the asset knows its own, else a grey of 0.8.
   std::optional<std::array<float, 3>> albedo;
-  float specular = 0;    ///< of the Phong techniques alone: reflectance of the highlight
-  float shininess = 32;  ///< of these: the power of its cosine
+  bool own_albedo = true;  ///< whether the asset's own counts
+  float specular = 0;      ///< of the Phong techniques alone: reflectance of the highlight
+  float shininess = 32;    ///< of these: the power of its cosine
 };
 
 /// What a technique takes on the GPU, in bytes, as in Chapter 2010, table 6.2.
@@ -77,7 +78,7 @@ class AssetRenderer {
   IncidentSamples samples_;
   UploadedMesh mesh_;
   std::map<Pass, GlProgram> programs_;
-  UploadedTexture planes_, cluster_ids_, normal_map_, albedo_map_;
+  UploadedTexture planes_, cluster_ids_, normal_map_, albedo_map_, white_;
   UploadedVertexTransfer vertex_transfer_;
   UploadedTexture light_, vertex_light_;
   GlBuffer phong_lights_;

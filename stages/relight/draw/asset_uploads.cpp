@@ -128,8 +128,7 @@ UploadedTexture upload_normal_map(const PrtAsset& asset) {
   return map;
 }
 
-UploadedTexture upload_albedo(const PrtAsset& asset) {
-  const Image<std::uint8_t>& picture = asset.albedo.picture;
+UploadedTexture upload_albedo(const Image<std::uint8_t>& picture) {
   if (picture.values().empty()) return {};
   require_at_most(GL_MAX_TEXTURE_SIZE, std::max(picture.width(), picture.height()), "textures with a side");
   UploadedTexture map{make_texture(GL_TEXTURE_2D), 4 * picture.values().size() / 3};  // drivers pad RGB to four

@@ -33,8 +33,8 @@ UploadedTexture upload_cluster_ids(const PrtAsset& asset);
 /// The asset's normal map as object-space n * 0.5 + 0.5, 16 bits. Throws BadInput.
 UploadedTexture upload_normal_map(const PrtAsset& asset);
 
-/// The asset's albedo, which the texture unit decodes from sRGB, looked up bilinearly; none where it is constant.
-UploadedTexture upload_albedo(const PrtAsset& asset);
+/// An albedo that the texture unit decodes from sRGB, looked up bilinearly; none of no picture.
+UploadedTexture upload_albedo(const Image<std::uint8_t>& picture);
 
 /// Transfer vectors at the vertices, float32, four coefficients to a texel of a buffer texture, layer_count texels to a
 /// vertex: looked up in the texels at the vertices' uvs, or those of an asset that is baked per vertex.

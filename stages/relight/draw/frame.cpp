@@ -56,15 +56,12 @@ void Frame::begin() const {
   bind(framebuffer_, width_, height_);
 }
 
-AppearanceFrame::AppearanceFrame(const Frame& frame, bool with_contributions)
-    : frame_(frame),
-      uv_and_asset_(make_target(GL_RGBA32F, frame.width(), frame.height())),
-      framebuffer_(make_framebuffer()) {
+AppearanceFrame::AppearanceFrame(int width, int height, bool with_contributions)
+    : uv_and_asset_(make_target(GL_RGBA32F, width, height)), framebuffer_(make_framebuffer()) {
   glNamedFramebufferTexture(framebuffer_.name(), GL_COLOR_ATTACHMENT0, uv_and_asset_.name(), 0);
-  glNamedFramebufferTexture(framebuffer_.name(), GL_DEPTH_STENCIL_ATTACHMENT, frame.depth().name(), 0);
   if (with_contributions) {
-    contributions_low_ = make_target(GL_RGBA16F, frame.width(), frame.height());
-    contributions_high_ = make_target(GL_RGBA16F, frame.width(), frame.height());
+    contributions_low_ = make_target(GL_RGBA16F, width, height);
+    contributions_high_ = make_target(GL_RGBA16F, width, height);
     glNamedFramebufferTexture(framebuffer_.name(), GL_COLOR_ATTACHMENT1, contributions_low_.name(), 0);
     glNamedFramebufferTexture(framebuffer_.name(), GL_COLOR_ATTACHMENT2, contributions_high_.name(), 0);
   }
@@ -73,9 +70,10 @@ AppearanceFrame::AppearanceFrame(const Frame& frame, bool with_contributions)
   check_gl("making the frame of appearances");
 }
 
-void AppearanceFrame::begin() const {
+void AppearanceFrame::begin(const Frame& frame) const {
+  glNamedFramebufferTexture(framebuffer_.name(), GL_DEPTH_STENCIL_ATTACHMENT, frame.depth().name(), 0);
   clear(framebuffer_, contributions_low_.name() != 0 ? 3 : 1);
-  bind(framebuffer_, frame_.width(), frame_.height());
+  bind(framebuffer_, frame.width(), frame.height());
   glEnable(GL_STENCIL_TEST);
   glStencilMask(0xff);
   glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
@@ -83,9 +81,9 @@ void AppearanceFrame::begin() const {
 
 void AppearanceFrame::begin_asset(int number) const { glStencilFunc(GL_ALWAYS, stencil_of(number), 0xff); }
 
-void AppearanceFrame::begin_shading() const {
-  clear_colours(frame_.framebuffer(), 1);
-  glBindFramebuffer(GL_FRAMEBUFFER, frame_.framebuffer().name());
+void AppearanceFrame::begin_shading(const Frame& frame) const {
+  clear_colours(frame.framebuffer(), 1);
+  glBindFramebuffer(GL_FRAMEBUFFER, frame.framebuffer().name());
   glDisable(GL_DEPTH_TEST);
   glDepthMask(GL_FALSE);
   glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
@@ -96,6 +94,8 @@ void AppearanceFrame::begin_shading() const {
 
 void AppearanceFrame::begin_shading_asset(int number) const { glStencilFunc(GL_EQUAL, stencil_of(number), 0xff); }
 
-void AppearanceFrame::end_shading() const { bind(frame_.framebuffer(), frame_.width(), frame_.height()); }
+void AppearanceFrame::end_shading(const Frame& frame) const {
+  bind(frame.framebuffer(), frame.width(), frame.height());
+}
 
 }  // namespace kiln

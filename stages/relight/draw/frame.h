@@ -25,31 +25,29 @@ class Frame {
   GlFramebuffer framebuffer_;
 };
 
-/// The first pass of deferred shading of a frame: uv and the asset's number of every sample, contributions of
-/// incident-light samples (16-bit floats) where assets have several. Depth and stencil are the frame's, which must
-/// outlive this.
+/// The first pass of deferred shading of frames of a size: uv and the asset's number of every sample, contributions of
+/// incident-light samples (16-bit floats) where assets have several. Depth and stencil are the frame's.
 class AppearanceFrame {
  public:
-  AppearanceFrame(const Frame& frame, bool with_contributions);
+  AppearanceFrame(int width, int height, bool with_contributions);
 
-  /// Binds and clears it, with the state of Frame::begin.
-  void begin() const;
+  /// Binds and clears it, and the frame's depth and stencil, with the state of Frame::begin.
+  void begin(const Frame& frame) const;
 
   /// Of the draws that follow, until begin_shading: the asset's number goes into the stencil. Assets are numbered
   /// from 1.
   void begin_asset(int number) const;
 
   /// Binds the frame, cleared but for its depth, and the textures that AssetRenderer::shade_appearance reads.
-  void begin_shading() const;
+  void begin_shading(const Frame& frame) const;
 
   /// Only the samples of that asset are shaded: the stencil keeps the shader from running for others.
   void begin_shading_asset(int number) const;
 
   /// Back to the state of Frame::begin.
-  void end_shading() const;
+  void end_shading(const Frame& frame) const;
 
  private:
-  const Frame& frame_;
   GlTexture uv_and_asset_, contributions_low_, contributions_high_;
   GlFramebuffer framebuffer_;
 };

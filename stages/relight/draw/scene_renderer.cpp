@@ -80,17 +80,17 @@ void draw_scene(const std::vector<SceneAsset>& assets, const Eigen::Matrix4d& cl
     return;
   }
   const auto number = [](std::size_t k) { return static_cast<int>(k) + 1; };
-  appearance->begin();
+  appearance->begin(frame);
   for (std::size_t k = 0; k < assets.size(); ++k) {
     appearance->begin_asset(number(k));
     assets[k].renderer->draw_appearance(clip_from_object(assets[k]), number(k));
   }
-  appearance->begin_shading();
+  appearance->begin_shading(frame);
   for (std::size_t k = 0; k < assets.size(); ++k) {
     appearance->begin_shading_asset(number(k));
     assets[k].renderer->shade_appearance(number(k));
   }
-  appearance->end_shading();
+  appearance->end_shading(frame);
 }
 
 Image<float> render_scene(const std::vector<SceneAsset>& assets, const SceneLights& lights, const SceneView& view) {
@@ -105,7 +105,8 @@ Image<float> render_scene(const std::vector<SceneAsset>& assets, const SceneLigh
       Image<float> fine(tile.width * factor, tile.height * factor, 4);
       const Frame frame(fine.width(), fine.height());
       std::optional<AppearanceFrame> appearance;
-      if (view.shading == Shading::deferred) appearance.emplace(frame, has_several_samples(assets));
+      if (view.shading == Shading::deferred)
+        appearance.emplace(fine.width(), fine.height(), has_several_samples(assets));
       draw_scene(assets, clip_of_tile(tile, view.width, view.height) * view.camera.clip_from_object().cast<double>(),
                  view.camera.position.cast<double>(), frame, appearance ? &*appearance : nullptr);
       glPixelStorei(GL_PACK_ALIGNMENT, 1);

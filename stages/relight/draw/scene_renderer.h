@@ -40,7 +40,7 @@ BoundingBox scene_box(const std::vector<SceneAsset>& assets);
 void light_scene(const std::vector<SceneAsset>& assets, const SceneLights& lights, const SurfaceLook& look);
 
 /// Draws lit assets into `frame` as `clip_from_scene` and `eye_scene` see them. Deferred shading goes through
-/// `appearance`, which is the frame's; forward shading needs none. Throws WrongUsage for deferred shading of a
+/// `appearance`, which is as large; forward shading needs none. Throws WrongUsage for deferred shading of a
 /// technique that does not go with it, and as AssetRenderer::prepare does.
 void draw_scene(const std::vector<SceneAsset>& assets, const Eigen::Matrix4d& clip_from_scene,
                 const Eigen::Vector3d& eye_scene, const Frame& frame, const AppearanceFrame* appearance = nullptr);

@@ -82,7 +82,8 @@ void AssetView::draw_lit(const ViewState& state, Technique technique, int bands,
   AssetRenderer& used = renderer(scene_.forms.of(technique), state.light);
   SurfaceLook look = look_;
   if (state.show == Show::coefficient) {
-    look.albedo = {1, 1, 1};
+    look.albedo = std::array{1.f, 1.f, 1.f};
+    look.own_albedo = false;
     used.set_light(light_of_coefficient(state.coefficient, used.asset(), used.samples()), look);
   } else {
     used.set_light(light(state.light, bands, used), look);
