@@ -139,7 +139,7 @@ Json describe_subsurface(const SubsurfaceReport& report) {
 /// Gives what came of the seams, for bake.json.
 Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeResult& result,
                     const BakeSettings& settings) {
-  AssetFiles files{"atlas.drc", "", scene.normal_space, scene.albedo};
+  AssetFiles files{"atlas.drc", "", scene.albedo, scene.normal_space};
   fs::copy_file(paths.atlas, outputs.add(files.mesh), fs::copy_options::overwrite_existing);
   if (!paths.detail.empty()) {
     files.normals = "normal.png";

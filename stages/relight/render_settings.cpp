@@ -68,9 +68,7 @@ std::vector<SceneView> views_of(const RenderSettings& settings, const BoundingBo
   view.width = settings.width;
   view.height = settings.height;
   view.supersample = settings.supersample;
-  if (settings.albedo != "auto") view.look.albedo = parse_colour("albedo", settings.albedo, 0, 1);
-  view.look.specular = static_cast<float>(settings.specular);
-  view.look.shininess = static_cast<float>(settings.shininess);
+  view.look = look_of(settings);
   view.shading = settings.shading;
   std::vector<SceneView> views;
   // Twice, so that the frame that needs the most distance sets that of all.
@@ -87,6 +85,14 @@ std::vector<SceneView> views_of(const RenderSettings& settings, const BoundingBo
             std::max(camera.least_distance, static_cast<double>((each.camera.position - box.centre()).norm()));
   }
   return views;
+}
+
+SurfaceLook look_of(const RenderSettings& settings) {
+  SurfaceLook look;
+  if (settings.albedo != "auto") look.albedo = parse_colour("albedo", settings.albedo, 0, 1);
+  look.specular = static_cast<float>(settings.specular);
+  look.shininess = static_cast<float>(settings.shininess);
+  return look;
 }
 
 PictureSettings picture_of(const RenderSettings& settings) {

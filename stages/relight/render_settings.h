@@ -49,6 +49,9 @@ CameraSettings camera_settings_of(const RenderSettings& settings);
 /// WrongUsage.
 std::vector<SceneView> views_of(const RenderSettings& settings, const BoundingBox& box);
 
+/// The surface. Throws WrongUsage.
+SurfaceLook look_of(const RenderSettings& settings);
+
 /// How to show the radiance. Throws WrongUsage.
 PictureSettings picture_of(const RenderSettings& settings);
 

@@ -10,6 +10,7 @@
 #include "report/page_tables.h"
 #include "report/pictures.h"
 #include "report/tradeoff.h"
+#include "report/transport.h"
 #include "sh/basis.h"
 
 namespace kiln {
@@ -139,6 +140,11 @@ std::string relit_section(const AssetFolder& asset, const Report& report, const 
       "pixels.</p>\n",
       settings.value("directions", Json("–")).dump(), asset.bands, metric_value("pixels", comparison.compared_pixels),
       metric_value("silhouette_difference", comparison.silhouette_difference));
+  if (scatters_light(asset.record("bake")))
+    html +=
+        "<p class=note>The reference has direct light alone: light that bounces, or scatters beneath the surface, is "
+        "part of "
+        "the difference.</p>\n";
   const Crop crop = crop_of(comparison.lights.front());
   for (const LightComparison& light : comparison.lights) {
     const std::string name = light_label(light.light);
@@ -302,9 +308,9 @@ std::string page_html(const AssetFolder& asset, const Report& report, const Json
          escaped(asset.name) + " · Kiln report</title>\n<style>\n" + page_style() +
          "</style>\n</head>\n<body><main>\n" + header(asset, report, metrics) +
          relit_section(asset, report, metrics, scratch) + budgets_section(report) +
-         compression_section(asset, report, scratch) + textures_section(asset, scratch) +
-         coefficients_section(asset, scratch) + verification_section(asset) + stages_section(metrics) +
-         footer(metrics) + "</main></body>\n</html>\n";
+         compression_section(asset, report, scratch) + transport_section(asset.record("bake")) +
+         textures_section(asset, scratch) + coefficients_section(asset, scratch) + verification_section(asset) +
+         stages_section(metrics) + footer(metrics) + "</main></body>\n</html>\n";
 }
 
 }  // namespace kiln

@@ -7,16 +7,21 @@
 #include "base/errors.h"
 #include "kiln/build.h"
 #include "kiln/pipeline.h"
+#include "scratch.h"
 
 namespace kiln {
 namespace {
 
 namespace fs = std::filesystem;
 
+Pipeline pipeline_in(const fs::path& folder, const std::string& text) {
+  std::ofstream(folder / "pipeline.yaml") << text;
+  return load_pipeline(folder / "pipeline.yaml");
+}
+
 Pipeline pipeline_of(const std::string& text) {
-  const fs::path file = fs::path(testing::TempDir()) / "pipeline.yaml";
-  std::ofstream(file) << text;
-  return load_pipeline(file);
+  const Scratch scratch;  // of this test alone: CTest runs several at once
+  return pipeline_in(scratch.folder(), text);
 }
 
 std::string refusal(const std::string& text) {
@@ -243,17 +248,18 @@ assets:
 }
 
 TEST(Material, FilesOfTheRecordAreInputs) {
-  const fs::path folder = fs::path(testing::TempDir()) / "made" / "a" / "normals";
+  const Scratch scratch;
+  const fs::path folder = scratch.folder() / "made" / "a" / "normals";
   fs::create_directories(folder);
-  const fs::path texture = fs::path(testing::TempDir()) / "wood.png";
+  const fs::path texture = scratch.folder() / "wood.png";
   std::ofstream(texture) << "x";
   std::ofstream(folder / "normals.json") << R"({"inputs": {"a.obj": "1", "wood.png": "2", "gone.mtl": "3"}})";
-  const std::vector<MakeRule> rules = make_rules(pipeline_of("output: made\nassets:\n  a: {mesh: a.obj}\n"));
+  const std::vector<MakeRule> rules =
+      make_rules(pipeline_in(scratch.folder(), "output: made\nassets:\n  a: {mesh: a.obj}\n"));
   const std::vector<fs::path>& inputs = run_of(rules, "a", "normals").inputs;
   EXPECT_TRUE(contains(inputs, "wood.png"));
   EXPECT_FALSE(contains(inputs, "gone.mtl")) << "make would know no way to it";
   EXPECT_EQ(std::count(inputs.begin(), inputs.end(), fs::path("a.obj")), 1);
-  fs::remove_all(folder);
 }
 
 TEST(Scene, MistakesAreNamed) {

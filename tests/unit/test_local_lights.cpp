@@ -216,6 +216,34 @@ TEST(LocalLight, PlacedAssetsAreLitAsTheSceneHasIt) {
   EXPECT_NEAR(light.direct[0].radius, 0.5 / 3, 1e-6);
 }
 
+TEST(LocalLight, ProbesStandBetweenTheLightAndTheAsset) {
+  // Two probes: past the one light comes as it is, past the other half of it; a turned asset sees it turned.
+  const int bands = 3;
+  ProbeSet probes;
+  probes.bands = bands;
+  probes.grid = ProbeGrid{{2, 1, 1}, {0, 0, 0}, {2, 0, 0}};
+  for (std::size_t k = 0; k < 2; ++k) {
+    probes.positions.push_back(probes.grid->position(k));
+    probes.valid.push_back(1);
+    for (int i = 0; i < 9; ++i)
+      for (int j = 0; j < 9; ++j) probes.matrices.push_back(i == j ? (k == 0 ? 1.f : 0.5f) : 0.f);
+  }
+  SceneLights lights = one_light("40,20,1,0.5,0.25", LightWindow::hann);
+  const LightCoefficients far_away = lights.incident(bands, {0, 0, 0});
+  lights.probes = &probes;
+  EXPECT_TRUE(lights.is_local());
+  const Placement placement = parse_placement("place", "1,0,0,90");
+  const std::vector<Eigen::Vector3f> points = {{0, 0, -1}, {0, 0, 0}, {0, 0, 1}};  // in the scene x = 0, 1 and 2
+  const AssetLight light = light_asset(lights, bands, placement, points);
+  const ShRotation into_object(bands, placement.rotation.transpose());
+  const LightCoefficients turned = into_object(far_away);
+  const double shares[3] = {1, 0.75, 0.5};
+  for (std::size_t k = 0; k < 3; ++k)
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < 9; ++i)
+        EXPECT_NEAR(light.samples[k].channels[c][i], shares[k] * turned.channels[c][i], 1e-5);
+}
+
 TEST(Placement, ReadsAndRefuses) {
   const Placement placement = parse_placement("place", "1,2,3,90,2");
   // +Z turns towards +X.

@@ -13,6 +13,7 @@
 #include "report/reference.h"
 #include "report/report_settings.h"
 #include "report/tradeoff.h"
+#include "report/transport.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 #include "sh/light_spec.h"
@@ -309,6 +310,22 @@ TEST(Process, GivesLinesStatusAndSignal) {
   EXPECT_EQ(errors, std::vector<std::string>{"wrong"});
   EXPECT_EQ(run_process({"sh", "-c", "kill -9 $$"}).signal, 9);
   EXPECT_THROW(run_process({"/no/such/program"}), MachineLacks);
+}
+
+TEST(Page, TransportNamesEveryBounceAndChannel) {
+  EXPECT_EQ(transport_section(Json{{"seconds", 3}}), "");
+  const Json bounced = {{"seconds", 10.0},
+                        {"bounces", {{"energy", {0.25, 0.0625}}, {"seconds", {1.0, 2.0}}, {"cache_seconds", 3.0}}}};
+  EXPECT_TRUE(scatters_light(bounced));
+  const std::string table = transport_section(bounced);
+  for (const char* word : {"bounce 1", "bounce 2", "25.0&#8239;%", "6.25&#8239;%", "width:25.0%"})
+    EXPECT_NE(table.find(word), std::string::npos) << word << " in " << table;
+  // 10 s less what is told of: direct light took 4 s.
+  EXPECT_NE(table.find(metric_value("seconds", 4.0)), std::string::npos) << table;
+  const std::string beneath = transport_section(
+      {{"subsurface", {{"reflectance", {0.5, 0.25, 0.125}}, {"energy", {0.4, 0.2, 0.1}}, {"seconds", 1.0}}}});
+  for (const char* word : {"<tr><td>R", "<tr><td>B", "12.5&#8239;%", "40.0&#8239;%"})
+    EXPECT_NE(beneath.find(word), std::string::npos) << word << " in " << beneath;
 }
 
 }  // namespace

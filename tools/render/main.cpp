@@ -22,6 +22,9 @@ int main(int argc, char** argv) {
         "Where an asset stands, once for each in their order: X,Y,Z[,AZIMUTH[,SCALE]], object units and "
         "degrees about +Y (default the origin)");
     add_light_options(command, lights, paths.light_file);
+    command.input_option("probes", paths.probes,
+                         "Folder of kiln-probes: the light around the first asset, which stands at the origin, for the "
+                         "others; for the only asset, that around what is not drawn");
     command.options("Picture", render_options(settings));
     command.parse(argc, argv);
     if (is_sheet(settings) && file.extension() != ".png")

@@ -23,10 +23,11 @@ struct Uploaded {
   std::vector<std::unique_ptr<AssetRenderer>> renderers;
   std::vector<SceneAsset> assets;
 
-  void add(const PrtAsset& asset, const Placement& placement, Technique technique, int incident_samples) {
+  void add(const PrtAsset& asset, const Placement& placement, Technique technique, int incident_samples,
+           const ProbeSet* probes = nullptr) {
     renderers.push_back(std::make_unique<AssetRenderer>(asset, incident_samples));
     renderers.back()->prepare(technique);
-    assets.push_back({renderers.back().get(), placement, technique});
+    assets.push_back({renderers.back().get(), placement, technique, probes});
   }
 };
 
@@ -111,6 +112,12 @@ RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& lig
     throw WrongUsage("technique all and --side-by-side: found --frames; expected one picture");
   if (paths.places.size() > paths.assets.size())
     throw WrongUsage("place: found " + std::to_string(paths.places.size()) + "; expected at most one for each asset");
+  if (!paths.probes.empty() && is_sheet(settings))
+    throw WrongUsage("probes: found a sheet of single assets; expected a picture of them together");
+  if (!paths.probes.empty() && paths.assets.size() > 1 && !paths.places.empty() &&
+      parse_placement("place", paths.places.front()).matrix() != Eigen::Matrix4d::Identity())
+    throw WrongUsage("probes: found --place " + paths.places.front() +
+                     " of the first asset; expected 0,0,0, where the probes are its own");
   const LightSettings given = chosen_lights(light_settings, paths.light_file);
 
   RenderScene scene;
@@ -124,7 +131,8 @@ RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& lig
     bands = std::max(bands, scene.assets.back().bands);
   }
   if (!paths.compressed.empty()) scene.compressed = load_other_form(paths.compressed, scene.assets.front());
-  scene.lights = scene_lights(given, bands);
+  if (!paths.probes.empty()) scene.probes = load_probes(paths.probes);
+  scene.lights = scene_lights(given, std::max(bands, scene.probes ? scene.probes->bands : 0));
   return scene;
 }
 
@@ -132,11 +140,12 @@ Json render_to_files(OutputSet& outputs, const std::string& name, const RenderSc
                      const RenderSettings& settings, const EglContext& context, const ProgressFunction& progress) {
   if (is_sheet(settings)) return write_sheet(outputs, name, scene, settings, context);
   Uploaded uploaded;
-  const int samples = incident_samples_of(settings, scene.lights.is_local());
   for (std::size_t k = 0; k < scene.assets.size(); ++k) {
+    const bool probed = scene.probes && (k > 0 || scene.assets.size() == 1);
+    const int samples = incident_samples_of(settings, probed || scene.lights.is_local());
     const bool other_form = settings.technique == TechniqueChoice::compressed && scene.compressed;
     const PrtAsset& asset = other_form ? *scene.compressed : scene.assets[k];
-    uploaded.add(asset, scene.placements[k], technique_of(settings, asset), samples);
+    uploaded.add(asset, scene.placements[k], technique_of(settings, asset), samples, probed ? &*scene.probes : nullptr);
   }
   const PictureSettings picture = picture_of(settings);
   const std::vector<SceneView> views = views_of(settings, scene_box(uploaded.assets));

@@ -23,6 +23,7 @@ struct RenderPaths {
   std::filesystem::path compressed;  ///< of the only asset; empty: none
   std::vector<std::string> places;   ///< of the assets, in their order; those without one stand at the origin
   std::filesystem::path light_file;  ///< empty: none
+  std::filesystem::path probes;      ///< of the first asset; empty: none
 };
 
 struct RenderScene {
@@ -30,6 +31,7 @@ struct RenderScene {
   std::vector<std::string> names;  ///< of their folders
   std::vector<Placement> placements;
   std::optional<PrtAsset> compressed;  ///< another form of the only asset
+  std::optional<ProbeSet> probes;      ///< of the first asset, for the others, or for the only one
   std::vector<LightSpec> specs;
   SceneLights lights;
 };

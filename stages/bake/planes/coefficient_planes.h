@@ -42,8 +42,8 @@ void remove_stale_planes(OutputSet& outputs, const std::set<std::string>& writte
 struct AssetFiles {
   std::string mesh;
   std::string normals;  ///< empty: none
+  Json albedo = {};     ///< as ranges.json has it: a picture, or three linear numbers; null: none
   NormalSpace normal_space = NormalSpace::object;
-  Json albedo = {};  ///< as ranges.json has it: a picture, or three linear numbers; null: none
 };
 
 /// How far both sides of the seams are apart in what bilinear lookups of the stored planes give: the distance between

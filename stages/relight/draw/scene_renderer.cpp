@@ -56,9 +56,13 @@ BoundingBox scene_box(const std::vector<SceneAsset>& assets) {
 }
 
 void light_scene(const std::vector<SceneAsset>& assets, const SceneLights& lights, const SurfaceLook& look) {
-  for (const SceneAsset& asset : assets)
-    asset.renderer->set_light(
-        light_asset(lights, asset.renderer->asset().bands, asset.placement, asset.renderer->samples().points), look);
+  for (const SceneAsset& asset : assets) {
+    SceneLights there = lights;
+    there.probes = asset.probes;
+    asset.renderer->set_light(light_asset(there, asset.renderer->asset().bands, asset.placement,
+                                          asset.renderer->samples().points),
+                              look);
+  }
 }
 
 void draw_scene(const std::vector<SceneAsset>& assets, const Eigen::Matrix4d& clip_from_scene,

@@ -21,6 +21,7 @@ struct SceneAsset {
   AssetRenderer* renderer = nullptr;
   Placement placement;
   Technique technique = Technique::textured_prt;
+  const ProbeSet* probes = nullptr;  ///< the light where it stands, past what kiln-probes was given; none: nothing
 };
 
 /// One picture of a scene.

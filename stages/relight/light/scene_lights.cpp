@@ -43,10 +43,17 @@ DirectLight direct_light(const LightSpec& spec, const Placement& placement) {
 }  // namespace
 
 bool SceneLights::is_local() const {
-  return std::any_of(specs.begin(), specs.end(), [](const LightSpec& spec) { return spec.kind == Kind::sphere; });
+  return probes != nullptr ||
+         std::any_of(specs.begin(), specs.end(), [](const LightSpec& spec) { return spec.kind == Kind::sphere; });
 }
 
 LightCoefficients SceneLights::incident(int bands, const Eigen::Vector3d& viewpoint) const {
+  if (probes != nullptr) {
+    const SceneLights unhindered{specs, environment, window};
+    return first_bands(
+        light_at(*probes, viewpoint.cast<float>(), unhindered.incident(std::max(bands, probes->bands), viewpoint)),
+        bands);
+  }
   LightCoefficients sum = constant_light(bands, std::array<float, 3>{0, 0, 0});
   for (const LightSpec& spec : specs) sum = add_lights(sum, light_coefficients(spec, bands, viewpoint));
   if (environment) sum = add_lights(sum, first_bands(*environment, bands));

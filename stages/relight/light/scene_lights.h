@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "asset/probe_set.h"
 #include "mesh/placement.h"
 #include "sh/light_spec.h"
 #include "sh/lights.h"
@@ -18,6 +19,7 @@ struct SceneLights {
   std::vector<LightSpec> specs;
   std::optional<LightCoefficients> environment;  ///< distant light of any number of bands
   LightWindow window = LightWindow::hann;
+  const ProbeSet* probes = nullptr;  ///< what stands at the origin and shadows the light on its way; none: nothing
 
   /// Whether the light depends on the place.
   bool is_local() const;

@@ -4,8 +4,6 @@
 #include <numeric>
 #include <tuple>
 
-#include "base/numbers.h"
-
 namespace kiln {
 
 namespace {
@@ -39,10 +37,10 @@ std::vector<std::pair<double, double>> decoded_ranges(const PrtAsset& asset) {
 }  // namespace
 
 AssetView::AssetView(ViewScene scene, const RenderSettings& settings, const ViewState& state)
-    : scene_(std::move(scene)), limits_(limits_of(scene_)), wanted_samples_(settings.incident_samples) {
-  look_.albedo = parse_colour("albedo", settings.albedo, 0, 1);
-  look_.specular = static_cast<float>(settings.specular);
-  look_.shininess = static_cast<float>(settings.shininess);
+    : scene_(std::move(scene)),
+      limits_(limits_of(scene_)),
+      wanted_samples_(settings.incident_samples),
+      look_(look_of(settings)) {
   ViewState allowed = state;
   limit(allowed, limits_);
   renderer(scene_.forms.of(allowed.technique), allowed.light).prepare(allowed.technique);
