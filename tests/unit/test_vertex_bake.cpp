@@ -9,11 +9,13 @@
 #include <unistd.h>
 #include <vector>
 
+#include "asset/prt_asset.h"
 #include "bake/bake.h"
 #include "bake/planes/vertex_planes.h"
 #include "bake/scene/vertex_receivers.h"
 #include "base/errors.h"
 #include "base/options.h"
+#include "base/outputs.h"
 #include "mesh/draco_file.h"
 #include "sh/basis.h"
 #include "shapes.h"
@@ -254,6 +256,49 @@ TEST_F(VertexBake, VerticesOfAThinPlateStayOnTheirSide) {
   const TriangleMesh floor = shapes::plane(4);
   for (Eigen::Vector3f& normal : low.normals) normal = -normal;
   EXPECT_EQ(receivers_on_high_of_vertices(low, floor).facing_away, low.positions.size());
+}
+
+TEST_F(VertexBake, RuntimesReadTheFolderOrSayWhatIsWrong) {
+  const TriangleMesh mesh = shapes::icosphere(1);
+  const TexelReceivers receivers = receivers_on_vertices(mesh).receivers;
+  const auto write = [&] {
+    OutputSet outputs(folder());
+    write_vertex_planes(outputs, {furnace_transfer(receivers, 3, 1)}, receivers, mesh, 16, Json{0.5, 0.25, 1});
+    outputs.commit();
+  };
+  write();
+  const PrtAsset asset = load_prt_asset(folder());
+  ASSERT_TRUE(asset.is_per_vertex());
+  EXPECT_EQ(asset.albedo.constant, Eigen::Vector3f(0.5f, 0.25f, 1));
+  ASSERT_EQ(asset.vertex_transfer.size(), asset.mesh.positions.size() * 9);
+  // Half a step of 16 bits, and the mesh's own normals, good to half a step of 12 bits.
+  const ShBasis basis(3);
+  for (std::size_t v = 0; v < asset.mesh.positions.size(); ++v) {
+    const std::vector<float> truth = unoccluded_transfer(basis, asset.mesh.normals[v]);
+    for (std::size_t k = 0; k < 9; ++k) ASSERT_NEAR(asset.vertex_transfer[9 * v + k], truth[k], 2e-3);
+  }
+
+  const auto refuses = [&](const char* pointer, const Json& value, const char* words) {
+    write();
+    Json ranges = Json::parse(read_text(path("ranges.json")));
+    ranges[Json::json_pointer(pointer)] = value;
+    std::ofstream(path("ranges.json")) << ranges.dump();
+    try {
+      load_prt_asset(folder());
+      ADD_FAILURE() << pointer << " = " << value << " is not refused";
+    } catch (const BadInput& error) {
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  };
+  refuses("/vertices", 41, "42 vertices");
+  refuses("/vertices", -1, "vertices is -1");
+  refuses("/bits", 8, "16 bits");
+  refuses("/mesh", "other.drc", "other.drc");
+  refuses("/planes/3/attribute", "kiln-prt-9-9", "no attribute 'kiln-prt-9-9'");
+  refuses("/planes/3/attribute", 7, "planes[3].attribute");
+  refuses("/planes/8/component", 1, "planes[8].component");
+  refuses("/planes/2/min", nullptr, "planes[2].min");
+  refuses("/albedo", "albedo.png", "albedo.png");
 }
 
 }  // namespace
