@@ -28,8 +28,7 @@ struct Arguments {
   int width = 1280, height = 720, rounds = 20;
 };
 
-/// Milliseconds of a frame, of many: the least and the median. What a picture shows is lit anew in every frame where
-/// `relight` is given, as by a light that moves.
+/// Milliseconds of a frame, of many.
 struct FrameTime {
   double least = 0, median = 0;
 };

@@ -44,8 +44,8 @@ class AssetRenderer {
   const PrtAsset& asset() const { return asset_; }
   const IncidentSamples& samples() const { return samples_; }
 
-  /// Loads what the technique needs and compiles its shaders, which otherwise draw() does when it comes to it. Throws
-  /// WrongUsage where the asset cannot be drawn so, BadInput, and MachineLacks where the device takes no such texture.
+  /// Loads what the technique needs, which otherwise draw() does when it comes to it. Throws WrongUsage where the asset
+  /// cannot be drawn so, BadInput, and MachineLacks where the device takes no such texture.
   void prepare(Technique technique);
 
   /// Sets the light, of as many samples as this has, for all draws that follow. Throws as cluster_weights does.
