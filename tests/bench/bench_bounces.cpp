@@ -39,7 +39,8 @@ void measure(const BakeScene& scene, const BakeSettings& settings, BakeBackend b
   }
 
   // Step 2: the bounce, at the texels, and among the points, as each bounce more costs.
-  const std::unique_ptr<GatherEngine> engine = make_gather_engine(backend, surface_of(cache, scene.occluders), settings, 0);
+  const std::unique_ptr<GatherEngine> engine =
+      make_gather_engine(backend, surface_of(cache, scene.occluders), settings, 0);
   SentLight light{3, at_points.coefficients, std::vector<float>(cache.size() * 3 * at_points.coefficients)};
   for (std::size_t p = 0; p < cache.size(); ++p)
     for (int c = 0; c < 3; ++c)

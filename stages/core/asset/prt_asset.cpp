@@ -93,7 +93,8 @@ PrtAsset load_other_form(const fs::path& folder, const PrtAsset& asset) {
   PrtAsset other = load_prt_asset(folder);
   if (other.bands != asset.bands)
     throw BadInput(folder.string(), "has " + std::to_string(other.bands) + " bands",
-                   std::to_string(asset.bands) + ", as the asset has", "name the output of kiln-compress for this asset");
+                   std::to_string(asset.bands) + ", as the asset has",
+                   "name the output of kiln-compress for this asset");
   return other;
 }
 

@@ -59,9 +59,8 @@ void light_scene(const std::vector<SceneAsset>& assets, const SceneLights& light
   for (const SceneAsset& asset : assets) {
     SceneLights there = lights;
     there.probes = asset.probes;
-    asset.renderer->set_light(light_asset(there, asset.renderer->asset().bands, asset.placement,
-                                          asset.renderer->samples().points),
-                              look);
+    asset.renderer->set_light(
+        light_asset(there, asset.renderer->asset().bands, asset.placement, asset.renderer->samples().points), look);
   }
 }
 
