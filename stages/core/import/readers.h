@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+
+#include "import/source_mesh.h"
+
+namespace kiln {
+
+// One reader for each format, for all stages. Each throws BadInput that names the file, the line or the element, what
+// was found, what was expected and what to do; "truncated" is said of files that end too early alone. What a reader
+// passes by it says in `warnings`. Positions are read in double.
+
+SourceMesh read_obj(const std::filesystem::path& file);
+SourceMesh read_ply(const std::filesystem::path& file);
+SourceMesh read_stl(const std::filesystem::path& file);
+SourceMesh read_off(const std::filesystem::path& file);
+SourceMesh read_drc(const std::filesystem::path& file);
+SourceMesh read_gltf(const std::filesystem::path& file);  ///< .gltf and .glb
+SourceMesh read_fbx(const std::filesystem::path& file);
+
+/// Reads a mesh by its extension: obj, ply, stl, off, drc, gltf, glb or fbx, in any case of letters.
+SourceMesh read_source_mesh(const std::filesystem::path& file);
+
+}  // namespace kiln
