@@ -126,6 +126,13 @@ OptionSet& OptionSet::checked_text(std::string name, std::string& value, std::st
   return *this;
 }
 
+OptionSet& OptionSet::parsed(std::string name, std::string value_range, std::string help,
+                             std::function<void(const std::string&)> set, std::function<std::string()> print) {
+  options_.push_back({std::move(name), std::move(help), std::move(value_range), false, std::move(set),
+                      [print = std::move(print)] { return Json(print()); }});
+  return *this;
+}
+
 OptionSet& OptionSet::choice_by_index(std::string name, std::vector<std::string> words,
                                       std::function<void(std::size_t)> set, std::function<std::size_t()> get,
                                       std::string help) {

@@ -68,6 +68,10 @@ class OptionSet {
   OptionSet& checked_text(std::string name, std::string& value, std::string value_range, std::string help,
                           std::function<void(const std::string&)> check);
 
+  /// Text that is kept parsed: `set` throws WrongUsage for what it does not understand, `print` gives the text back.
+  OptionSet& parsed(std::string name, std::string value_range, std::string help,
+                    std::function<void(const std::string&)> set, std::function<std::string()> print);
+
   /// One of several words, each standing for a value of an enumeration.
   template <class Enum>
   OptionSet& choice(std::string name, Enum& value, std::vector<std::pair<std::string, Enum>> words, std::string help) {

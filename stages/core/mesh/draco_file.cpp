@@ -20,7 +20,8 @@ namespace kiln {
 namespace {
 
 constexpr char remedy[] = "run the stage that writes it again";
-constexpr char name_entry[] = "name";  // of an attribute's metadata
+constexpr char name_entry[] = "name";           // of an attribute's metadata
+constexpr char origin_entry[] = "kiln-origin";  // of the mesh's: MeshFrame::origin, left out where it is 0
 
 template <class Vector>
 int add_attribute(draco::Mesh& encoded, draco::GeometryAttribute::Type type, const std::vector<Vector>& values) {
@@ -58,10 +59,36 @@ void add_colors(draco::Mesh& encoded, const std::vector<Eigen::Vector3f>& colors
   }
 }
 
+/// The positions in the file's units, from the frame's origin.
+std::vector<Eigen::Vector3f> in_file_units(const TriangleMesh& mesh) {
+  std::vector<Eigen::Vector3f> positions = mesh.positions;
+  if (mesh.frame.exponent != 0)
+    for (Eigen::Vector3f& position : positions) position = (mesh.frame.unit() * position.cast<double>()).cast<float>();
+  return positions;
+}
+
+void add_origin(draco::Mesh& encoded, const Eigen::Vector3d& origin) {
+  if (origin.isZero(0)) return;
+  auto metadata = std::make_unique<draco::GeometryMetadata>();
+  metadata->AddEntryDoubleArray(origin_entry, {origin.x(), origin.y(), origin.z()});
+  encoded.AddMetadata(std::move(metadata));
+}
+
+/// Brings positions of a mesh that is very large or very small to ordinary size, and notes that in its frame.
+void normalise_size(TriangleMesh& mesh) {
+  const BoundingBox box = bounding_box(mesh);
+  const int exponent = ordinary_exponent((box.highest - box.lowest).cast<double>().maxCoeff());
+  if (exponent == 0) return;
+  mesh.frame.exponent = exponent;
+  for (Eigen::Vector3f& position : mesh.positions)
+    position = (position.cast<double>() / mesh.frame.unit()).cast<float>();
+}
+
 /// Positions, triangles and what else the mesh has as the first attributes of `encoded`, and how to quantise them.
 void add_mesh(draco::Mesh& encoded, const TriangleMesh& mesh, const DracoQuantisation& quantisation,
               std::vector<std::pair<int, int>>& attribute_bits) {
   encoded.set_num_points(static_cast<std::uint32_t>(mesh.positions.size()));
+  add_origin(encoded, mesh.frame.origin);
   encoded.SetNumFaces(mesh.triangles.size());
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
     draco::Mesh::Face face;
@@ -69,7 +96,7 @@ void add_mesh(draco::Mesh& encoded, const TriangleMesh& mesh, const DracoQuantis
     encoded.SetFace(draco::FaceIndex(i), face);
   }
   using draco::GeometryAttribute;
-  attribute_bits.emplace_back(add_attribute(encoded, GeometryAttribute::POSITION, mesh.positions),
+  attribute_bits.emplace_back(add_attribute(encoded, GeometryAttribute::POSITION, in_file_units(mesh)),
                               quantisation.position_bits);
   if (!mesh.normals.empty())
     attribute_bits.emplace_back(add_attribute(encoded, GeometryAttribute::NORMAL, mesh.normals),
@@ -143,6 +170,11 @@ TriangleMesh mesh_of(const draco::Mesh& source, const std::string& name) {
   for (const Eigen::Vector3f& position : mesh.positions)
     if (!position.allFinite())
       throw BadInput(name, "has a coordinate that is not a finite number", "finite coordinates", remedy);
+  std::vector<double> origin;
+  if (source.GetMetadata() != nullptr && source.GetMetadata()->GetEntryDoubleArray(origin_entry, &origin) &&
+      origin.size() == 3)
+    mesh.frame.origin = {origin[0], origin[1], origin[2]};
+  normalise_size(mesh);
   for (Eigen::Vector3f& normal : mesh.normals)
     normal = normal.squaredNorm() > 0 ? Eigen::Vector3f(normal.normalized()) : Eigen::Vector3f::UnitY();
   return mesh;
@@ -155,7 +187,9 @@ std::vector<std::uint32_t> find_sources(const TriangleMesh& mesh, const Triangle
                                         const DracoQuantisation& quantisation) {
   draco::Mesh companion;
   std::vector<std::pair<int, int>> attribute_bits;
-  add_mesh(companion, {mesh.positions, mesh.triangles, {}, {}}, quantisation, attribute_bits);
+  TriangleMesh bare{mesh.positions, mesh.triangles, {}, {}};
+  bare.frame = mesh.frame;
+  add_mesh(companion, bare, quantisation, attribute_bits);
   std::vector<std::uint32_t> indices(mesh.positions.size());
   std::iota(indices.begin(), indices.end(), 0u);
   add_integers<std::uint32_t>(companion, "vertex", 1, draco::DT_UINT32, indices);

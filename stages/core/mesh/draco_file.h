@@ -17,8 +17,10 @@ struct DracoQuantisation {
   int normal_bits = 12;
 };  // colors have 8, the steps of 1/255
 
-/// Writes positions and, where the mesh has them, normals, uvs and colors. Vertices keep being split where they were;
-/// their order and that of the triangles may change, so whoever measures the result loads it again.
+/// Writes positions, in the file's units from the origin of the mesh's frame, and, where the mesh has them, normals,
+/// uvs and colors. The origin goes into the file's metadata, as the entry `kiln-origin` of three doubles. Vertices keep
+/// being split where they were; their order and that of the triangles may change, so whoever measures the result loads
+/// it again.
 void save_draco(const std::filesystem::path& file, const TriangleMesh& mesh,
                 const DracoQuantisation& quantisation = {});
 
@@ -47,7 +49,8 @@ std::vector<std::uint32_t> save_attributed_draco(const std::filesystem::path& fi
 /// Reads what save_attributed_draco wrote; attributes in the order they were given. Throws BadInput for anything else.
 AttributedMesh load_attributed_draco(const std::filesystem::path& file);
 
-/// Reads what save_draco wrote, vertices and triangles as they are in the file. Throws BadInput for anything else.
+/// Reads what save_draco wrote, vertices and triangles as they are in the file, in their frame. Throws BadInput for
+/// anything else.
 TriangleMesh load_draco(const std::filesystem::path& file);
 
 /// load_draco for an atlas: throws BadInput where the mesh has no uvs or one of them lies outside the unit square.

@@ -105,27 +105,43 @@ int drop_unused(TriangleMesh& mesh) {
   return unused;
 }
 
-void drop_duplicates(TriangleMesh& mesh, MeshRepairs& repairs) {
+/// Whether two triangles of the same vertices run around them the same way.
+bool is_wound_alike(const Triangle& a, const Triangle& b) {
+  const auto k = static_cast<std::size_t>(std::find(b.begin(), b.end(), a[0]) - b.begin());
+  return b[(k + 1) % 3] == a[1];
+}
+
+/// Drops triangles that repeat a vertex, and those that are there already; their backs too, unless `keeps_backs`.
+void drop_duplicates(TriangleMesh& mesh, TriangleOrigins& origins, bool keeps_backs, MeshRepairs& repairs) {
   IndexTable table(mesh.triangles.size());
   std::vector<Triangle> kept;
+  TriangleOrigins kept_origins;
   kept.reserve(mesh.triangles.size());
+  kept_origins.reserve(mesh.triangles.size());
   const auto sorted = [](Triangle triangle) {
     std::sort(triangle.begin(), triangle.end());
     return triangle;
   };
-  for (const Triangle& triangle : mesh.triangles) {
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle& triangle = mesh.triangles[i];
     if (repeats_vertex(triangle)) {
       ++repairs.degenerate_triangles;
       continue;
     }
     const Triangle key = sorted(triangle);
     const auto index = static_cast<std::uint32_t>(kept.size());
-    if (table.find_or_add(key, index, [&](std::uint32_t other) { return sorted(kept[other]) == key; }) == index)
+    const std::uint32_t found = table.find_or_add(key, index, [&](std::uint32_t other) {
+      return sorted(kept[other]) == key && (!keeps_backs || is_wound_alike(kept[other], triangle));
+    });
+    if (found == index) {
       kept.push_back(triangle);
-    else
-      ++repairs.duplicate_triangles;
+      kept_origins.push_back(origins[i]);
+    } else {
+      ++(is_wound_alike(kept[found], triangle) ? repairs.duplicate_triangles : repairs.dropped_backs);
+    }
   }
   mesh.triangles = std::move(kept);
+  origins = std::move(kept_origins);
 }
 
 /// Winds triangles as their neighbours across edges of two triangles; each part that hangs together so is wound as the
@@ -299,21 +315,23 @@ void split_sheets(TriangleMesh& mesh, MeshRepairs& repairs) {
 }
 
 /// After triangles were taken out or put in: edges that are there twice now, and fans that came apart.
-void make_manifold_again(TriangleMesh& mesh) {
+void make_manifold_again(TriangleMesh& mesh, TriangleOrigins& origins, bool keeps_backs) {
   MeshRepairs own;
-  drop_duplicates(mesh, own);
+  drop_duplicates(mesh, origins, keeps_backs, own);
   if (!is_manifold(mesh)) split_sheets(mesh, own);
 }
 
 }  // namespace
 
-const std::array<std::pair<const char*, int MeshRepairs::*>, 12>& MeshRepairs::kinds() {
-  static const std::array<std::pair<const char*, int MeshRepairs::*>, 12> all = {
+const std::array<std::pair<const char*, int MeshRepairs::*>, 14>& MeshRepairs::kinds() {
+  static const std::array<std::pair<const char*, int MeshRepairs::*>, 14> all = {
       {{"merged_vertices", &MeshRepairs::merged_vertices},
+       {"welded_vertices", &MeshRepairs::welded_vertices},
        {"unused_vertices", &MeshRepairs::unused_vertices},
        {"triangulated_polygons", &MeshRepairs::triangulated_polygons},
        {"degenerate_triangles", &MeshRepairs::degenerate_triangles},
        {"duplicate_triangles", &MeshRepairs::duplicate_triangles},
+       {"dropped_backs", &MeshRepairs::dropped_backs},
        {"reversed_triangles", &MeshRepairs::reversed_triangles},
        {"nonmanifold_edges", &MeshRepairs::nonmanifold_edges},
        {"nonmanifold_vertices", &MeshRepairs::nonmanifold_vertices},
@@ -341,15 +359,18 @@ std::string MeshRepairs::text() const {
   return words;
 }
 
-MeshRepairs repair_mesh(TriangleMesh& mesh, const MeshRepairSettings& settings) {
+MeshRepairs repair_mesh(TriangleMesh& mesh, const MeshRepairSettings& settings, TriangleOrigins* origins_out) {
   MeshRepairs repairs;
   mesh.normals.clear();
+  mesh.corner_normals.clear();
   mesh.uvs.clear();
+  TriangleOrigins origins(mesh.triangles.size());
+  std::iota(origins.begin(), origins.end(), 0u);
 
   // Vertices and triangles one by one.
   repairs.merged_vertices = merge_vertices(mesh);
   repairs.unused_vertices = drop_unused(mesh) - repairs.merged_vertices;
-  drop_duplicates(mesh, repairs);
+  drop_duplicates(mesh, origins, settings.keeps_backs, repairs);
 
   // The surface they form.
   if (!is_manifold(mesh)) {
@@ -357,17 +378,21 @@ MeshRepairs repair_mesh(TriangleMesh& mesh, const MeshRepairSettings& settings) 
     split_sheets(mesh, repairs);
   }
   if (std::any_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) { return is_flat(mesh, t); })) {
-    repairs.degenerate_triangles += remove_flat_triangles(mesh);
-    make_manifold_again(mesh);
+    repairs.degenerate_triangles += remove_flat_triangles(mesh, origins);
+    make_manifold_again(mesh, origins, settings.keeps_backs);
   }
   repairs.border_loops = count_border_loops(mesh);
   if (settings.fill_hole_edges > 0 && repairs.border_loops > 0) {
-    repairs.filled_holes = fill_holes(mesh, settings.fill_hole_edges);
-    make_manifold_again(mesh);
+    repairs.filled_holes = fill_holes(mesh, origins, settings.fill_hole_edges);
+    make_manifold_again(mesh, origins, settings.keeps_backs);
     repairs.border_loops = count_border_loops(mesh);
   }
   drop_unused(mesh);
-  repairs.inside_out_components = turn_inside_out_components(mesh, repairs.components);
+  if (settings.keeps_orientation)
+    repairs.components = static_cast<int>(find_components(mesh).count);
+  else
+    repairs.inside_out_components = turn_inside_out_components(mesh, repairs.components);
+  if (origins_out != nullptr) *origins_out = std::move(origins);
   return repairs;
 }
 

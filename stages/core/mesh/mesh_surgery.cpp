@@ -2,12 +2,15 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/border.h>
-#include <CGAL/Polygon_mesh_processing/repair_degeneracies.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <CGAL/Surface_mesh.h>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <queue>
 #include <stdexcept>
+#include <tuple>
+#include <unordered_map>
+#include <vector>
 
 #include "mesh/mesh_components.h"
 
@@ -46,24 +49,133 @@ Triangle triangle_of(const SurfaceMesh& surface, Face face) {
   return {surface.source(first), surface.target(first), surface.target(surface.next(first))};
 }
 
-std::vector<Triangle> triangles_of(const SurfaceMesh& surface) {
-  std::vector<Triangle> triangles;
-  for (const Face face : surface.faces()) triangles.push_back(triangle_of(surface, face));
-  return triangles;
+/// Of the faces beside `face` the first that is older than a patch, else `otherwise`.
+Face neighbour_of(const SurfaceMesh& surface, Face face, std::uint32_t old_faces, Face otherwise) {
+  for (const Halfedge edge : surface.halfedges_around_face(surface.halfedge(face))) {
+    const Face beside = surface.face(surface.opposite(edge));
+    if (beside != SurfaceMesh::null_face() && beside < Face(old_faces)) return beside;
+  }
+  return otherwise;
 }
+
+/// Takes triangles out whose corners lie on one line. Their longest edge, which the third corner lies on, is flipped
+/// into the triangle on its other side, which is so cut in two. The one of the longest edge comes first: what lies
+/// beyond it has an area, or is no longer, so that edges only get shorter and it ends.
+class FlatTriangles {
+ public:
+  FlatTriangles(TriangleMesh& mesh, TriangleOrigins& origins)
+      : mesh_(mesh), origins_(origins), is_removed_(mesh.triangles.size(), false) {}
+
+  /// Returns how many there were.
+  int remove() {
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) push_if_flat(t);
+    const auto count = static_cast<int>(queue_.size());
+    if (count == 0) return 0;
+    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) enter(t);
+    while (!queue_.empty()) {
+      const Flat flat = queue_.top();
+      queue_.pop();
+      // One that was flipped since is in the queue again.
+      if (is_removed_[flat.triangle] || mesh_.triangles[flat.triangle] != flat.corners) continue;
+      if (!flip_longest_edge(flat.triangle)) take_out(flat.triangle);
+    }
+    compact();
+    return count;
+  }
+
+ private:
+  struct Flat {
+    double longest_edge;
+    std::uint32_t triangle;
+    Triangle corners;
+    bool operator<(const Flat& other) const {  // the queue has the greatest first
+      return std::tie(longest_edge, other.triangle) < std::tie(other.longest_edge, triangle);
+    }
+  };
+
+  static std::uint64_t key(std::uint32_t from, std::uint32_t to) { return std::uint64_t{from} << 32 | to; }
+
+  double squared_length(std::uint32_t a, std::uint32_t b) const {
+    return (mesh_.positions[a].cast<double>() - mesh_.positions[b].cast<double>()).squaredNorm();
+  }
+
+  /// The corner that the longest edge starts at.
+  std::size_t longest_edge_of(const Triangle& t) const {
+    std::size_t longest = 0;
+    for (std::size_t k = 1; k < 3; ++k)
+      if (squared_length(t[k], t[(k + 1) % 3]) > squared_length(t[longest], t[(longest + 1) % 3])) longest = k;
+    return longest;
+  }
+
+  void push_if_flat(std::uint32_t triangle) {
+    const Triangle& t = mesh_.triangles[triangle];
+    if (!is_flat(mesh_, t)) return;
+    const std::size_t k = longest_edge_of(t);
+    queue_.push({squared_length(t[k], t[(k + 1) % 3]), triangle, t});
+  }
+
+  void enter(std::uint32_t triangle) {
+    const Triangle& t = mesh_.triangles[triangle];
+    for (std::size_t k = 0; k < 3; ++k) triangle_at_[key(t[k], t[(k + 1) % 3])] = triangle;
+  }
+
+  void leave(std::uint32_t triangle) {
+    const Triangle& t = mesh_.triangles[triangle];
+    for (std::size_t k = 0; k < 3; ++k) triangle_at_.erase(key(t[k], t[(k + 1) % 3]));
+  }
+
+  void take_out(std::uint32_t triangle) {
+    leave(triangle);
+    is_removed_[triangle] = true;
+  }
+
+  /// False where nothing lies beyond the edge, or where the new edge is there already or has no length.
+  bool flip_longest_edge(std::uint32_t triangle) {
+    const Triangle t = mesh_.triangles[triangle];
+    const std::size_t k = longest_edge_of(t);
+    const std::uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];
+    const auto found = triangle_at_.find(key(b, a));
+    if (found == triangle_at_.end()) return false;
+    const std::uint32_t beyond = found->second;
+    const Triangle& o = mesh_.triangles[beyond];
+    const std::uint32_t d = o[0] != a && o[0] != b ? o[0] : o[1] != a && o[1] != b ? o[1] : o[2];
+    if (mesh_.positions[c] == mesh_.positions[d] || triangle_at_.contains(key(c, d)) ||
+        triangle_at_.contains(key(d, c)))
+      return false;
+    leave(triangle);
+    leave(beyond);
+    mesh_.triangles[triangle] = {a, d, c};
+    mesh_.triangles[beyond] = {d, b, c};
+    origins_[triangle] = origins_[beyond];
+    enter(triangle);
+    enter(beyond);
+    push_if_flat(triangle);
+    push_if_flat(beyond);
+    return true;
+  }
+
+  void compact() {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < is_removed_.size(); ++i) {
+      if (is_removed_[i]) continue;
+      mesh_.triangles[kept] = mesh_.triangles[i];
+      origins_[kept++] = origins_[i];
+    }
+    mesh_.triangles.resize(kept);
+    origins_.resize(kept);
+  }
+
+  TriangleMesh& mesh_;
+  TriangleOrigins& origins_;
+  std::vector<bool> is_removed_;
+  std::priority_queue<Flat> queue_;
+  std::unordered_map<std::uint64_t, std::uint32_t> triangle_at_;  ///< of directed edges
+};
 
 }  // namespace
 
-int remove_flat_triangles(TriangleMesh& mesh) {
-  const auto flat = [&](const Triangle& triangle) { return is_flat(mesh, triangle); };
-  const auto count = static_cast<int>(std::count_if(mesh.triangles.begin(), mesh.triangles.end(), flat));
-  if (count == 0) return 0;
-  SurfaceMesh surface = to_surface(mesh);
-  // It makes no vertex, so that positions stay as they are.
-  PMP::remove_degenerate_faces(surface);
-  if (surface.num_vertices() == mesh.positions.size()) mesh.triangles = triangles_of(surface);
-  mesh.triangles.erase(std::remove_if(mesh.triangles.begin(), mesh.triangles.end(), flat), mesh.triangles.end());
-  return count;
+int remove_flat_triangles(TriangleMesh& mesh, TriangleOrigins& origins) {
+  return FlatTriangles(mesh, origins).remove();
 }
 
 int count_border_loops(const TriangleMesh& mesh) {
@@ -93,12 +205,13 @@ int count_border_loops(const TriangleMesh& mesh) {
   return static_cast<int>(std::unique(loops.begin(), loops.end()) - loops.begin());
 }
 
-int fill_holes(TriangleMesh& mesh, int most_edges) {
+int fill_holes(TriangleMesh& mesh, TriangleOrigins& origins, int most_edges) {
   const Components components = find_components(mesh);
   std::vector<double> component_area(components.count, 0);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     component_area[components.of_triangle[i]] += double_area(mesh, mesh.triangles[i]);
   SurfaceMesh surface = to_surface(mesh);
+  const auto old_faces = static_cast<std::uint32_t>(mesh.triangles.size());
   std::vector<Halfedge> loops;
   PMP::extract_boundary_cycles(surface, std::back_inserter(loops));
   int filled = 0;
@@ -112,7 +225,10 @@ int fill_holes(TriangleMesh& mesh, int most_edges) {
     double patch_area = 0;
     for (const Face face : patch) patch_area += double_area(mesh, triangle_of(surface, face));
     if (patch.empty() || patch_area > 0.6 * component_area[component]) continue;
-    for (const Face face : patch) mesh.triangles.push_back(triangle_of(surface, face));
+    for (const Face face : patch) {
+      mesh.triangles.push_back(triangle_of(surface, face));
+      origins.push_back(origins[neighbour_of(surface, face, old_faces, surface.face(surface.opposite(loop)))]);
+    }
     ++filled;
   }
   return filled;

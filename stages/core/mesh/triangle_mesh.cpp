@@ -3,8 +3,16 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace kiln {
+
+int ordinary_exponent(double longest_side) {
+  constexpr int largest = 20;  // a million, as a power of two
+  if (!(longest_side > 0) || !std::isfinite(longest_side)) return 0;
+  const int exponent = std::ilogb(longest_side);
+  return std::abs(exponent) > largest ? exponent : 0;
+}
 
 BoundingBox bounding_box(const TriangleMesh& mesh) {
   BoundingBox box;
@@ -30,6 +38,7 @@ void compute_vertex_normals(TriangleMesh& mesh) {
       sums[triangle[i]] += std::atan2(length, a.dot(b)) / length * cross;
     }
   }
+  mesh.corner_normals.clear();
   mesh.normals.resize(mesh.positions.size());
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const double length = sums[i].norm();

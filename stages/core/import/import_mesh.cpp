@@ -1,0 +1,169 @@
+#include "import/import_mesh.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.h"
+#include "import/corner_attributes.h"
+#include "import/imported_normals.h"
+#include "import/readers.h"
+#include "import/triangulate.h"
+#include "import/weld.h"
+
+namespace kiln {
+
+namespace {
+
+constexpr char remedy_export[] = "export the mesh again";
+
+/// The box of the places that triangles use.
+Eigen::AlignedBox3d box_of(const SourceMesh& source, const std::vector<CutTriangle>& triangles) {
+  Eigen::AlignedBox3d box;
+  for (const CutTriangle& triangle : triangles)
+    for (const std::uint32_t corner : triangle.corners) box.extend(source.places[source.corners[corner].place]);
+  return box;
+}
+
+void turn_and_scale(SourceMesh& source, const ImportSettings& settings) {
+  const double factor = settings.factor();
+  if (settings.up == UpAxis::plus_y && factor == 1) return;
+  for (Eigen::Vector3d& place : source.places) place = factor * settings.turned(place);
+  for (Eigen::Vector3f& normal : source.normals) normal = settings.turned(normal.cast<double>()).cast<float>();
+  source.precision *= factor;
+}
+
+/// The vertices that triangles use, in the order in which they do.
+TriangleMesh to_mesh(const std::string& name, const SourceMesh& source, const std::vector<CutTriangle>& triangles,
+                     const MeshFrame& frame) {
+  TriangleMesh mesh;
+  mesh.frame = frame;
+  mesh.triangles.resize(triangles.size());
+  constexpr std::uint32_t unseen = ~0u;
+  std::vector<std::uint32_t> new_index(source.places.size(), unseen);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t place = source.corners[triangles[t].corners[k]].place;
+      if (new_index[place] == unseen) {
+        new_index[place] = static_cast<std::uint32_t>(mesh.positions.size());
+        mesh.positions.emplace_back(frame.from_file(source.places[place]).cast<float>());
+        if (!mesh.positions.back().allFinite())
+          throw BadInput(name, "vertex " + std::to_string(place + 1) + " lies too far from the asset",
+                         "coordinates within 1e38 times the asset's size", "move the mesh, or leave it out");
+        if (!source.colors.empty()) mesh.colors.push_back(source.colors[place]);
+      }
+      mesh.triangles[t][k] = new_index[place];
+    }
+  return mesh;
+}
+
+/// Says where the file's numbers are too coarse for the shape that they describe.
+void warn_of_precision(const SourceMesh& source, const Eigen::AlignedBox3d& box, std::vector<std::string>& warnings) {
+  const double size = box.diagonal().norm();
+  const double largest = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+  const double step = std::max(source.precision, std::ldexp(largest, -52));
+  if (!(step > 5e-4 * size)) return;
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "coordinates of up to %.3g are written in steps of %.2g, and the mesh is %.3g across: its shape is "
+                "coarse; export it nearer to the origin or with more digits",
+                largest, step, size);
+  warnings.emplace_back(text);
+}
+
+void warn_of_repairs(const MeshRepairs& repairs, int welded, std::vector<std::string>& warnings) {
+  const auto add = [&](int count, const std::string& text) {
+    if (count > 0) warnings.push_back(std::to_string(count) + " " + text);
+  };
+  add(welded, "vertices on borders lay within the file's last digits of another and became one; --weld off keeps them");
+  add(repairs.dropped_backs,
+      "triangles are the backs of others and are dropped with their materials; --backs keep keeps both sides");
+  add(repairs.inside_out_components,
+      "closed components were inside out and are turned outwards; --orientation keep keeps them, as a room");
+  add(repairs.unorientable_edges, "edges are cut, as the surface has one side there, like a Moebius strip");
+}
+
+/// Brings colours to 0 to 1; returns how many lay outside.
+int clamp_colors(const std::string& name, std::vector<Eigen::Vector3f>& colors) {
+  int clamped = 0;
+  for (Eigen::Vector3f& color : colors) {
+    if (!color.allFinite())
+      throw BadInput(name, "a colour of a vertex that is not a finite number", "red, green and blue of 0 to 1",
+                     remedy_export);
+    const Eigen::Vector3f inside = color.cwiseMax(0).cwiseMin(1);
+    clamped += inside != color;
+    color = inside;
+  }
+  return clamped;
+}
+
+}  // namespace
+
+MeshFrame frame_of(const Eigen::Vector3d& lowest, const Eigen::Vector3d& highest) {
+  constexpr double farthest_sides = 8;  // floats resolve a millionth of the side there
+  MeshFrame frame;
+  const double side = (highest - lowest).maxCoeff();
+  if (!(side > 0) || !std::isfinite(side)) return frame;
+  const double farthest = std::max(lowest.cwiseAbs().maxCoeff(), highest.cwiseAbs().maxCoeff());
+  if (farthest > farthest_sides * side) {
+    // Round numbers, so that they read well.
+    const double step = std::ldexp(1.0, std::ilogb(side));
+    for (int k = 0; k < 3; ++k) frame.origin[k] = std::round((lowest[k] + highest[k]) / 2 / step) * step;
+  }
+  frame.exponent = ordinary_exponent(side);
+  return frame;
+}
+
+ImportedMesh import_mesh(const std::filesystem::path& file, const ImportSettings& settings,
+                         const std::optional<MeshFrame>& frame) {
+  // Step 1: the file as it stands, in our axes and units, as triangles.
+  const std::string name = file.string();
+  SourceMesh source = read_source_mesh(file);
+  turn_and_scale(source, settings);
+  int polygons = 0;
+  const std::vector<CutTriangle> triangles = triangulate(source, &polygons);
+  ImportedMesh result;
+  result.file = file;
+  result.warnings = source.warnings;
+  result.further_files = source.further_files;
+  const int welded = weld_borders(source, triangles, settings.weld, 1);
+  const Eigen::AlignedBox3d box = box_of(source, triangles);
+  warn_of_precision(source, box, result.warnings);
+
+  // Step 2: one clean mesh.
+  result.mesh = to_mesh(name, source, triangles, frame ? *frame : frame_of(box.min(), box.max()));
+  TriangleMesh& mesh = result.mesh;
+  const auto used_vertices = static_cast<int>(mesh.positions.size());
+  const int clamped_colors = clamp_colors(name, mesh.colors);
+  TriangleOrigins origins;
+  MeshRepairs& repairs = result.repairs;
+  repairs = repair_mesh(mesh,
+                        {.fill_hole_edges = settings.fill_hole_edges,
+                         .keeps_orientation = settings.keeps_orientation,
+                         .keeps_backs = settings.keeps_backs},
+                        &origins);
+  constexpr double least_area = 1e-16;  // of the squared diagonal: less is a line, drawn with triangles
+  const double diagonal = bounding_box(mesh).diagonal();
+  if (mesh.triangles.empty() || !(surface_area(mesh) > least_area * diagonal * diagonal))
+    throw BadInput(name, "has no triangle with an area", "a mesh of triangles or polygons", remedy_export);
+  repairs.clamped_colors = clamped_colors;
+  repairs.triangulated_polygons = polygons;
+  repairs.unused_vertices += static_cast<int>(source.places.size()) - used_vertices;
+  if (source.is_unwelded) repairs.merged_vertices = 0;  // the format has each vertex once for every face
+  repairs.welded_vertices = welded;
+  warn_of_repairs(repairs, welded, result.warnings);
+
+  // Step 3: what corners have besides.
+  const CornerAttributes attributes(source, triangles, mesh, origins);
+  result.surface = attributes.surface();
+  set_normals(mesh, attributes, settings.normals, name, result.warnings);
+  return result;
+}
+
+TriangleMesh load_mesh(const std::filesystem::path& file, MeshRepairs* repairs, const ImportSettings& settings) {
+  ImportedMesh imported = import_mesh(file, settings);
+  if (repairs != nullptr) *repairs = imported.repairs;
+  return std::move(imported.mesh);
+}
+
+}  // namespace kiln

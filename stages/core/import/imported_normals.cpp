@@ -1,0 +1,144 @@
+#include "import/imported_normals.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "base/errors.h"
+#include "mesh/hard_edges.h"
+#include "mesh/mesh_components.h"
+#include "mesh/surface_point.h"
+
+namespace kiln {
+
+namespace {
+
+using CornerNormals = std::vector<std::array<Eigen::Vector3f, 3>>;
+
+/// Components without a border.
+std::vector<bool> closed_components(const TriangleMesh& mesh, const Components& components) {
+  std::vector<std::pair<EdgeKey, std::uint32_t>> edges;
+  edges.reserve(3 * mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      edges.emplace_back(std::minmax({mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]}), t);
+  std::sort(edges.begin(), edges.end());
+  std::vector<bool> closed(components.count, true);
+  for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
+    while (end < edges.size() && edges[end].first == edges[begin].first) ++end;
+    if (end - begin == 1) closed[components.of_triangle[edges[begin].second]] = false;
+  }
+  return closed;
+}
+
+/// Makes the winding of each component and the normals of its corners agree. Returns how many triangles were turned and
+/// how many have turned normals.
+struct Turned {
+  int triangles = 0, normals = 0;
+};
+Turned agree(TriangleMesh& mesh, CornerNormals& normals) {
+  const Components components = find_components(mesh);
+  std::vector<double> agreeing(components.count, 0);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& corners = mesh.triangles[t];
+    const Eigen::Vector3f a = mesh.positions[corners[0]];
+    const Eigen::Vector3f area = (mesh.positions[corners[1]] - a).cross(mesh.positions[corners[2]] - a);
+    for (const Eigen::Vector3f& normal : normals[t])
+      if (normal.allFinite()) agreeing[components.of_triangle[t]] += area.dot(normal);
+  }
+  Turned turned;
+  if (std::none_of(agreeing.begin(), agreeing.end(), [](double sum) { return sum < 0; })) return turned;
+  const std::vector<bool> closed = closed_components(mesh, components);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::uint32_t component = components.of_triangle[t];
+    if (!(agreeing[component] < 0)) continue;
+    if (closed[component]) {
+      for (Eigen::Vector3f& normal : normals[t]) normal = -normal;
+      ++turned.normals;
+    } else {
+      std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+      std::swap(normals[t][1], normals[t][2]);
+      ++turned.triangles;
+    }
+  }
+  return turned;
+}
+
+/// Gives corners without a believable normal that of the faces around. Returns how many there were.
+int replace_unbelievable(const TriangleMesh& smooth, CornerNormals& normals) {
+  int replaced = 0;
+  for (std::uint32_t t = 0; t < normals.size(); ++t) {
+    const Eigen::Vector3f face = face_normal(smooth, t);
+    for (std::size_t k = 0; k < 3; ++k) {
+      Eigen::Vector3f& normal = normals[t][k];
+      const float length = normal.norm();
+      if (length > 1e-6f && std::isfinite(length) && normal.dot(face) > 0) {
+        normal /= length;
+        continue;
+      }
+      const Eigen::Vector3f& around = smooth.normals[smooth.triangles[t][k]];
+      normal = around.dot(face) > 0 ? around : face;
+      ++replaced;
+    }
+  }
+  return replaced;
+}
+
+/// Whether all corners have the normals of their faces, and these differ little from one to the next: what programs
+/// write that know of no smooth surface.
+bool is_facetted(const TriangleMesh& mesh) {
+  if (mesh.corner_normals.empty()) return false;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const Eigen::Vector3f& normal : mesh.corner_normals[t])
+      if (normal.dot(face_normal(mesh, t)) < 0.9995f) return false;
+  const std::size_t all = hard_edges_by_angle(mesh, 0.5).size(), sharp = hard_edges_by_angle(mesh, 25).size();
+  return all > 100 && sharp < all / 4;
+}
+
+void take_file_normals(TriangleMesh& mesh, const CornerAttributes& attributes, std::vector<std::string>& warnings) {
+  CornerNormals normals = attributes.normals();
+  const Turned turned = agree(mesh, normals);
+  if (turned.triangles > 0)
+    warnings.push_back(std::to_string(turned.triangles) +
+                       " triangles of open parts wind against the file's normals and are turned to face them; "
+                       "--normals smooth keeps their winding");
+  if (turned.normals > 0)
+    warnings.push_back("the file's normals of " + std::to_string(turned.normals) +
+                       " triangles point into closed parts and are turned outwards");
+  compute_vertex_normals(mesh);
+  const int replaced = replace_unbelievable(mesh, normals);
+  if (replaced > 0)
+    warnings.push_back(
+        std::to_string(replaced) +
+        " corners have no normal in the file, or one that faces away from their triangle: they have that "
+        "of the faces around");
+  mesh.corner_normals = std::move(normals);
+  if (is_facetted(mesh))
+    warnings.emplace_back(
+        "the file's normals are those of its triangles, so that the surface is shaded flat; --normals smooth or "
+        "--normals angle:40 shades it smoothly");
+  average_corner_normals(mesh);
+}
+
+}  // namespace
+
+void set_normals(TriangleMesh& mesh, const CornerAttributes& attributes, const NormalChoice& choice,
+                 const std::string& name, std::vector<std::string>& warnings) {
+  using Kind = NormalChoice::Kind;
+  if (choice.kind == Kind::file && !attributes.has_normals())
+    throw BadInput(name, "has no normals", "a file with normals, as --normals file asks for",
+                   "export them, or leave --normals out");
+  if (choice.kind == Kind::angle) {
+    compute_normals_between(mesh, hard_edges_by_angle(mesh, choice.degrees));
+  } else if (choice.kind == Kind::smooth) {
+    compute_vertex_normals(mesh);
+  } else if (attributes.has_normals()) {
+    take_file_normals(mesh, attributes, warnings);
+  } else if (attributes.has_smoothing_groups()) {
+    compute_normals_between(mesh, hard_edges_of_groups(mesh, attributes.smoothing_groups()));
+  } else {
+    compute_vertex_normals(mesh);
+  }
+}
+
+}  // namespace kiln

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "import/corner_attributes.h"
+#include "import/import_settings.h"
+#include "mesh/triangle_mesh.h"
+
+namespace kiln {
+
+/// Sets the normals of a repaired mesh as `choice` says, and adds to `warnings` what was not taken from the file as it
+/// stands: an open part that winds against the file's normals is turned to face them, a closed one turns them, and
+/// single corners whose normal faces away from their triangle, or is none, get that of the faces around. Throws
+/// BadInput, which names the file `name`, where its normals are asked for and it has none.
+void set_normals(TriangleMesh& mesh, const CornerAttributes& attributes, const NormalChoice& choice,
+                 const std::string& name, std::vector<std::string>& warnings);
+
+}  // namespace kiln

@@ -1,0 +1,89 @@
+#include "import/triangulate.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
+#include <Eigen/Geometry>
+
+namespace kiln {
+
+namespace {
+
+using CgalPoint = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
+using Corners = std::vector<std::uint32_t>;  ///< indices of SourceMesh::corners
+
+class Cutter {
+ public:
+  Cutter(const SourceMesh& source, std::vector<CutTriangle>& triangles) : source_(source), triangles_(triangles) {}
+
+  void cut(std::uint32_t face) {
+    face_ = face;
+    const SourceMesh::Face& f = source_.faces[face];
+    Corners corners(f.corner_count);
+    for (std::uint32_t k = 0; k < f.corner_count; ++k) corners[k] = f.first_corner + k;
+    if (corners.size() == 4) return cut_fan(corners, first_of_quad(corners));
+    if (corners.size() <= 4 || !cut_polygon(corners)) cut_fan(corners, 0);
+  }
+
+ private:
+  const Eigen::Vector3d& at(std::uint32_t corner) const { return source_.places[source_.corners[corner].place]; }
+
+  void add(std::uint32_t a, std::uint32_t b, std::uint32_t c) { triangles_.push_back({face_, {a, b, c}}); }
+
+  void cut_fan(const Corners& corners, std::size_t first) {
+    const auto corner = [&](std::size_t i) { return corners[(first + i) % corners.size()]; };
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) add(corner(0), corner(i), corner(i + 1));
+  }
+
+  /// The corner that a quad's diagonal starts at.
+  std::size_t first_of_quad(const Corners& corners) const {
+    const auto place = [&](std::size_t i) -> const Eigen::Vector3d& { return at(corners[i % 4]); };
+    const auto folds = [&](std::size_t i) {  // at the diagonal from corner i
+      const Eigen::Vector3d diagonal = place(i + 2) - place(i);
+      return (place(i + 1) - place(i)).cross(diagonal).dot(diagonal.cross(place(i + 3) - place(i))) < 0;
+    };
+    const bool second_shorter = (place(1) - place(3)).squaredNorm() < (place(0) - place(2)).squaredNorm();
+    return folds(0) != folds(1) ? folds(0) : second_shorter;
+  }
+
+  bool cut_polygon(const Corners& corners) {
+    using Face = CGAL::Triple<int, int, int>;
+    // Near the origin, so that no digits are lost far away.
+    const Eigen::Vector3d origin = at(corners[0]);
+    std::vector<CgalPoint> points;
+    for (const std::uint32_t corner : corners) {
+      const Eigen::Vector3d p = at(corner) - origin;
+      points.emplace_back(p.x(), p.y(), p.z());
+    }
+    std::vector<Face> faces;
+    CGAL::Polygon_mesh_processing::triangulate_hole_polyline(
+        points, std::back_inserter(faces), CGAL::parameters::use_2d_constrained_delaunay_triangulation(true));
+    for (const Face& face : faces)
+      add(corners[static_cast<std::size_t>(face.first)], corners[static_cast<std::size_t>(face.second)],
+          corners[static_cast<std::size_t>(face.third)]);
+    return !faces.empty();
+  }
+
+  const SourceMesh& source_;
+  std::vector<CutTriangle>& triangles_;
+  std::uint32_t face_ = 0;
+};
+
+}  // namespace
+
+std::vector<CutTriangle> triangulate(const SourceMesh& source, int* polygons) {
+  std::vector<CutTriangle> triangles;
+  triangles.reserve(source.corners.size() - 2 * source.faces.size());
+  Cutter cutter(source, triangles);
+  for (std::uint32_t face = 0; face < source.faces.size(); ++face) {
+    if (polygons != nullptr) *polygons += source.faces[face].corner_count > 3;
+    if (source.faces[face].corner_count == 3) {
+      const std::uint32_t first = source.faces[face].first_corner;
+      triangles.push_back({face, {first, first + 1, first + 2}});
+    } else {
+      cutter.cut(face);
+    }
+  }
+  return triangles;
+}
+
+}  // namespace kiln

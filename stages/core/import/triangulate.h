@@ -1,0 +1,23 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "import/source_mesh.h"
+
+namespace kiln {
+
+/// A triangle cut from a face: the face, and the three of its corners (indices of SourceMesh::corners).
+struct CutTriangle {
+  std::uint32_t face = 0;
+  std::array<std::uint32_t, 3> corners{};
+};
+
+/// Cuts faces into triangles, in their order, each wound as its face. Quads are cut along the shorter diagonal of those
+/// that keep both halves on the same side; polygons of more corners by CGAL's triangulate_hole_polyline, in their plane
+/// or else with least area, so that concave ones are cut inside themselves; where it finds no way, as a fan.
+/// `polygons`, if given, counts the faces of more than three corners.
+std::vector<CutTriangle> triangulate(const SourceMesh& source, int* polygons = nullptr);
+
+}  // namespace kiln

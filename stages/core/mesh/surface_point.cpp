@@ -1,0 +1,27 @@
+#include "mesh/surface_point.h"
+
+#include <Eigen/Geometry>
+
+namespace kiln {
+
+Eigen::Vector3f face_normal(const TriangleMesh& mesh, std::uint32_t triangle) {
+  const Triangle& t = mesh.triangles[triangle];
+  const Eigen::Vector3f a = mesh.positions[t[0]];
+  return (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a).normalized();
+}
+
+Eigen::Vector3f position_at(const TriangleMesh& mesh, const SurfacePoint& point) {
+  const Triangle& t = mesh.triangles[point.triangle];
+  return (1 - point.u - point.v) * mesh.positions[t[0]] + point.u * mesh.positions[t[1]] +
+         point.v * mesh.positions[t[2]];
+}
+
+Eigen::Vector3f normal_at(const TriangleMesh& mesh, const SurfacePoint& point) {
+  const Eigen::Vector3f sum = (1 - point.u - point.v) * corner_normal(mesh, point.triangle, 0) +
+                              point.u * corner_normal(mesh, point.triangle, 1) +
+                              point.v * corner_normal(mesh, point.triangle, 2);
+  const float length = sum.norm();
+  return length > 1e-6f ? Eigen::Vector3f(sum / length) : face_normal(mesh, point.triangle);
+}
+
+}  // namespace kiln
