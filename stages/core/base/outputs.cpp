@@ -83,10 +83,10 @@ std::string read_text(const fs::path& file) {
   if (fs::is_directory(file)) throw fail("is a folder");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw fail(std::string("cannot be opened (") + std::strerror(errno) + ")");
+  constexpr std::size_t block = std::size_t{1} << 20;
   std::string text;
   std::error_code error;
-  if (const std::uintmax_t size = fs::file_size(file, error); !error) text.reserve(size);
-  constexpr std::size_t block = std::size_t{1} << 20;
+  if (const std::uintmax_t size = fs::file_size(file, error); !error) text.reserve(size + block);
   for (std::size_t count = block; count == block;) {
     const std::size_t before = text.size();
     text.resize(before + block);

@@ -16,8 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char remedy[] = "change the material, or give --albedo a number";
-
 class LibraryReader {
  public:
   explicit LibraryReader(const fs::path& file) : file_(file), text_(read_text(file)), lines_(text_) {}
@@ -68,7 +66,8 @@ class LibraryReader {
   std::string place() const { return file_.string() + ":" + std::to_string(lines_.line()); }
 
   /// Keeps the first fault of a material.
-  void fault(const std::string& found, const std::string& expected) {
+  void fault(const std::string& found, const std::string& expected,
+             const std::string& remedy = "change the material, or give --albedo a number") {
     std::optional<BadInput>& kept = materials_.back().fault;
     if (!kept) kept.emplace(place(), found, expected, remedy);
   }
@@ -108,7 +107,7 @@ class LibraryReader {
     if (map.fault) return fault(map.fault->found, map.fault->expected);
     if (!map.file)
       return fault("names the picture " + (file_.parent_path() / map.name).string() + ", which does not exist",
-                   "a file");
+                   "a file", "put it there, or give --albedo a number");
     map.apply_to(material);
   }
 
