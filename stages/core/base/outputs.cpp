@@ -83,7 +83,17 @@ std::string read_text(const fs::path& file) {
   if (fs::is_directory(file)) throw fail("is a folder");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw fail(std::string("cannot be opened (") + std::strerror(errno) + ")");
-  std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  constexpr std::size_t block = std::size_t{1} << 20;
+  std::string text;
+  std::error_code error;
+  if (const std::uintmax_t size = fs::file_size(file, error); !error) text.reserve(size + block);
+  for (std::size_t count = block; count == block;) {
+    const std::size_t before = text.size();
+    text.resize(before + block);
+    stream.read(text.data() + before, block);
+    count = static_cast<std::size_t>(stream.gcount());
+    text.resize(before + count);
+  }
   if (stream.bad()) throw fail("cannot be read to its end");
   return text;
 }

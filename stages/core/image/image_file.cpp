@@ -1,10 +1,12 @@
 #include "image/image_file.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <array>
 #include <cctype>
 #include <iomanip>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -65,16 +67,15 @@ struct PngHeader {
   bool palette = false;
 };
 
-[[noreturn]] void fail_reading(const std::filesystem::path& file, const std::string& found,
-                               const std::string& expected) {
-  throw BadInput(file.string(), found, expected, "write the file again, or name another one");
+[[noreturn]] void fail_reading(const std::string& name, const std::string& found, const std::string& expected) {
+  throw BadInput(name, found, expected, "write the file again, or name another one");
 }
 
 void check_present(const std::filesystem::path& file, const std::string& expected) {
   std::error_code error;
-  if (!std::filesystem::exists(file, error)) fail_reading(file, "no such file", expected);
-  if (std::filesystem::is_directory(file, error)) fail_reading(file, "is a folder", expected);
-  if (std::filesystem::file_size(file, error) == 0) fail_reading(file, "an empty file", expected);
+  if (!std::filesystem::exists(file, error)) fail_reading(file.string(), "no such file", expected);
+  if (std::filesystem::is_directory(file, error)) fail_reading(file.string(), "is a folder", expected);
+  if (std::filesystem::file_size(file, error) == 0) fail_reading(file.string(), "an empty file", expected);
 }
 
 std::string lower_extension(const std::filesystem::path& file) {
@@ -99,29 +100,28 @@ std::uint32_t crc32(std::string_view bytes) {
   return ~c;
 }
 
+constexpr std::string_view png_signature("\x89PNG\r\n\x1a\n");
+
 /// Walks the chunks of a PNG: a whole one starts with IHDR and ends with IEND, and every checksum is right. Left to
-/// itself libpng complains about such things on stderr.
-PngHeader check_png(const std::filesystem::path& file) {
+/// itself libpng complains about such things on stderr. `name` is for messages.
+PngHeader check_png(const std::string& bytes, const std::string& name) {
   const std::string expected = "a whole PNG";
-  check_present(file, expected);
-  const std::string bytes = read_text(file);
   const auto number = [&](std::size_t at) {
     std::uint32_t value = 0;
     for (std::size_t k = 0; k < 4; ++k) value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
     return value;
   };
-  constexpr std::string_view signature("\x89PNG\r\n\x1a\n");
-  if (!bytes.starts_with(signature)) fail_reading(file, "not a PNG", expected);
+  if (!bytes.starts_with(png_signature)) fail_reading(name, "not a PNG", expected);
 
   PngHeader header;
-  for (std::size_t at = signature.size();;) {
-    if (at + 12 > bytes.size()) fail_reading(file, "a truncated PNG", expected);
+  for (std::size_t at = png_signature.size();;) {
+    if (at + 12 > bytes.size()) fail_reading(name, "a truncated PNG", expected);
     const std::size_t length = number(at);
-    if (length > bytes.size() - at - 12) fail_reading(file, "a truncated PNG", expected);
+    if (length > bytes.size() - at - 12) fail_reading(name, "a truncated PNG", expected);
     const std::string_view kind_and_body(bytes.data() + at + 4, 4 + length);
-    if (crc32(kind_and_body) != number(at + 8 + length)) fail_reading(file, "a damaged PNG", expected);
-    if (at == signature.size()) {
-      if (!kind_and_body.starts_with("IHDR") || length != 13) fail_reading(file, "a PNG without a header", expected);
+    if (crc32(kind_and_body) != number(at + 8 + length)) fail_reading(name, "a damaged PNG", expected);
+    if (at == png_signature.size()) {
+      if (!kind_and_body.starts_with("IHDR") || length != 13) fail_reading(name, "a PNG without a header", expected);
       header.bits = bytes[at + 16];
       header.palette = bytes[at + 17] == 3;
     }
@@ -130,17 +130,21 @@ PngHeader check_png(const std::filesystem::path& file) {
   }
 }
 
+constexpr std::string_view jpeg_signature("\xff\xd8");
+
 /// Walks the segments of a JPEG (ITU-T T.81, annex B) to its coded data, behind which an end-of-image marker must
-/// stand. libjpeg fills what is missing with grey.
-void check_jpeg(const std::filesystem::path& file) {
+/// stand. libjpeg fills what is missing with grey. Any number of fill bytes, 0xff, may stand before a marker.
+void check_jpeg(const std::string& bytes, const std::string& name) {
   const std::string expected = "a whole JPEG";
-  const std::string bytes = read_text(file);
   const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(bytes[at]); };
-  constexpr unsigned char marker = 0xff, start_of_image = 0xd8, end_of_image = 0xd9, start_of_scan = 0xda;
-  if (bytes.size() < 2 || byte(0) != marker || byte(1) != start_of_image) fail_reading(file, "not a JPEG", expected);
-  for (std::size_t at = 2; at + 4 <= bytes.size();) {
+  constexpr unsigned char marker = 0xff, end_of_image = 0xd9, start_of_scan = 0xda;
+  for (std::size_t at = jpeg_signature.size(); at + 4 <= bytes.size();) {
+    if (byte(at) != marker) fail_reading(name, "a damaged JPEG", expected);
+    if (byte(at + 1) == marker) {
+      ++at;
+      continue;
+    }
     const unsigned char kind = byte(at + 1);
-    if (byte(at) != marker) fail_reading(file, "a damaged JPEG", expected);
     at += 2 + (std::size_t{byte(at + 2)} << 8 | byte(at + 3));
     if (kind != start_of_scan) continue;
     // In coded data 0xff is followed by 0 or a restart marker.
@@ -148,36 +152,54 @@ void check_jpeg(const std::filesystem::path& file) {
     if (bytes.find(end, at, sizeof end) == std::string::npos) break;
     return;
   }
-  fail_reading(file, "a truncated JPEG", expected);
+  fail_reading(name, "a truncated JPEG", expected);
 }
 
-std::unique_ptr<OIIO::ImageInput> open_image(const std::filesystem::path& file, const std::string& expected) {
+/// `name` is for messages; OpenImageIO reads `memory`, of the format that `format_name` ends in, or, without it, the
+/// file of that name.
+std::unique_ptr<OIIO::ImageInput> open_image(const std::string& name, const std::string& expected,
+                                             const std::string& format_name, OIIO::Filesystem::IOProxy* memory) {
   keep_to_one_thread();
   OIIO::ImageSpec configuration;
   configuration.attribute("oiio:UnassociatedAlpha", 1);
-  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(file.string(), &configuration);
-  if (!input) fail_reading(file, "cannot be understood (" + OIIO::geterror() + ")", expected);
+  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(format_name, &configuration, memory);
+  if (!input) fail_reading(name, "cannot be understood (" + OIIO::geterror() + ")", expected);
   const OIIO::ImageSpec& spec = input->spec();
-  if (spec.depth > 1 || spec.deep) fail_reading(file, "not a flat picture", expected);
+  if (spec.depth > 1 || spec.deep) fail_reading(name, "not a flat picture", expected);
   return input;
+}
+
+std::unique_ptr<OIIO::ImageInput> open_image(const std::string& name, const std::string& expected) {
+  return open_image(name, expected, name, nullptr);
+}
+
+/// A file name of the format that the first bytes tell, whatever the file is called; empty: they tell none.
+std::string format_name_of(std::string_view bytes) {
+  const std::pair<std::string_view, const char*> signatures[] = {
+      {png_signature, "picture.png"}, {jpeg_signature, "picture.jpg"}, {"\x76\x2f\x31\x01", "picture.exr"},
+      {"#?RADIANCE", "picture.hdr"},  {"#?RGBE", "picture.hdr"},       {"BM", "picture.bmp"},
+      {"GIF8", "picture.gif"},        {"II*", "picture.tif"},          {"MM", "picture.tif"}};
+  for (const auto& [signature, format_name] : signatures)
+    if (bytes.starts_with(signature)) return format_name;
+  return "";
 }
 
 /// All pixels as T, bottom row first.
 template <class T>
-Image<T> read_pixels(const std::filesystem::path& file, OIIO::ImageInput& input, const std::string& expected) {
+Image<T> read_pixels(const std::string& name, OIIO::ImageInput& input, const std::string& expected) {
   const OIIO::ImageSpec& spec = input.spec();
   Image<T> image(spec.width, spec.height, spec.nchannels);
   const auto row_bytes = static_cast<OIIO::stride_t>(sizeof(T)) * spec.width * spec.nchannels;
   auto* bytes = reinterpret_cast<char*>(image.values().data());
   if (!input.read_image(0, 0, 0, spec.nchannels, type_of<T>(), bytes + row_bytes * (spec.height - 1), OIIO::AutoStride,
                         -row_bytes))
-    fail_reading(file, "damaged (" + input.geterror() + ")", expected);
+    fail_reading(name, "damaged (" + input.geterror() + ")", expected);
   return image;
 }
 
 template <class T>
 Image<T> read_image(const std::filesystem::path& file, const std::string& expected) {
-  return read_pixels<T>(file, *open_image(file, expected), expected);
+  return read_pixels<T>(file.string(), *open_image(file.string(), expected), expected);
 }
 
 /// Of grey, grey and alpha, RGB or RGBA.
@@ -196,10 +218,11 @@ template <class T>
 Image<T> read_png_of(const std::filesystem::path& file) {
   const int bits = 8 * static_cast<int>(sizeof(T));
   const std::string expected = "a PNG of " + std::to_string(bits) + " bits per channel";
-  const PngHeader header = check_png(file);
-  if (header.palette) fail_reading(file, "a PNG with a palette", expected);
+  check_present(file, expected);
+  const PngHeader header = check_png(read_text(file), file.string());
+  if (header.palette) fail_reading(file.string(), "a PNG with a palette", expected);
   if (header.bits != bits)
-    fail_reading(file, "a PNG of " + std::to_string(header.bits) + " bits per channel", expected);
+    fail_reading(file.string(), "a PNG of " + std::to_string(header.bits) + " bits per channel", expected);
   return read_image<T>(file, expected);
 }
 
@@ -235,25 +258,48 @@ Image<float> read_float_image(const std::filesystem::path& file) {
   check_present(file, expected);
   const std::string extension = lower_extension(file);
   if (extension != ".exr" && extension != ".hdr")
-    fail_reading(file, extension.empty() ? "a file without an extension" : "a file that ends in " + extension,
+    fail_reading(file.string(), extension.empty() ? "a file without an extension" : "a file that ends in " + extension,
                  expected);
   return read_image<float>(file, expected);
 }
 
-ColorPicture read_color_picture(const std::filesystem::path& file) {
-  const std::string expected = "a PNG, JPEG, OpenEXR or other picture";
-  check_present(file, expected);
-  const std::string extension = lower_extension(file);
-  if (extension == ".png") check_png(file);
-  if (extension == ".jpg" || extension == ".jpeg") check_jpeg(file);
-  const std::unique_ptr<OIIO::ImageInput> input = open_image(file, expected);
+namespace {
+
+constexpr char expected_picture[] = "a PNG, JPEG, OpenEXR or other picture";
+
+ColorPicture color_picture_of(const std::string& name, OIIO::ImageInput& input) {
   ColorPicture picture;
-  picture.is_float = input->spec().format.is_floating_point();
-  if (input->spec().format == OIIO::TypeDesc::UINT8)
-    picture.pixels = three_channels(read_pixels<std::uint8_t>(file, *input, expected));
+  picture.is_float = input.spec().format.is_floating_point();
+  if (input.spec().format == OIIO::TypeDesc::UINT8)
+    picture.pixels = three_channels(read_pixels<std::uint8_t>(name, input, expected_picture));
   else
-    picture.pixels = three_channels(read_pixels<float>(file, *input, expected));
+    picture.pixels = three_channels(read_pixels<float>(name, input, expected_picture));
   return picture;
+}
+
+/// Nothing where the bytes do not tell their format.
+std::optional<ColorPicture> color_picture_of_bytes(const std::string& bytes, const std::string& name) {
+  const std::string format_name = format_name_of(bytes);
+  if (format_name.empty()) return std::nullopt;
+  if (format_name.ends_with("png")) check_png(bytes, name);
+  if (format_name.ends_with("jpg")) check_jpeg(bytes, name);
+  OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size());
+  return color_picture_of(name, *open_image(name, expected_picture, format_name, &memory));
+}
+
+}  // namespace
+
+ColorPicture read_color_picture(const std::filesystem::path& file) {
+  check_present(file, expected_picture);
+  if (std::optional<ColorPicture> picture = color_picture_of_bytes(read_text(file), file.string()))
+    return std::move(*picture);
+  return color_picture_of(file.string(), *open_image(file.string(), expected_picture));
+}
+
+ColorPicture read_color_picture(const std::vector<std::uint8_t>& bytes, const std::string& name) {
+  std::optional<ColorPicture> picture = color_picture_of_bytes({bytes.begin(), bytes.end()}, name);
+  if (!picture) fail_reading(name, "a picture of an unknown format", "a PNG or JPEG");
+  return std::move(*picture);
 }
 
 }  // namespace kiln

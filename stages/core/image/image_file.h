@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <string>
 #include <variant>
+#include <vector>
 
 #include "image/image.h"
 
@@ -30,7 +33,10 @@ struct ColorPicture {
 };
 
 /// Reads a PNG, JPEG, EXR or HDR, or whatever else OpenImageIO reads, without any conversion of values. Grey becomes
-/// three equal channels; alpha is left out. Throws BadInput.
+/// three equal channels; alpha is left out. The first bytes tell the format, not the name. Throws BadInput.
 ColorPicture read_color_picture(const std::filesystem::path& file);
+
+/// The same of a picture in memory; `name` is for messages.
+ColorPicture read_color_picture(const std::vector<std::uint8_t>& bytes, const std::string& name);
 
 }  // namespace kiln

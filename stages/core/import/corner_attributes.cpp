@@ -45,6 +45,7 @@ CornerAttributes::Weights CornerAttributes::weights(std::size_t triangle, std::s
 ImportedSurface CornerAttributes::surface() const {
   ImportedSurface surface;
   surface.materials = source_.materials;
+  surface.materials_fault = source_.materials_fault;
   surface.linear_colors = source_.linear_colors;
   const std::size_t count = mesh_.triangles.size(), plain = source_.materials.size();
 

@@ -17,22 +17,6 @@ namespace {
 
 constexpr char remedy_export[] = "export the mesh again";
 
-/// The box of the places that triangles use.
-Eigen::AlignedBox3d box_of(const SourceMesh& source, const std::vector<CutTriangle>& triangles) {
-  Eigen::AlignedBox3d box;
-  for (const CutTriangle& triangle : triangles)
-    for (const std::uint32_t corner : triangle.corners) box.extend(source.places[source.corners[corner].place]);
-  return box;
-}
-
-void turn_and_scale(SourceMesh& source, const ImportSettings& settings) {
-  const double factor = settings.factor();
-  if (settings.up == UpAxis::plus_y && factor == 1) return;
-  for (Eigen::Vector3d& place : source.places) place = factor * settings.turned(place);
-  for (Eigen::Vector3f& normal : source.normals) normal = settings.turned(normal.cast<double>()).cast<float>();
-  source.precision *= factor;
-}
-
 /// The vertices that triangles use, in the order in which they do.
 TriangleMesh to_mesh(const std::string& name, const SourceMesh& source, const std::vector<CutTriangle>& triangles,
                      const MeshFrame& frame) {
@@ -126,7 +110,7 @@ ImportedMesh import_mesh(const std::filesystem::path& file, const ImportSettings
   result.file = file;
   result.warnings = source.warnings;
   result.further_files = source.further_files;
-  const int welded = weld_borders(source, triangles, settings.weld, 1);
+  const int welded = weld_borders(source, triangles, settings.weld);
   const Eigen::AlignedBox3d box = box_of(source, triangles);
   warn_of_precision(source, box, result.warnings);
 

@@ -27,6 +27,7 @@ struct ImportedSurface {
   std::vector<std::int32_t> material_of;            ///< of each triangle, -1 for none; empty where no face has one
   std::vector<std::array<Eigen::Vector2f, 3>> uvs;  ///< of each triangle's corners; empty where the file has none
   std::vector<FaceWithoutUvs> without_uvs;          ///< of each material; the last entry is of faces without one
+  std::optional<BadInput> materials_fault;          ///< why the file's materials cannot be used
   bool linear_colors = false;                       ///< the mesh's colours are proportional to light
 };
 

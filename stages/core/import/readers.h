@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "import/import_settings.h"
 #include "import/source_mesh.h"
 
 namespace kiln {
@@ -20,5 +21,8 @@ SourceMesh read_fbx(const std::filesystem::path& file);
 
 /// Reads a mesh by its extension: obj, ply, stl, off, drc, gltf, glb or fbx, in any case of letters.
 SourceMesh read_source_mesh(const std::filesystem::path& file);
+
+/// Brings coordinates and normals into our axes and units, as `settings` say.
+void turn_and_scale(SourceMesh& source, const ImportSettings& settings);
 
 }  // namespace kiln

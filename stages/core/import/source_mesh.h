@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "base/errors.h"
+
 namespace kiln {
 
 /// A picture that a mesh file names, or holds within itself.
@@ -31,7 +33,7 @@ struct SourceMaterial {
   std::optional<SourcePicture> texture;
   std::string texture_place;  ///< where it is named, for messages
   /// The picture is looked up at texture_transform * (u, v, 1), where (0, 0) is its lower left corner.
-  Eigen::Matrix<float, 2, 3> texture_transform = (Eigen::Matrix<float, 2, 3>() << 1, 0, 0, 0, 1, 0).finished();
+  Eigen::Matrix<float, 2, 3> texture_transform = Eigen::Matrix<float, 2, 3>::Identity();
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   float texture_base = 0, texture_gain = 1;  ///< of stored values: base + gain * value (-mm)
 };
@@ -61,6 +63,9 @@ struct SourceMesh {
   std::vector<Corner> corners;
   std::vector<Face> faces;  ///< at least one
   std::vector<SourceMaterial> materials;
+  /// Why the file's materials cannot be used, such as a library or a picture that is missing; faces have none then. To
+  /// be thrown by what needs materials, and by nothing else: shape is whole without them.
+  std::optional<BadInput> materials_fault;
   bool has_smoothing_groups = false;  ///< faces without one are flat then
 
   /// Whether vertices stand in the file once for every face (STL), so that merging them is no repair.

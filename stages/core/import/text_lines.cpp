@@ -9,7 +9,6 @@ namespace kiln {
 
 namespace {
 
-constexpr std::string_view blanks = " \t\f\v\r";
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
 /// A word without the plus sign before its number, which from_chars does not know.
@@ -22,33 +21,44 @@ std::string_view without_plus(std::string_view word) {
 
 TextLines::TextLines(std::string_view text) : rest_(text) {
   if (rest_.starts_with(byte_order_mark)) rest_.remove_prefix(byte_order_mark.size());
+  find_feed();
+}
+
+void TextLines::find_feed() {
+  const std::size_t feed = rest_.find('\n');
+  feed_ = rest_.data() + std::min(feed, rest_.size());
 }
 
 bool TextLines::next(std::string_view& line) {
   if (rest_.empty()) return false;
-  const std::size_t end = rest_.find_first_of("\r\n");
-  line = rest_.substr(0, end);
-  if (end == std::string_view::npos)
-    rest_ = {};
-  else
-    rest_.remove_prefix(end + (rest_.substr(end, 2) == "\r\n" ? 2 : 1));
+  // A line feed is sought once, though carriage returns may end many lines before it.
+  const std::string_view before_feed(rest_.data(), static_cast<std::size_t>(feed_ - rest_.data()));
+  line = before_feed.substr(0, before_feed.find('\r'));
+  rest_.remove_prefix(line.size());
+  const bool is_return = rest_.starts_with('\r');
+  if (is_return) rest_.remove_prefix(1);
+  if (rest_.data() == feed_) {
+    if (!rest_.empty()) rest_.remove_prefix(1);
+    find_feed();
+  }
   ++number_;
   return true;
 }
 
 std::string_view next_word(std::string_view& line) {
-  const std::size_t begin = line.find_first_not_of(blanks);
-  if (begin == std::string_view::npos) return line = {};
-  const std::size_t end = std::min(line.find_first_of(blanks, begin), line.size());
-  const std::string_view word = line.substr(begin, end - begin);
-  line.remove_prefix(end);
-  return word;
+  const char* begin = line.data();
+  const char* const end = begin + line.size();
+  while (begin != end && is_blank(*begin)) ++begin;
+  const char* word_end = begin;
+  while (word_end != end && !is_blank(*word_end)) ++word_end;
+  line.remove_prefix(static_cast<std::size_t>(word_end - line.data()));
+  return {begin, static_cast<std::size_t>(word_end - begin)};
 }
 
 std::string_view trimmed(std::string_view line) {
-  const std::size_t begin = line.find_first_not_of(blanks);
-  if (begin == std::string_view::npos) return {};
-  return line.substr(begin, line.find_last_not_of(blanks) + 1 - begin);
+  while (!line.empty() && is_blank(line.front())) line.remove_prefix(1);
+  while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
+  return line;
 }
 
 std::optional<double> parse_number(std::string_view word) {

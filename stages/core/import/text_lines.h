@@ -21,9 +21,15 @@ class TextLines {
   std::string_view rest() const { return rest_; }
 
  private:
+  void find_feed();
+
   std::string_view rest_;
+  const char* feed_ = nullptr;  ///< the first line feed of `rest_`, or its end
   std::uint32_t number_ = 0;
 };
+
+/// Whether a character parts words: space, tab, form feed, vertical tab or carriage return.
+constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\f' || c == '\v' || c == '\r'; }
 
 /// Cuts the next word off a line; blanks are spaces, tabs, form feeds and vertical tabs. Empty where there is none.
 std::string_view next_word(std::string_view& line);

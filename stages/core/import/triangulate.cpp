@@ -2,7 +2,6 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
-#include <Eigen/Geometry>
 
 namespace kiln {
 
@@ -84,6 +83,13 @@ std::vector<CutTriangle> triangulate(const SourceMesh& source, int* polygons) {
     }
   }
   return triangles;
+}
+
+Eigen::AlignedBox3d box_of(const SourceMesh& source, const std::vector<CutTriangle>& triangles) {
+  Eigen::AlignedBox3d box;
+  for (const CutTriangle& triangle : triangles)
+    for (const std::uint32_t corner : triangle.corners) box.extend(source.places[source.corners[corner].place]);
+  return box;
 }
 
 }  // namespace kiln

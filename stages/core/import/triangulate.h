@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -19,5 +20,8 @@ struct CutTriangle {
 /// or else with least area, so that concave ones are cut inside themselves; where it finds no way, as a fan.
 /// `polygons`, if given, counts the faces of more than three corners.
 std::vector<CutTriangle> triangulate(const SourceMesh& source, int* polygons = nullptr);
+
+/// The box of the places that triangles use.
+Eigen::AlignedBox3d box_of(const SourceMesh& source, const std::vector<CutTriangle>& triangles);
 
 }  // namespace kiln

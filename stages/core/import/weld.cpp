@@ -82,23 +82,18 @@ std::vector<double> shortest_border_edges(const SourceMesh& source, const std::v
   return shortest;
 }
 
-double weld_distance(const SourceMesh& source, const std::vector<CutTriangle>& triangles, const WeldChoice& choice,
-                     double factor) {
-  Eigen::AlignedBox3d box;
-  for (const CutTriangle& triangle : triangles)
-    for (const std::uint32_t corner : triangle.corners) box.extend(source.places[source.corners[corner].place]);
-  const double size = box.diagonal().norm();
+double weld_distance(const SourceMesh& source, const std::vector<CutTriangle>& triangles, const WeldChoice& choice) {
+  const double size = box_of(source, triangles).diagonal().norm();
   // Cells of the search are counted in whole numbers.
-  if (choice.kind == WeldChoice::Kind::distance) return std::max(choice.distance / factor, 1e-15 * size);
+  if (choice.kind == WeldChoice::Kind::distance) return std::max(choice.distance, 1e-15 * size);
   return std::clamp(2 * source.precision, std::ldexp(size, -22), 1e-6 * size);
 }
 
 }  // namespace
 
-int weld_borders(SourceMesh& source, const std::vector<CutTriangle>& triangles, const WeldChoice& choice,
-                 double factor) {
+int weld_borders(SourceMesh& source, const std::vector<CutTriangle>& triangles, const WeldChoice& choice) {
   if (choice.kind == WeldChoice::Kind::off) return 0;
-  const double distance = weld_distance(source, triangles, choice, factor);
+  const double distance = weld_distance(source, triangles, choice);
   if (!(distance > 0) || !std::isfinite(distance)) return 0;
   // Most files of closed surfaces say by their indices alone that they have no border.
   if (!any_border(shortest_border_edges(source, triangles, identity(source.places.size())))) return 0;

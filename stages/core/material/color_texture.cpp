@@ -9,21 +9,49 @@
 
 namespace kiln {
 
-ColorTexture::ColorTexture(const std::filesystem::path& file, ColorEncoding encoding) {
-  ColorPicture picture = read_color_picture(file);
-  const auto decode = [&](float value) { return encoding == ColorEncoding::srgb ? linear_from_srgb(value) : value; };
-  for (int byte = 0; byte < 256; ++byte) linear_of_byte_[static_cast<std::size_t>(byte)] = decode(byte / 255.f);
+namespace {
+
+/// What a stored value stands for.
+struct Decoding {
+  ColorEncoding encoding;
+  float base, gain;
+
+  float operator()(float stored) const {
+    const float value = base + gain * stored;
+    return encoding == ColorEncoding::srgb ? linear_from_srgb(value) : value;
+  }
+};
+
+/// The place of a texel beyond the picture within it.
+int wrapped(int i, int texels, SourceMaterial::Wrap wrap) {
+  if (wrap == SourceMaterial::Wrap::clamp) return std::clamp(i, 0, texels - 1);
+  const int period = wrap == SourceMaterial::Wrap::mirror ? 2 * texels : texels;
+  const int within = (i % period + period) % period;
+  return within < texels ? within : period - 1 - within;
+}
+
+}  // namespace
+
+ColorTexture::ColorTexture(const std::filesystem::path& file, ColorEncoding encoding)
+    : ColorTexture(SourcePicture{file, nullptr, file.string()}, encoding) {}
+
+ColorTexture::ColorTexture(const SourcePicture& source, ColorEncoding encoding, float base, float gain) {
+  ColorPicture picture =
+      source.bytes != nullptr ? read_color_picture(*source.bytes, source.name) : read_color_picture(source.file);
+  const Decoding decode{encoding, base, gain};
+  for (int byte = 0; byte < 256; ++byte)
+    linear_of_byte_[static_cast<std::size_t>(byte)] = std::clamp(decode(static_cast<float>(byte) / 255), 0.f, 1.f);
   if (auto* floats = std::get_if<Image<float>>(&picture.pixels)) {
     for (std::size_t pixel = 0; 3 * pixel < floats->values().size(); ++pixel) {
       bool clamped = false;
       for (std::size_t k = 3 * pixel; k < 3 * pixel + 3; ++k) {
         float& value = floats->values()[k];
         if (!std::isfinite(value))
-          throw BadInput(file.string(), "has a pixel that is not a finite number", "colours of 0 to 1",
+          throw BadInput(source.name, "has a pixel that is not a finite number", "colours of 0 to 1",
                          "mend the picture, or give --albedo a number");
-        clamped = clamped || value < 0 || value > 1;
-        value = std::clamp(value, 0.f, 1.f);
-        if (!picture.is_float) value = decode(value);
+        const float found = picture.is_float ? base + gain * value : decode(value);
+        value = std::clamp(found, 0.f, 1.f);
+        clamped = clamped || value != found;
       }
       clamped_pixels_ += clamped;
     }
@@ -48,22 +76,22 @@ Eigen::Vector3f ColorTexture::texel(int i, int j) const {
   return Eigen::Map<const Eigen::Vector3f>(std::get_if<Image<float>>(&pixels_)->pixel(i, j).data());
 }
 
-Eigen::Vector3f ColorTexture::at(const Eigen::Vector2f& uv, bool clamp) const {
+Eigen::Vector3f ColorTexture::at(const Eigen::Vector2f& uv, Wrap wrap_u, Wrap wrap_v) const {
   // Per axis the two texels whose centres the point lies between, and the second one's weight. In double precision:
   // uvs far outside the unit square would lose texels' fractions.
   struct Between {
     int first, second;
     float weight;
   };
-  const auto between = [&](double coordinate, int texels) {
-    const double place =
-        (clamp ? std::clamp(coordinate, 0.0, 1.0) : coordinate - std::floor(coordinate)) * texels - 0.5;
+  const auto between = [](double coordinate, int texels, Wrap wrap) {
+    const double within = wrap == Wrap::clamp ? std::clamp(coordinate, 0.0, 1.0)
+                                              : coordinate - 2 * std::floor(coordinate / 2);  // two periods
+    const double place = within * texels - 0.5;
     const double below = std::floor(place);
     const int first = static_cast<int>(below);
-    const auto wrapped = [&](int i) { return clamp ? std::clamp(i, 0, texels - 1) : (i + texels) % texels; };
-    return Between{wrapped(first), wrapped(first + 1), static_cast<float>(place - below)};
+    return Between{wrapped(first, texels, wrap), wrapped(first + 1, texels, wrap), static_cast<float>(place - below)};
   };
-  const Between x = between(uv.x(), width_), y = between(uv.y(), height_);
+  const Between x = between(uv.x(), width_, wrap_u), y = between(uv.y(), height_, wrap_v);
   const Eigen::Vector3f lower = (1 - x.weight) * texel(x.first, y.first) + x.weight * texel(x.second, y.first);
   const Eigen::Vector3f upper = (1 - x.weight) * texel(x.first, y.second) + x.weight * texel(x.second, y.second);
   return (1 - y.weight) * lower + y.weight * upper;

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "image/image.h"
+#include "import/source_mesh.h"
 #include "material/material_settings.h"
 
 namespace kiln {
@@ -18,9 +19,14 @@ class ColorTexture {
   /// linear and lie in 0 to 1, or are clamped to that. Throws BadInput, also for values that are not numbers.
   ColorTexture(const std::filesystem::path& file, ColorEncoding encoding);
 
-  /// Bilinear between linear values, outside the unit square repeated, or, with `clamp`, the edge's texels. uv (0, 0)
-  /// is the picture's lower left corner.
-  Eigen::Vector3f at(const Eigen::Vector2f& uv, bool clamp = false) const;
+  /// The same of a picture that a mesh names or holds; stored values v become base + gain * v before they are decoded.
+  ColorTexture(const SourcePicture& picture, ColorEncoding encoding, float base = 0, float gain = 1);
+
+  using Wrap = SourceMaterial::Wrap;
+
+  /// Bilinear between linear values; outside the unit square the picture is repeated, mirrored or goes on as its edge.
+  /// uv (0, 0) is the picture's lower left corner.
+  Eigen::Vector3f at(const Eigen::Vector2f& uv, Wrap wrap_u = Wrap::repeat, Wrap wrap_v = Wrap::repeat) const;
 
   int width() const { return width_; }
   int height() const { return height_; }

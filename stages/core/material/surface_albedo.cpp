@@ -1,5 +1,6 @@
 #include "material/surface_albedo.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <stdexcept>
 
@@ -54,7 +55,7 @@ Eigen::Vector3f SurfaceAlbedo::at(std::uint32_t triangle, float u, float v) cons
   const std::array<Eigen::Vector2f, 3>& uvs = textured_->uvs[triangle];
   const Eigen::Vector2f uv = (1 - u - v) * uvs[0] + u * uvs[1] + v * uvs[2];
   return material.color.cwiseProduct(
-      material.texture->at(material.texture_scale.cwiseProduct(uv) + material.texture_offset, material.texture_clamp));
+      material.texture->at(material.texture_transform * uv.homogeneous(), material.wrap_u, material.wrap_v));
 }
 
 std::string SurfaceAlbedo::source_name() const {

@@ -23,9 +23,9 @@ class SurfaceAlbedo {
   struct Material {
     Eigen::Vector3f color = Eigen::Vector3f::Ones();
     std::shared_ptr<const ColorTexture> texture;  ///< null: none
-    Eigen::Vector2f texture_scale{1, 1};
-    Eigen::Vector2f texture_offset = Eigen::Vector2f::Zero();
-    bool texture_clamp = false;
+    /// The texture is looked up at texture_transform * (u, v, 1).
+    Eigen::Matrix<float, 2, 3> texture_transform = Eigen::Matrix<float, 2, 3>::Identity();
+    ColorTexture::Wrap wrap_u = ColorTexture::Wrap::repeat, wrap_v = ColorTexture::Wrap::repeat;
   };
 
   /// Triangles with materials, and with the texture coordinates of their corners.

@@ -1,0 +1,226 @@
+// The format: Alias|Wavefront, "Advanced Visualizer Manual", appendix B2, "Object material files (.MTL)", version 4.2,
+// "Options for texture map statements". Options stand before the name there; exporters write them behind it, too.
+#include "import/map_statement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "import/named_file.h"
+#include "import/wavefront_lines.h"
+
+namespace kiln {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Bounds the work on a statement that no exporter writes; a path has at most as many.
+constexpr std::size_t most_characters = 4096;
+
+/// How many words follow an option that says nothing of the colour that is looked up.
+struct PlainOption {
+  std::string_view name;
+  enum class Kind { on_or_off, number, word } kind;
+};
+constexpr PlainOption plain_options[] = {
+    {"-blendu", PlainOption::Kind::on_or_off}, {"-blendv", PlainOption::Kind::on_or_off},
+    {"-cc", PlainOption::Kind::on_or_off},     {"-texres", PlainOption::Kind::word},
+    {"-boost", PlainOption::Kind::number},     {"-bm", PlainOption::Kind::number},
+    {"-type", PlainOption::Kind::word},        {"-imfchan", PlainOption::Kind::word},
+};
+
+std::optional<double> finite(std::string_view word) {
+  const std::optional<double> value = parse_number(word);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+/// The statement read so far, and what stands behind it.
+struct State {
+  MapStatement map;
+  std::string_view rest;
+};
+
+class OptionReader {
+ public:
+  explicit OptionReader(const State& start) : state_(start) {}
+
+  /// Reads options while they stand at the front. `endings` are the states in which a name may begin: behind the last
+  /// option, and where that has numbers that can be left out, before each of these.
+  std::vector<State> read() {
+    endings_ = {state_};
+    while (read_option()) {
+    }
+    return endings_;
+  }
+
+ private:
+  bool read_option() {
+    std::string_view rest = state_.rest;
+    const std::string_view option = next_word(rest);
+    if (option.size() < 2 || option.front() != '-') return false;
+    const State before = state_;
+    state_.rest = rest;
+    const std::vector<State> before_endings = std::move(endings_);
+    endings_.clear();
+    if (read_known(option)) {
+      endings_.insert(endings_.begin(), state_);
+      return true;
+    }
+    state_ = before;
+    endings_ = before_endings;
+    return false;
+  }
+
+  /// False for an option that is not known, or whose words are not what it takes.
+  bool read_known(std::string_view option) {
+    if (is_keyword(option, "-s")) return read_numbers(state_.map.scale);
+    if (is_keyword(option, "-o")) return read_numbers(state_.map.offset);
+    if (is_keyword(option, "-t")) return read_turbulence();
+    if (is_keyword(option, "-mm")) return read_range();
+    if (is_keyword(option, "-clamp")) return read_switch(state_.map.clamp);
+    if (is_keyword(option, "-colorspace")) return is_keyword(next_word(state_.rest), "srgb");
+    for (const PlainOption& plain : plain_options)
+      if (is_keyword(option, plain.name)) return pass(plain.kind);
+    return false;
+  }
+
+  bool pass(PlainOption::Kind kind) {
+    bool is_on = false;
+    if (kind == PlainOption::Kind::on_or_off) return read_switch(is_on);
+    const std::string_view word = next_word(state_.rest);
+    return kind == PlainOption::Kind::number ? finite(word).has_value() : !word.empty();
+  }
+
+  bool read_switch(bool& value) {
+    const std::string_view word = next_word(state_.rest);
+    value = is_keyword(word, "on");
+    return value || is_keyword(word, "off");
+  }
+
+  /// One to three numbers, of which two are for u and v.
+  bool read_numbers(double* values) {
+    for (int k = 0; k < 3; ++k) {
+      std::string_view rest = state_.rest;
+      const std::optional<double> value = finite(next_word(rest));
+      if (!value) return k > 0;
+      if (k > 0) endings_.insert(endings_.begin(), state_);
+      if (k < 2) values[k] = *value;
+      state_.rest = rest;
+    }
+    return true;
+  }
+
+  bool read_turbulence() {
+    double turbulence[3] = {0, 0, 0};
+    const std::string_view text = state_.rest;
+    if (!read_numbers(turbulence)) return false;
+    if (turbulence[0] != 0)
+      for (State& ending : endings_) ending.map.fault = MapFault{"map_Kd with -t, turbulence", "-t 0 0 0, or none"};
+    if (turbulence[0] != 0 || turbulence[1] != 0)
+      state_.map.fault =
+          MapFault{"map_Kd with -t" + std::string(text.substr(0, text.size() - state_.rest.size())) + ", turbulence",
+                   "-t 0 0 0, or none"};
+    return true;
+  }
+
+  bool read_range() {
+    const std::optional<double> base = finite(next_word(state_.rest)), gain = finite(next_word(state_.rest));
+    if (!base || !gain) return false;
+    state_.map.base = *base;
+    state_.map.gain = *gain;
+    return true;
+  }
+
+  State state_;
+  std::vector<State> endings_;
+};
+
+/// Reads `rest` as options and nothing else but a comment.
+bool read_all_as_options(State& state) {
+  state.rest = name_without_comment(state.rest);
+  state = OptionReader(state).read().front();
+  return trimmed(state.rest).empty();
+}
+
+bool find_file(MapStatement& map, std::string_view name, const fs::path& folder) {
+  map.name = name;
+  map.file = find_named_file(folder, name);
+  return map.file.has_value();
+}
+
+/// A name in quotes, and options behind it.
+MapStatement read_quoted(State state, std::size_t closing, const fs::path& folder) {
+  const std::string_view text = trimmed(state.rest);
+  state.rest = text.substr(closing + 1);
+  if (!read_all_as_options(state) && !state.map.fault)
+    state.map.fault =
+        MapFault{"map_Kd with " + shown(trimmed(state.rest)), "options of a map behind its name, or nothing"};
+  find_file(state.map, text.substr(1, closing - 1), folder);
+  return state.map;
+}
+
+/// A name that goes to the end, or to where options begin that go to the end.
+MapStatement read_unquoted(State state, const fs::path& folder) {
+  const std::string_view text = trimmed(state.rest), bare = trimmed(name_without_comment(text));
+  if (find_file(state.map, text, folder) || find_file(state.map, bare, folder)) return state.map;
+  for (std::size_t k = bare.find(" -"); k != std::string_view::npos; k = bare.find(" -", k + 1)) {
+    State behind = state;
+    behind.rest = bare.substr(k);
+    if (!read_all_as_options(behind)) continue;
+    find_file(behind.map, trimmed(bare.substr(0, k)), folder);
+    return behind.map;
+  }
+  return state.map;
+}
+
+MapStatement read_name(const State& state, const fs::path& folder) {
+  const std::string_view text = trimmed(state.rest);
+  if (text.starts_with('"') || text.starts_with('\'')) {
+    const std::size_t closing = text.find(text.front(), 1);
+    if (closing != std::string_view::npos) return read_quoted(state, closing, folder);
+  }
+  return read_unquoted(state, folder);
+}
+
+}  // namespace
+
+void MapStatement::apply_to(SourceMaterial& material) const {
+  SourcePicture picture;
+  picture.file = *file;
+  picture.name = file->filename().string();
+  material.texture = picture;
+  material.texture_transform << static_cast<float>(scale[0]), 0, static_cast<float>(offset[0]), 0,
+      static_cast<float>(scale[1]), static_cast<float>(offset[1]);
+  material.wrap_u = material.wrap_v = clamp ? SourceMaterial::Wrap::clamp : SourceMaterial::Wrap::repeat;
+  material.texture_base = static_cast<float>(base);
+  material.texture_gain = static_cast<float>(gain);
+}
+
+MapStatement read_map_statement(std::string_view text, const fs::path& folder) {
+  if (text.size() > most_characters) {
+    MapStatement too_long;
+    too_long.fault = MapFault{"map_Kd of " + std::to_string(text.size()) + " characters",
+                              "at most " + std::to_string(most_characters)};
+    return too_long;
+  }
+  std::string tabs_as_blanks(text);
+  std::replace(tabs_as_blanks.begin(), tabs_as_blanks.end(), '\t', ' ');
+  const std::vector<State> endings = OptionReader({{}, tabs_as_blanks}).read();
+  std::optional<MapStatement> first;
+  for (const State& ending : endings) {
+    const MapStatement map = read_name(ending, folder);
+    if (map.file) return map;
+    if (!first) first = map;
+  }
+  MapStatement map = std::move(*first);
+  if (map.name.empty() && !map.fault) map.fault = MapFault{"map_Kd without a file", "the name of a picture"};
+  // An option that is not known stands at the front of what is no file's name then.
+  if (std::string_view rest = map.name; !map.fault && rest.starts_with('-'))
+    map.fault =
+        MapFault{"map_Kd with " + shown(map.name),
+                 "options of the format and what they take, such as -s 1 1 1, -mm 0 1 and -clamp on, and a name"};
+  return map;
+}
+
+}  // namespace kiln

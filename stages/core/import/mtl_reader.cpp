@@ -1,0 +1,147 @@
+// The format: Alias|Wavefront, "Advanced Visualizer Manual", appendix B2, "Object material files (.MTL)", version 4.2.
+// Ke and norm are of Clara.io's "extension to MTL for physically based rendering".
+#include "import/mtl_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "base/outputs.h"
+#include "import/map_statement.h"
+#include "import/wavefront_lines.h"
+
+namespace kiln {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class LibraryReader {
+ public:
+  explicit LibraryReader(const fs::path& file) : file_(file), text_(read_text(file)), lines_(text_) {}
+
+  std::vector<LibraryMaterial> read() {
+    for (std::string_view statement; lines_.next(statement);) {
+      const std::string_view keyword = next_word(statement);
+      if (is_keyword(keyword, "newmtl")) {
+        begin_material(statement);
+      } else if (!materials_.empty() && !keyword.empty()) {
+        read_statement(keyword, statement);
+      }
+    }
+    return std::move(materials_);
+  }
+
+ private:
+  void begin_material(std::string_view name) {
+    materials_.emplace_back().material.name = trimmed(name);
+    materials_.back().material.place = place();
+    has_dissolve_ = false;
+  }
+
+  void read_statement(std::string_view keyword, std::string_view rest) {
+    LibraryMaterial& material = materials_.back();
+    if (is_keyword(keyword, "kd")) return read_diffuse(rest);
+    if (is_keyword(keyword, "map_kd")) return read_map(rest);
+    if (is_keyword(keyword, "d")) return read_dissolve(rest);
+    if (is_keyword(keyword, "tr")) return read_transparency(rest);
+    if (is_keyword(keyword, "ke")) return read_emission(rest);
+    if (is_keyword(keyword, "map_d")) {
+      material.is_transparent = true;
+    } else if (is_keyword(keyword, "map_ke")) {
+      material.is_emissive = true;
+    } else if (is_other_map(keyword)) {
+      std::vector<std::string>& maps = material.other_maps;
+      if (std::find(maps.begin(), maps.end(), keyword) == maps.end()) maps.emplace_back(keyword);
+    }
+  }
+
+  static bool is_other_map(std::string_view keyword) {
+    for (const char* name : {"map_ka", "map_ks", "map_ns", "map_bump", "map_pr", "map_pm", "map_ps", "map_refl",
+                             "map_tr", "map_disp", "map_norm", "map_orm", "bump", "disp", "decal", "refl", "norm"})
+      if (is_keyword(keyword, name)) return true;
+    return false;
+  }
+
+  std::string place() const { return file_.string() + ":" + std::to_string(lines_.line()); }
+
+  /// Keeps the first fault of a material.
+  void fault(const std::string& found, const std::string& expected,
+             const std::string& remedy = "change the material, or give --albedo a number") {
+    std::optional<BadInput>& kept = materials_.back().fault;
+    if (!kept) kept.emplace(place(), found, expected, remedy);
+  }
+
+  void read_diffuse(std::string_view rest) {
+    const std::string_view text = trimmed(without_comment(rest));
+    const std::string found = "Kd " + shown(text);
+    std::string_view words = text;
+    const std::string_view first = next_word(words);
+    if (is_keyword(first, "spectral")) return fault(found, "red, green and blue, not the file of a spectrum");
+    if (is_keyword(first, "xyz")) return fault(found, "red, green and blue, not CIE XYZ");
+    const auto values = numbers(text);
+    if (!values || (values->size() != 1 && values->size() != 3))
+      return fault(found, "one or three finite numbers, red, green and blue");
+    const Eigen::Vector3d color(values->front(), (*values)[values->size() / 2], values->back());
+    LibraryMaterial& material = materials_.back();
+    material.material.diffuse = color.cwiseMax(0).cwiseMin(1).cast<float>();
+    material.material.has_diffuse = true;
+    material.is_clamped = color.minCoeff() < 0 || color.maxCoeff() > 1;
+  }
+
+  /// All words as finite numbers, at most four; nothing where one is none.
+  static std::optional<std::vector<double>> numbers(std::string_view text) {
+    std::vector<double> values;
+    for (std::string_view word = next_word(text); !word.empty() && values.size() < 4; word = next_word(text)) {
+      const std::optional<double> value = parse_number(word);
+      if (!value || !std::isfinite(*value)) return std::nullopt;
+      values.push_back(*value);
+    }
+    return values;
+  }
+
+  void read_map(std::string_view rest) {
+    const MapStatement map = read_map_statement(rest, folder_of(file_));
+    SourceMaterial& material = materials_.back().material;
+    material.texture_place = place();
+    if (map.fault) return fault(map.fault->found, map.fault->expected);
+    if (!map.file)
+      return fault("names the picture " + (file_.parent_path() / map.name).string() + ", which does not exist",
+                   "a file", "put it there, or give --albedo a number");
+    map.apply_to(material);
+  }
+
+  /// How opaque a material is: 1 is wholly so. -halo says that the middle of a shape is more so than its rim.
+  void read_dissolve(std::string_view rest) {
+    std::string_view word = next_word(rest);
+    if (is_keyword(word, "-halo")) word = next_word(rest);
+    const std::optional<double> value = parse_number(word);
+    if (!value) return;
+    materials_.back().is_transparent = *value < 1;
+    has_dissolve_ = true;
+  }
+
+  /// 1 - d, or d, as exporters differ: neither 0 nor 1 says that a material can be seen through.
+  void read_transparency(std::string_view rest) {
+    const std::optional<double> value = parse_number(next_word(rest));
+    if (value && !has_dissolve_ && *value > 0 && *value < 1) materials_.back().is_transparent = true;
+  }
+
+  void read_emission(std::string_view rest) {
+    const auto values = numbers(without_comment(rest));
+    if (values && std::any_of(values->begin(), values->end(), [](double value) { return value > 0; }))
+      materials_.back().is_emissive = true;
+  }
+
+  fs::path file_;
+  std::string text_;
+  WavefrontLines lines_;
+  bool has_dissolve_ = false;
+  std::vector<LibraryMaterial> materials_;
+};
+
+}  // namespace
+
+std::vector<LibraryMaterial> read_material_library(const fs::path& file) { return LibraryReader(file).read(); }
+
+}  // namespace kiln

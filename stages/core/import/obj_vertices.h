@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "import/obj_colors.h"
+#include "import/source_mesh.h"
+
+namespace kiln {
+
+/// What a word of an OBJ file says as a number: as parse_number has it, and what Windows writes for no numbers, such as
+/// "1.#QNAN".
+std::optional<double> parse_obj_number(std::string_view word);
+
+/// Collects the places of an OBJ file's `v` statements, and what stands behind their three coordinates: a weight w, a
+/// colour, or both.
+class ObjVertices {
+ public:
+  static constexpr std::size_t most_numbers = 8;  ///< that are told apart
+
+  /// Adds a place to `mesh` by the numbers of a statement, three or more: x y z, x y z w, x y z r g b or seven, which
+  /// finish() tells apart. Of other counts the first three are taken.
+  void add(std::span<const double> numbers, SourceMesh& mesh);
+
+  /// Counts the digits of a coordinate.
+  void see_digits(std::string_view word);
+
+  /// Takes statements of seven numbers for x y z w r g b or x y z r g b a, whichever they look like, all alike.
+  void finish(SourceMesh& mesh);
+
+  ObjColors& colors() { return colors_; }
+
+  /// As SourceMesh has it, of the places that are used. 0 for whole numbers, which nothing rounded.
+  double precision(const std::vector<Eigen::Vector3d>& places, const std::vector<bool>& is_used) const;
+
+ private:
+  struct Seven {
+    std::size_t index = 0;
+    Eigen::Vector4d rest;  ///< the fourth to the seventh number
+  };
+
+  bool sevens_end_in_alpha() const;
+  void weigh(double weight, Eigen::Vector3d& place);
+
+  ObjColors colors_;
+  std::vector<Seven> sevens_;
+  std::size_t weighed_ = 0;  ///< places with a weight other than 1
+  std::size_t odd_ = 0;      ///< statements of 5, 8 or more numbers
+  int most_digits_ = 0;
+  bool has_fractions_ = false;
+};
+
+}  // namespace kiln

@@ -1,0 +1,94 @@
+#include "import/uv_mesh.h"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <map>
+
+#include "base/errors.h"
+#include "import/import_mesh.h"
+#include "import/readers.h"
+#include "import/triangulate.h"
+
+namespace kiln {
+
+namespace {
+
+constexpr char remedy[] = "export the mesh again, with its texture coordinates, or leave --keep-uv out to make them";
+
+void require_uvs(const std::string& name, const SourceMesh& source) {
+  if (source.uvs.empty()) throw BadInput(name, "has no texture coordinates", "a mesh with uvs", remedy);
+  for (std::size_t f = 0; f < source.faces.size(); ++f) {
+    const SourceMesh::Face& face = source.faces[f];
+    const std::string place = face.line > 0 ? name + ":" + std::to_string(face.line) : name;
+    const std::string found = face.line > 0 ? "a face" : "face " + std::to_string(f + 1);
+    for (const SourceMesh::Corner& corner : source.corners_of(face)) {
+      if (corner.uv == SourceMesh::none)
+        throw BadInput(place, found + " without texture coordinates", "texture coordinates at every corner", remedy);
+      if (!source.uvs[corner.uv].allFinite())
+        throw BadInput(place, found + " with a texture coordinate that is not a finite number", "finite uvs", remedy);
+    }
+  }
+}
+
+/// Vertices without a normal in the file get that of compute_vertex_normals, as if vertices at one place were one.
+void complete_normals(TriangleMesh& mesh, const std::vector<bool>& has_normal) {
+  std::map<std::array<float, 3>, std::uint32_t> at_place;
+  std::vector<std::uint32_t> welded(mesh.positions.size());
+  TriangleMesh whole;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Eigen::Vector3f& p = mesh.positions[v];
+    const auto [found, inserted] = at_place.try_emplace({p.x() + 0.f, p.y() + 0.f, p.z() + 0.f},
+                                                        static_cast<std::uint32_t>(whole.positions.size()));
+    if (inserted) whole.positions.push_back(p);
+    welded[v] = found->second;
+  }
+  for (const Triangle& t : mesh.triangles) whole.triangles.push_back({welded[t[0]], welded[t[1]], welded[t[2]]});
+  compute_vertex_normals(whole);
+  for (std::size_t v = 0; v < welded.size(); ++v)
+    if (!has_normal[v]) mesh.normals[v] = whole.normals[welded[v]];
+}
+
+}  // namespace
+
+TriangleMesh load_uv_mesh(const std::filesystem::path& file, const ImportSettings& settings,
+                          std::vector<std::string>* warnings) {
+  const std::string name = file.string();
+  SourceMesh source = read_source_mesh(file);
+  if (warnings != nullptr) warnings->insert(warnings->end(), source.warnings.begin(), source.warnings.end());
+  require_uvs(name, source);
+  turn_and_scale(source, settings);
+  const std::vector<CutTriangle> triangles = triangulate(source);
+  const Eigen::AlignedBox3d box = box_of(source, triangles);
+
+  TriangleMesh mesh;
+  mesh.frame = frame_of(box.min(), box.max());
+  std::vector<bool> has_normal;
+  std::map<std::array<float, 8>, std::uint32_t> vertices;
+  const bool takes_normals =
+      settings.normals.kind == NormalChoice::Kind::automatic || settings.normals.kind == NormalChoice::Kind::file;
+  const auto vertex = [&](const SourceMesh::Corner& corner) {
+    const Eigen::Vector3f position = mesh.frame.from_file(source.places[corner.place]).cast<float>();
+    const Eigen::Vector2f& uv = source.uvs[corner.uv];
+    Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+    if (takes_normals && corner.normal != SourceMesh::none) normal = source.normals[corner.normal].normalized();
+    if (!normal.allFinite()) normal.setZero();
+    const auto [found, inserted] = vertices.try_emplace(
+        {position.x(), position.y(), position.z(), uv.x(), uv.y(), normal.x(), normal.y(), normal.z()},
+        static_cast<std::uint32_t>(mesh.positions.size()));
+    if (inserted) {
+      mesh.positions.push_back(position);
+      mesh.uvs.push_back(uv);
+      mesh.normals.push_back(normal);
+      has_normal.push_back(!normal.isZero(0));
+    }
+    return found->second;
+  };
+  for (const CutTriangle& triangle : triangles) {
+    Triangle& t = mesh.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) t[k] = vertex(source.corners[triangle.corners[k]]);
+  }
+  complete_normals(mesh, has_normal);
+  return mesh;
+}
+
+}  // namespace kiln
