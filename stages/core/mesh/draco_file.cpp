@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <draco/compression/decode.h>
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
 #include <fstream>
@@ -14,6 +13,7 @@
 
 #include "base/errors.h"
 #include "base/outputs.h"
+#include "mesh/draco_decode.h"
 
 namespace kiln {
 
@@ -144,15 +144,7 @@ void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
 
 /// `name` is for messages.
 std::unique_ptr<draco::Mesh> decode(const std::string& bytes, const std::string& name) {
-  if (bytes.empty()) throw BadInput(name, "is empty", "a Draco mesh", remedy);
-  draco::DecoderBuffer buffer;
-  buffer.Init(bytes.data(), bytes.size());
-  draco::Decoder decoder;
-  auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-  if (!decoded.ok())
-    throw BadInput(name, "is no whole Draco mesh (" + decoded.status().error_msg_string() + ")", "a Draco mesh",
-                   remedy);
-  return std::move(decoded).value();
+  return decode_draco({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, name, remedy);
 }
 
 TriangleMesh mesh_of(const draco::Mesh& source, const std::string& name) {

@@ -1,0 +1,191 @@
+#include "import/gltf_material.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+
+// Materials are those of chapter 3.9 of glTF 2.0, textures of chapter 3.8. The rotation of KHR_texture_transform is the
+// one that its words and its sample model have, counter-clockwise where v points down; the listing in its text turns
+// the other way (https://github.com/KhronosGroup/glTF/issues/1563).
+
+namespace kiln {
+
+namespace {
+
+using Json = GltfDocument::Json;
+using Wrap = SourceMaterial::Wrap;
+
+/// Extensions by which a texture has its picture in another format as well.
+constexpr std::array<std::pair<const char*, const char*>, 3> other_formats = {
+    {{"KHR_texture_basisu", "KTX2"}, {"EXT_texture_webp", "WebP"}, {"MSFT_texture_dds", "DDS"}}};
+
+class MaterialReader {
+ public:
+  MaterialReader(const GltfDocument& document, GltfBuffers& buffers) : document_(document), buffers_(buffers) {}
+
+  GltfMaterial read(std::size_t index) {
+    const Json& object = document_.element("materials", index, "the file");
+    GltfMaterial result;
+    place_ = "material " + std::to_string(index);
+    result.material.name = document_.text(object, "name", place_);
+    result.material.place = document_.file().string() + ", " + place_;
+    result.material.has_diffuse = true;
+    result.material.linear_diffuse = true;
+    if (const Json* glossy = document_.extension(object, "KHR_materials_pbrSpecularGlossiness", place_))
+      read_color(*glossy, "diffuseFactor", "diffuseTexture", result);
+    else if (const Json* metallic = document_.object(object, "pbrMetallicRoughness", place_))
+      read_metallic(*metallic, result);
+    count_what_is_passed_by(object);
+    return result;
+  }
+
+  void add_warnings(std::vector<std::string>& warnings) const {
+    const auto add = [&](std::size_t count, const std::string& what) {
+      if (count > 0) warnings.push_back(std::to_string(count) + (count == 1 ? " material " : " materials ") + what);
+    };
+    add(see_through_, "of alpha mode BLEND or MASK taken for opaque");
+    add(glowing_, "with light of their own (emissive), which is not used");
+    add(metallic_, "in part or wholly metal: the base colour is taken for what a dull surface reflects");
+    if (fallbacks_ > 0)
+      warnings.push_back(std::to_string(fallbacks_) + (fallbacks_ == 1 ? " texture" : " textures") +
+                         " with a picture as KTX2, WebP or DDS, in place of which the plain one beside it is used");
+    if (unread_ > 0)
+      warnings.push_back(std::to_string(unread_) + (unread_ == 1 ? " texture" : " textures") +
+                         " with a picture as KTX2, WebP or DDS alone, which may not be readable");
+  }
+
+ private:
+  void read_metallic(const Json& metallic, GltfMaterial& result) {
+    read_color(metallic, "baseColorFactor", "baseColorTexture", result);
+    metallic_ += document_.number(metallic, "metallicFactor", 1, place_) > 0;
+  }
+
+  void read_color(const Json& holder, const char* factor_key, const char* texture_key, GltfMaterial& result) {
+    if (const std::vector<double> factor = document_.numbers(holder, factor_key, 4, place_); !factor.empty())
+      result.material.diffuse = Eigen::Vector3d(factor[0], factor[1], factor[2]).cast<float>().cwiseMax(0).cwiseMin(1);
+    if (const Json* info = document_.object(holder, texture_key, place_)) read_texture(*info, result);
+  }
+
+  void read_texture(const Json& info, GltfMaterial& result) {
+    const std::size_t index = document_.required_index(info, "index", place_);
+    const Json& texture = document_.element("textures", index, place_);
+    const std::string place = "texture " + std::to_string(index);
+    result.material.texture = picture(texture, place);
+    result.material.texture_place = document_.file().string() + ", " + place;
+    result.uv_set = document_.index(info, "texCoord", place_).value_or(0);
+    if (const auto sampler = document_.index(texture, "sampler", place)) read_sampler(*sampler, place, result.material);
+    if (const Json* transform = document_.extension(info, "KHR_texture_transform", place_)) {
+      result.uv_set = document_.index(*transform, "texCoord", place_).value_or(result.uv_set);
+      result.material.texture_transform = read_transform(*transform);
+    }
+  }
+
+  std::optional<SourcePicture> picture(const Json& texture, const std::string& place) {
+    const auto plain = document_.index(texture, "source", place);
+    for (const auto& [extension, format] : other_formats) {
+      const Json* other = document_.extension(texture, extension, place);
+      if (other == nullptr) continue;
+      if (plain) {
+        ++fallbacks_;
+        break;
+      }
+      ++unread_;
+      SourcePicture result = image(document_.required_index(*other, "source", place), place);
+      result.name += std::string(" (") + format + ")";
+      return result;
+    }
+    if (!plain) document_.fail(place + " has no picture (\"source\")", "one");
+    return image(*plain, place);
+  }
+
+  SourcePicture image(std::size_t index, const std::string& user) {
+    const std::string place = "image " + std::to_string(index);
+    const Json& object = document_.element("images", index, user);
+    SourcePicture picture{document_.file(), nullptr, place + " of " + document_.file().filename().string()};
+    if (const auto view = document_.index(object, "bufferView", place)) {
+      const std::span<const std::uint8_t> bytes = buffers_.view(*view, place);
+      return embed({bytes.begin(), bytes.end()}, index, std::move(picture));
+    }
+    const std::string uri = document_.text(object, "uri", place);
+    if (uri.empty()) document_.fail(place + " has neither a uri nor a bufferView", "one of them");
+    if (uri.starts_with("data:")) {
+      auto bytes = data_uri_bytes(uri);
+      if (!bytes)
+        document_.fail("the data URI of " + place + " is no base64", "\"data:...;base64,\" and base64 behind it");
+      return embed(std::move(*bytes), index, std::move(picture));
+    }
+    picture.file = document_.file().parent_path() / percent_decoded(uri);
+    picture.name = picture.file.string();
+    return picture;
+  }
+
+  /// Materials that share a picture share its bytes.
+  SourcePicture embed(std::vector<std::uint8_t> bytes, std::size_t index, SourcePicture picture) {
+    auto& known = embedded_[index];
+    if (known == nullptr) known = std::make_shared<const std::vector<std::uint8_t>>(std::move(bytes));
+    picture.bytes = known;
+    return picture;
+  }
+
+  void read_sampler(std::size_t index, const std::string& user, SourceMaterial& material) const {
+    const std::string place = "sampler " + std::to_string(index);
+    const Json& object = document_.element("samplers", index, user);
+    const auto wrap = [&](const char* key) {
+      switch (const std::size_t mode = document_.index(object, key, place).value_or(10497)) {
+        case 10497:
+          return Wrap::repeat;
+        case 33071:
+          return Wrap::clamp;
+        case 33648:
+          return Wrap::mirror;
+        default:
+          document_.fail(place + " has the wrap mode " + std::to_string(mode), "10497, 33071 or 33648");
+      }
+    };
+    material.wrap_u = wrap("wrapS");
+    material.wrap_v = wrap("wrapT");
+  }
+
+  /// The transform of glTF's coordinates, whose v points down, as one of coordinates whose v points up.
+  Eigen::Matrix<float, 2, 3> read_transform(const Json& transform) const {
+    std::vector<double> offset = document_.numbers(transform, "offset", 2, place_);
+    std::vector<double> scale = document_.numbers(transform, "scale", 2, place_);
+    const double angle = document_.number(transform, "rotation", 0, place_);
+    if (offset.empty()) offset = {0, 0};
+    if (scale.empty()) scale = {1, 1};
+    Eigen::Matrix3d down;
+    down << std::cos(angle) * scale[0], std::sin(angle) * scale[1], offset[0],  //
+        -std::sin(angle) * scale[0], std::cos(angle) * scale[1], offset[1],     //
+        0, 0, 1;
+    const Eigen::Matrix3d flip = (Eigen::Matrix3d() << 1, 0, 0, 0, -1, 1, 0, 0, 1).finished();
+    return (flip * down * flip).topRows<2>().cast<float>();
+  }
+
+  void count_what_is_passed_by(const Json& object) {
+    const std::string alpha = document_.text(object, "alphaMode", place_);
+    see_through_ += alpha == "BLEND" || alpha == "MASK";
+    const std::vector<double> emissive = document_.numbers(object, "emissiveFactor", 3, place_);
+    glowing_ += std::any_of(emissive.begin(), emissive.end(), [](double value) { return value > 0; });
+  }
+
+  const GltfDocument& document_;
+  GltfBuffers& buffers_;
+  std::string place_;
+  std::map<std::size_t, std::shared_ptr<const std::vector<std::uint8_t>>> embedded_;
+  std::size_t see_through_ = 0, glowing_ = 0, metallic_ = 0, fallbacks_ = 0, unread_ = 0;
+};
+
+}  // namespace
+
+std::vector<GltfMaterial> read_gltf_materials(const GltfDocument& document, GltfBuffers& buffers,
+                                              std::vector<std::string>& warnings) {
+  MaterialReader reader(document, buffers);
+  std::vector<GltfMaterial> materials;
+  for (std::size_t i = 0; i < document.count("materials"); ++i) materials.push_back(reader.read(i));
+  reader.add_warnings(warnings);
+  return materials;
+}
+
+}  // namespace kiln

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <draco/mesh/mesh.h>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace kiln {
+
+/// Decodes the bytes of a Draco file or of a part of another file. Throws BadInput, which begins with `name` and ends
+/// with `remedy`, where they hold points and no triangles, or are no whole Draco mesh. Memory stays in proportion to
+/// the bytes.
+std::unique_ptr<draco::Mesh> decode_draco(std::span<const std::uint8_t> bytes, const std::string& name,
+                                          const std::string& remedy);
+
+}  // namespace kiln
