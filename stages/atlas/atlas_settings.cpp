@@ -22,6 +22,7 @@ OptionSet atlas_options(AtlasSettings& settings) {
       .choice<AtlasQuality>("quality", settings.quality,
                             {{"standard", AtlasQuality::standard}, {"best", AtlasQuality::best}},
                             "Time for cutting and packing: seconds, or what it takes to make the most of the atlas");
+  add_import_options(options, settings.import);
   return options;
 }
 

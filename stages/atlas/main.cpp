@@ -1,12 +1,13 @@
 #include "atlas/atlas.h"
 #include "atlas/drawing.h"
 #include "atlas/keep_uv.h"
+#include "atlas/low_mesh.h"
 #include "base/command_line.h"
 #include "base/errors.h"
+#include "detail/asset_hints.h"
 #include "image/image_file.h"
-#include "mesh/draco_file.h"
-#include "mesh/mesh_file.h"
-#include "mesh/uv_mesh_file.h"
+#include "import/import_mesh.h"
+
 
 int main(int argc, char** argv) {
   using namespace kiln;
@@ -28,11 +29,16 @@ int main(int argc, char** argv) {
       throw WrongUsage("texels-per-unit: found --keep-uv; expected --size, which those uvs are checked at");
 
     // Load.
-    const TriangleMesh low = settings.keep_uv                 ? load_uv_mesh(low_file)
-                             : low_file.extension() == ".drc" ? load_draco(low_file)
-                                                              : load_mesh(low_file);
+    const AssetHints hints = read_asset_hints(folder_of(low_file));
+    std::vector<std::string> warnings;
+    const TriangleMesh low = load_low_mesh(low_file, settings, warnings);
     TriangleMesh high;
-    if (!high_file.empty()) high = load_mesh(high_file);
+    if (!high_file.empty()) {
+      ImportedMesh imported = import_mesh(high_file, inherit(settings.import, hints.import), low.frame);
+      warnings.insert(warnings.end(), imported.warnings.begin(), imported.warnings.end());
+      high = std::move(imported.mesh);
+    }
+    command.warn(warnings, hints.warnings);
     OutputSet outputs(folder_of(atlas_file));
 
     // Run.

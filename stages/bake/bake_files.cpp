@@ -9,10 +9,10 @@
 #include "base/errors.h"
 #include "detail/asset_hints.h"
 #include "detail/detail_maps.h"
+#include "import/import_mesh.h"
 #include "material/load_albedo.h"
 #include "material/surroundings.h"
 #include "mesh/draco_file.h"
-#include "mesh/mesh_file.h"
 
 namespace kiln {
 
@@ -33,12 +33,19 @@ Extent packed_size(const fs::path& atlas) {
 std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSettings& settings, BakeScene& scene) {
   std::vector<TriangleMesh> meshes;
   std::vector<fs::path> files = paths.occluders;
-  MeshRepairSettings repair{.fill_hole_edges = read_asset_hints(folder_of(paths.atlas)).fill_hole_edges};
+  const AssetHints hints = read_asset_hints(folder_of(paths.atlas));
+  ImportSettings how = inherit(settings.import, hints.import);
   if (files.empty()) {
     files.push_back(paths.atlas);
-    repair = {};
+    if (is_draco_file(paths.atlas)) how = {};  // it is in our axes and units already
   }
-  for (const fs::path& file : files) meshes.push_back(load_mesh(file, nullptr, repair));
+  const MeshFrame& frame = settings.per_vertex ? scene.vertex_mesh.frame : scene.atlas.frame;
+  std::vector<ImportedMesh> imported;
+  for (const fs::path& file : files) {
+    imported.push_back(import_mesh(file, how, frame));
+    scene.add_warnings(imported.back().warnings);
+  }
+  scene.said_warnings = hints.warnings;
 
   std::vector<SurfaceAlbedo> albedos;
   const bool bounces = parse_bounces(settings.bounces).any(), with_albedo = bounces || settings.bake_albedo;
@@ -48,10 +55,11 @@ std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSetti
                        "; expected materials, colours of vertices, --albedo or --albedo-texture");
     albedos.push_back(loaded.albedo);
     scene.further_files.insert(scene.further_files.end(), loaded.files.begin(), loaded.files.end());
-    if (const std::string warning = loaded.warning(); !warning.empty()) scene.warnings.push_back(warning);
+    scene.add_warnings(loaded.warnings());
   };
   for (std::size_t k = 0; k < files.size() && with_albedo; ++k)
-    add_albedo(files[k].string(), load_albedo(files[k], meshes[k], settings.material));
+    add_albedo(files[k].string(), load_albedo(imported[k], settings.material));
+  for (ImportedMesh& mesh : imported) meshes.push_back(std::move(mesh.mesh));
 
   // What stands around.
   scene.neighbours = settings.surroundings.neighbours;
@@ -61,7 +69,8 @@ std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSetti
     own.lowest = own.lowest.cwiseMin(box.lowest);
     own.highest = own.highest.cwiseMax(box.highest);
   }
-  for (PlacedMesh& placed : load_surroundings(settings.surroundings, own, settings.material, with_albedo)) {
+  for (PlacedMesh& placed : load_surroundings(settings.surroundings, own, settings.material, with_albedo, frame)) {
+    scene.add_warnings(placed.warnings);
     meshes.push_back(std::move(placed.mesh));
     if (with_albedo) add_albedo(placed.name, placed.material);
     if (fs::is_regular_file(placed.name)) scene.further_files.emplace_back(placed.name);
@@ -82,7 +91,10 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
     throw WrongUsage("per-vertex: found --adaptive; expected none, it goes by squares of texels");
   if (settings.size.width != 0) throw WrongUsage("per-vertex: found --size; expected none, which is for texels");
   BakeScene scene;
-  scene.vertex_mesh = load_vertex_mesh(paths.atlas);
+  std::vector<std::string> warnings;
+  scene.vertex_mesh = load_vertex_mesh(
+      paths.atlas, inherit(settings.import, read_asset_hints(folder_of(paths.atlas)).import), &warnings);
+  scene.add_warnings(warnings);
   const std::vector<TriangleMesh> occluders = load_occluders(paths, settings, scene);
   const bool on_high = settings.receiver == BakeReceiver::high && !paths.occluders.empty();
   VertexReceivers vertices = on_high ? receivers_on_high_of_vertices(scene.vertex_mesh, occluders.front())
@@ -164,6 +176,10 @@ Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene&
 }
 
 }  // namespace
+
+void BakeScene::add_warnings(const std::vector<std::string>& further) {
+  warnings.insert(warnings.end(), further.begin(), further.end());
+}
 
 BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) {
   subsurface_profiles(settings.subsurface);  // says what does not go together before anything is baked

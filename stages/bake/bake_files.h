@@ -22,6 +22,9 @@ struct BakeScene {
   std::vector<std::filesystem::path> further_files;  ///< that were read: neighbours, and what holds meshes' albedo
   std::vector<std::string> neighbours;               ///< as --neighbour has them
   std::vector<std::string> warnings;
+  std::vector<std::string> said_warnings;  ///< those of an earlier stage
+  void add_warnings(const std::vector<std::string>& further);
+
   NormalSpace normal_space = NormalSpace::object;  ///< of the normal map
   Json albedo;           ///< of the receivers, as ranges.json has it (AssetFiles); null: unknown
   double high_area = 0;  ///< of the mesh that receivers on the high mesh stand on, square object units; else 0

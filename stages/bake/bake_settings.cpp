@@ -15,6 +15,7 @@ void add_bounce_options(OptionSet& options, BakeSettings& settings) {
                        "--bits costs",
                        [](const std::string& text) { parse_bounces(text); });
   add_material_options(options, settings.material);
+  add_import_options(options, settings.import);
   options
       .toggle("bake-albedo", settings.bake_albedo,
               "Puts the receivers' albedo in the stored transfer, in place of leaving it to the renderer")

@@ -6,6 +6,7 @@
 #include "bake/subsurface/subsurface_settings.h"
 #include "base/options.h"
 #include "detail/seam_choice.h"
+#include "import/import_settings.h"
 #include "material/material_settings.h"
 #include "material/surroundings_settings.h"
 #include "sh/directions.h"
@@ -52,6 +53,7 @@ struct BakeSettings {
   std::string bounces = "0";  ///< how often light bounces: a number, or auto
   bool bake_albedo = false;   ///< whether the stored transfer has the receivers' albedo in it
   Surroundings surroundings;  ///< of the asset in its scene
+  ImportSettings import;      ///< of the occluders, and of a mesh whose vertices are baked
   MaterialSettings material;  ///< of the occluders, and of receivers where no detail folder has it
   double bounce_edge = 0.01;  ///< longest edge of what it bounces off, fraction of the occluders' diagonal
   BakeBackend backend = BakeBackend::automatic;

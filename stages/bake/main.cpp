@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
     command.list_option(
         "neighbour", settings.surroundings.neighbours, "Bake",
         "Mesh beside the asset that casts shadows, may be repeated: FILE[;place=X,Y,Z[,AZIMUTH[,SCALE]]]"
-        "[;albedo=...][;albedo-texture=...][;albedo-encoding=...][;fill-holes=...]");
+        "[;albedo=...][;albedo-texture=...][;albedo-encoding=...][;up=...][;unit=...][;scale=...][;normals=...][;fill-holes=...]");
     command.input_option("merge", run.shards, "Folder of a shard; once for each. Adds them up in place of integrating");
     command.output(paths.output, "Folder for coeff_<c>_<ii>.png (per vertex: vertices.drc) and ranges.json");
     command.options("Bake", kiln::bake_options(settings));
@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
     kiln::OutputSet outputs(paths.output);
     const kiln::BakeScene scene = kiln::load_bake_scene(paths, settings);
     command.also_read(scene.further_files);
-    for (const std::string& warning : scene.warnings) command.say(warning);
+    command.warn(scene.warnings, scene.said_warnings);
     const kiln::BakeResult result = kiln::run_bake(outputs, paths, scene, settings, run, command);
     const kiln::Json metrics = run.is_shard() ? kiln::describe_bake(scene, result)
                                               : kiln::save_bake(outputs, paths, scene, result, settings, command);

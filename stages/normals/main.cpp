@@ -1,8 +1,8 @@
 #include "base/command_line.h"
 #include "image/image_file.h"
+#include "import/import_mesh.h"
 #include "material/load_albedo.h"
 #include "mesh/draco_file.h"
-#include "mesh/mesh_file.h"
 #include "normals/normals.h"
 
 int main(int argc, char** argv) {
@@ -12,7 +12,7 @@ int main(int argc, char** argv) {
     CommandLine command("kiln-normals", "Finds the point and normal of the high mesh for every texel of an atlas.");
     std::filesystem::path high_file, atlas_file, folder;
     NormalsSettings settings;
-    command.input("HIGH", high_file, "The high mesh: OBJ, PLY, STL, OFF or DRC");
+    command.input("HIGH", high_file, "The high mesh: OBJ, PLY, STL, OFF, glTF, GLB, FBX or DRC");
     command.input("ATLAS", atlas_file, "The low mesh with its atlas, a Draco file of kiln-atlas");
     command.output(folder,
                    "The folder for normal.png, position.exr, coverage.png, match.png, albedo.png and normals.json");
@@ -21,16 +21,17 @@ int main(int argc, char** argv) {
 
     // Load.
     const AssetHints hints = read_asset_hints(folder_of(atlas_file));
-    const TriangleMesh high = load_mesh(high_file, nullptr, {.fill_hole_edges = hints.fill_hole_edges});
     const TriangleMesh atlas = load_atlas(atlas_file);
-    const LoadedAlbedo material = load_albedo(high_file, high, settings.material);
-    if (const std::string warning = material.warning(); !warning.empty()) command.say(warning);
+    const ImportedMesh high = import_mesh(high_file, inherit(settings.import, hints.import), atlas.frame);
+    const LoadedAlbedo material = load_albedo(high, settings.material);
+    command.warn(high.warnings, hints.warnings);
+    command.warn(material.warnings());
     command.also_read(material.files);
     OutputSet outputs(folder);
 
     // Run.
     const NormalsResult result =
-        make_normals(high, atlas, settings, hints, command.progress("normals"), material.albedo);
+        make_normals(high.mesh, atlas, settings, hints, command.progress("normals"), material.albedo);
 
     // Save.
     write_png(outputs.add("normal.png"), result.normal);

@@ -148,7 +148,7 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   if (settings.cage == 0) {
     result.cage_source = hints.hausdorff_distance > 0 ? "simplify.json" : "measured";
     distance = cage_per_hausdorff_distance *
-               (hints.hausdorff_distance > 0 ? hints.hausdorff_distance : measure_distance(high, scene, atlas, raster));
+               (hints.hausdorff_distance > 0 ? hints.hausdorff_distance / high.frame.unit() : measure_distance(high, scene, atlas, raster));
     distance = std::max(distance, smallest_cage * diagonal);
   }
   const MatchLimits limits{static_cast<float>(distance), static_cast<float>(surface_tolerance * diagonal)};
@@ -159,6 +159,8 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   const std::vector<std::uint8_t> covered = coverage_of(raster);
   result.position = matches.position;
   fill_gutters(result.position, covered);
+  if (high.frame.exponent != 0)
+    for (float& value : result.position.values()) value = static_cast<float>(value * high.frame.unit());
 
   // The map, and its seams.
   result.space = settings.space;
@@ -189,7 +191,7 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   result.found_by_ray_inwards = share(TexelWay::ray_inwards);
   result.disagreeing = share(TexelWay::disagreeing);
   result.found_by_nearest_point = share(TexelWay::nearest_point) + result.disagreeing;
-  result.cage_distance = distance;
+  result.cage_distance = distance * high.frame.unit();
   result.mean_distance = matches.mean_distance / diagonal;
   result.largest_distance = matches.largest_distance / diagonal;
   const Image<float> shown = dequantise_normals(result.normal);

@@ -3,6 +3,7 @@
 #include "base/options.h"
 #include "detail/normal_space.h"
 #include "detail/seam_choice.h"
+#include "import/import_settings.h"
 #include "material/material_settings.h"
 
 namespace kiln {
@@ -14,6 +15,7 @@ struct NormalsSettings {
   bool fit = false;                         ///< of one sample: what makes lookups between centres nearest
   SeamChoice seams = SeamChoice::equalise;
   MaterialSettings material = {};  ///< of the high mesh
+  ImportSettings import = {};      ///< of the high mesh
   double cage = 0;  ///< how far rays go each way, as a fraction of the high mesh's bounding box diagonal; 0: automatic
 };
 

@@ -16,12 +16,6 @@ constexpr int most_hits_per_ray = 64;
 /// quarter.
 constexpr float largest_detour = 4;
 
-Eigen::Vector3f face_normal(const TriangleMesh& mesh, std::uint32_t triangle) {
-  const Triangle& t = mesh.triangles[triangle];
-  const Eigen::Vector3f a = mesh.positions[t[0]];
-  return (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a).normalized();
-}
-
 struct RayHit {
   SurfacePoint point;
   float cosine = 0;  ///< between the low normal and the high surface's
@@ -55,21 +49,6 @@ RayHit first_agreeing_hit(const TriangleMesh& high, const RayScene& scene, const
 }
 
 }  // namespace
-
-Eigen::Vector3f position_at(const TriangleMesh& mesh, const SurfacePoint& point) {
-  const Triangle& t = mesh.triangles[point.triangle];
-  return (1 - point.u - point.v) * mesh.positions[t[0]] + point.u * mesh.positions[t[1]] +
-         point.v * mesh.positions[t[2]];
-}
-
-Eigen::Vector3f normal_at(const TriangleMesh& mesh, const SurfacePoint& point) {
-  const Triangle& t = mesh.triangles[point.triangle];
-  const Eigen::Vector3f sum =
-      (1 - point.u - point.v) * mesh.normals[t[0]] + point.u * mesh.normals[t[1]] + point.v * mesh.normals[t[2]];
-  const float length = sum.norm();
-  // Vertex normals that cancel each other leave the face's.
-  return length > 1e-6f ? Eigen::Vector3f(sum / length) : face_normal(mesh, point.triangle);
-}
 
 SurfaceMatch match_surface(const TriangleMesh& high, const RayScene& scene, const Eigen::Vector3f& low_point,
                            const Eigen::Vector3f& low_normal, const MatchLimits& limits) {

@@ -31,8 +31,4 @@ struct MatchLimits {
 SurfaceMatch match_surface(const TriangleMesh& high, const RayScene& scene, const Eigen::Vector3f& low_point,
                            const Eigen::Vector3f& low_normal, const MatchLimits& limits);
 
-/// Position and unit normal (interpolated over the vertices) of a point of a mesh with normals.
-Eigen::Vector3f position_at(const TriangleMesh& mesh, const SurfacePoint& point);
-Eigen::Vector3f normal_at(const TriangleMesh& mesh, const SurfacePoint& point);
-
 }  // namespace kiln

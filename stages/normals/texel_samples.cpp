@@ -87,7 +87,8 @@ const TexelPoints& TexelSamples::finish() {
 void TexelSamples::try_triangle(std::uint32_t triangle) {
   const Triangle& t = high_.triangles[triangle];
   const Eigen::Vector3f p0 = high_.positions[t[0]], p1 = high_.positions[t[1]], p2 = high_.positions[t[2]];
-  const Eigen::Vector3f n0 = high_.normals[t[0]], n1 = high_.normals[t[1]], n2 = high_.normals[t[2]];
+  const Eigen::Vector3f n0 = corner_normal(high_, triangle, 0), n1 = corner_normal(high_, triangle, 1),
+                        n2 = corner_normal(high_, triangle, 2);
   for (int k = 0; k < samples_; k += 4) {
     const Ints pending = load<Ints>(&pending_[static_cast<std::size_t>(k)]);
     if ((pending[0] | pending[1] | pending[2] | pending[3]) == 0) continue;

@@ -1,7 +1,6 @@
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "material/load_albedo.h"
-#include "mesh/mesh_file.h"
 #include "probes/probe_points.h"
 #include "probes/probes.h"
 
@@ -15,7 +14,7 @@ int main(int argc, char** argv) {
     std::vector<std::filesystem::path> high_files;
     std::filesystem::path points_file, output;
     ProbesSettings settings;
-    command.inputs("HIGH", high_files, "The meshes that stand in the light: OBJ, PLY, STL, OFF or DRC");
+    command.inputs("HIGH", high_files, "The meshes that stand in the light: OBJ, PLY, STL, OFF, glTF, GLB, FBX or DRC");
     command.input_option("points", points_file, "A text file of points, X Y Z a line, in place of a grid");
     command.output(output, "Folder for matrices.json and matrices.png");
     command.options("Probes", probes_options(settings));
@@ -27,19 +26,22 @@ int main(int argc, char** argv) {
     std::vector<Eigen::Vector3f> points;
     if (!points_file.empty()) points = read_points(points_file);
     ProbeScene scene;
+    std::optional<MeshFrame> frame;  // that of the first mesh
     for (const std::filesystem::path& file : high_files) {
-      const TriangleMesh mesh = load_mesh(file);
+      const ImportedMesh imported = import_mesh(file, settings.import, frame);
+      command.warn(imported.warnings);
+      frame = imported.mesh.frame;
       if (settings.bounces == "0") {
-        scene.add(mesh);
+        scene.add(imported.mesh);
         continue;
       }
-      const LoadedAlbedo loaded = load_albedo(file, mesh, settings.material);
+      const LoadedAlbedo loaded = load_albedo(imported, settings.material);
       if (loaded.albedo.source() == SurfaceAlbedo::Source::none)
         throw WrongUsage("bounces: found no albedo in " + file.string() +
                          "; expected materials, colours of vertices, --albedo or --albedo-texture");
-      if (!loaded.warning().empty()) command.say(loaded.warning());
+      command.warn(loaded.warnings());
       command.also_read(loaded.files);
-      scene.add(mesh, loaded.albedo);
+      scene.add(imported.mesh, loaded.albedo);
     }
     OutputSet outputs(output);
 

@@ -94,6 +94,7 @@ OptionSet probes_options(ProbesSettings& settings) {
       .number("bounce-edge", settings.bounce_edge, 1e-4, 1,
               "Longest edge of the triangles that light bounces off, a fraction of the meshes' diagonal");
   add_material_options(options, settings.material);
+  add_import_options(options, settings.import);
   return options;
 }
 

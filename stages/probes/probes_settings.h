@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/options.h"
+#include "import/import_settings.h"
 #include "material/material_settings.h"
 #include "sh/directions.h"
 
@@ -19,6 +20,7 @@ struct ProbesSettings {
   Sampling sampling = Sampling::fibonacci;
   std::string bounces = "0";  ///< how often light bounces off the meshes before it reaches a point: a number, or auto
   double bounce_edge = 0.01;  ///< longest edge of what it bounces off, fraction of the meshes' diagonal
+  ImportSettings import;
   MaterialSettings material;
 };
 

@@ -6,10 +6,10 @@
 #include "base/errors.h"
 #include "base/process.h"
 #include "image/image_file.h"
+#include "import/import_mesh.h"
 #include "material/load_albedo.h"
 #include "material/surroundings.h"
 #include "mesh/draco_file.h"
-#include "mesh/mesh_file.h"
 #include "report/reference.h"
 #include "sh/directions.h"
 #include "sh/light_spec.h"
@@ -36,14 +36,14 @@ bool has_albedo(const AssetFolder& asset) {
 }
 
 /// The high mesh's reflectance, by the settings that the normals stage had.
-SurfaceAlbedo high_albedo(const AssetFolder& asset, const fs::path& high_file, const TriangleMesh& high) {
+SurfaceAlbedo high_albedo(const AssetFolder& asset, const ImportedMesh& high) {
   MaterialSettings material;
   OptionSet options;
   add_material_options(options, material);
   const Json settings = asset.record("normals").value("settings", Json::object());
   for (const Option& option : options.options())
     if (settings.contains(option.name)) option.set(settings.at(option.name).get<std::string>());
-  return load_albedo(high_file, high, material).albedo;
+  return load_albedo(high, material).albedo;
 }
 
 /// What the bake had around the asset, as one mesh.
@@ -55,7 +55,7 @@ TriangleMesh surroundings_of(const AssetFolder& asset, const TriangleMesh& high)
   surroundings.ground = settings.value("ground", surroundings.ground);
   surroundings.neighbours = bake.value("neighbours", surroundings.neighbours);
   TriangleMesh all;
-  for (const PlacedMesh& placed : load_surroundings(surroundings, bounding_box(high), {}, false)) {
+  for (const PlacedMesh& placed : load_surroundings(surroundings, bounding_box(high), {}, false, high.frame)) {
     const auto count = static_cast<std::uint32_t>(all.positions.size());
     all.positions.insert(all.positions.end(), placed.mesh.positions.begin(), placed.mesh.positions.end());
     for (const Triangle& t : placed.mesh.triangles) all.triangles.push_back({count + t[0], count + t[1], count + t[2]});
@@ -180,19 +180,20 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
 
   // The high mesh, by rays from the same camera: that of the asset's own box.
   const Stopwatch reference_watch;
-  MeshRepairSettings repair;  // as in the stages before
-  repair.fill_hole_edges = asset.record("simplify").value("settings", Json::object()).value("fill-holes", 0);
-  const TriangleMesh high = load_mesh(high_file, nullptr, repair);
+  const TriangleMesh atlas = load_atlas(asset.prt() / "atlas.drc");
+  const ImportSettings how = import_settings_of(asset.record("simplify").value("settings", Json::object()));
+  const ImportedMesh imported = import_mesh(high_file, how, atlas.frame);  // as in the stages before
+  const TriangleMesh& high = imported.mesh;
   CameraSettings camera;
   camera.azimuth_degrees = settings.camera_azimuth_degrees;
   camera.elevation_degrees = settings.camera_elevation_degrees;
   camera.field_of_view_degrees = field_of_view_degrees;
   ReferenceView view;
   view.width = view.height = settings.picture_size;
-  view.camera = make_camera(bounding_box(load_atlas(asset.prt() / "atlas.drc")), camera, view.width, view.height);
+  view.camera = make_camera(bounding_box(atlas), camera, view.width, view.height);
   view.supersample = supersample;
   view.albedo = static_cast<float>(albedo);
-  view.surface_albedo = high_albedo(asset, high_file, high);
+  view.surface_albedo = high_albedo(asset, imported);
   view.surroundings = surroundings_of(asset, high);
   view.bands = asset.bands;
   // Not the bake's own directions: an error of theirs must not cancel.

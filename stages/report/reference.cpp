@@ -37,13 +37,8 @@ VisiblePoints visible_points(const RayScene& scene, const TriangleMesh& mesh, co
   for (std::size_t k = 0; k < hits.size(); ++k) {
     const SurfacePoint& hit = hits[k];
     if (!hit.found()) continue;
-    const Triangle& corners = mesh.triangles[hit.triangle];
-    const auto blend = [&](const std::vector<Eigen::Vector3f>& values) {
-      return Eigen::Vector3f((1 - hit.u - hit.v) * values[corners[0]] + hit.u * values[corners[1]] +
-                             hit.v * values[corners[2]]);
-    };
-    points.positions.push_back(blend(mesh.positions));
-    points.normals.push_back(blend(mesh.normals).normalized());
+    points.positions.push_back(position_at(mesh, hit));
+    points.normals.push_back(normal_at(mesh, hit));
     points.albedos.emplace_back(view.albedo * view.surface_albedo.at(hit.triangle, hit.u, hit.v));
     const std::size_t row = k / columns / view.supersample, column = k % columns / view.supersample;
     points.pixels.push_back(row * view.width + column);

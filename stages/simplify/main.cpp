@@ -1,6 +1,7 @@
 #include "base/command_line.h"
 #include "base/errors.h"
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
+#include "mesh/hard_edges.h"
 #include "simplify/low_file.h"
 #include "simplify/simplify.h"
 
@@ -11,7 +12,7 @@ int main(int argc, char** argv) {
     CommandLine command("kiln-simplify", "Turns a high-poly mesh into one of few triangles that keeps its shape.");
     std::filesystem::path high_file, low_file;
     SimplifySettings settings;
-    command.input("HIGH", high_file, "The mesh: OBJ, PLY, STL, OFF or DRC");
+    command.input("HIGH", high_file, "The mesh: OBJ, PLY, STL, OFF, glTF, GLB, FBX or DRC");
     command.output(low_file, "The simplified mesh, a Draco file: positions and normals, and colours with --colors");
     command.options("Simplification", simplify_options(settings));
     command.parse(argc, argv);
@@ -19,13 +20,15 @@ int main(int argc, char** argv) {
       throw WrongUsage("--faces and --max-error are two ways to say where to stop; give one of them");
 
     // Load and run; each candidate is written, so that what is measured is what the file holds.
-    MeshRepairs repairs;
-    const TriangleMesh high = load_mesh(high_file, &repairs, {.fill_hole_edges = settings.fill_holes});
+    const ImportedMesh imported = import_mesh(high_file, settings.import);
+    const TriangleMesh& high = imported.mesh;
+    const MeshRepairs& repairs = imported.repairs;
+    command.warn(imported.warnings);
     if (settings.strict && !repairs.none())
       throw BadInput(high_file.string(), "needs repair: " + repairs.text(), "a clean, oriented manifold of triangles",
                      "mend it where it comes from, or leave out --strict");
     if (settings.colors && high.colors.empty())
-      throw BadInput(high_file.string(), "has no colours of vertices", "an OBJ, PLY, OFF or DRC file with colours",
+      throw BadInput(high_file.string(), "has no colours of vertices", "a file with colours of vertices",
                      "export them, or leave out --colors");
     OutputSet outputs(folder_of(low_file));
     LowFile low(outputs.add(low_file.filename().string()));
@@ -39,6 +42,8 @@ int main(int argc, char** argv) {
     metrics["input_components"] = repairs.components;
     metrics["input_border_loops"] = repairs.border_loops;
     metrics["repairs"] = repairs_to_json(repairs);
+    metrics["origin"] = {high.frame.origin.x(), high.frame.origin.y(), high.frame.origin.z()};
+    metrics["hard_edges"] = hard_edges_of_normals(high).size();
     if (settings.max_error == 0 && result.mesh.triangles.size() > static_cast<std::size_t>(settings.faces))
       command.say("stopped at " + std::to_string(result.mesh.triangles.size()) +
                   " triangles: no further collapse keeps topology and shape");

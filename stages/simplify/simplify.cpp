@@ -108,7 +108,7 @@ SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settin
   // Measure what was written.
   progress(0.9);
   result.distance = mesh_distance(high, result.mesh);
-  result.hausdorff_distance = result.distance.hausdorff * bounding_box(high).diagonal();
+  result.hausdorff_distance = result.distance.hausdorff * bounding_box(high).diagonal() * high.frame.unit();
   result.manifold = is_manifold(result.mesh);
   result.closed = result.manifold && is_closed(result.mesh);
   result.degenerate_triangles = count_degenerate(result.mesh);

@@ -20,8 +20,7 @@ OptionSet simplify_options(SimplifySettings& settings) {
   options.number("crease", settings.crease, 0, 180,
                  "Edges whose dihedral angle exceeds this stay lines, degrees; 0 is none");
   options.toggle("strict", settings.strict, "Refuse an input that needs repair instead of repairing it");
-  options.integer("fill-holes", settings.fill_holes, 0, 10'000,
-                  "Close holes of the input of at most so many edges; 0 leaves them open, as a scan's bottom may be");
+  add_import_options(options, settings.import);
   options.toggle("colors", settings.colors, "Keep the input's colours, as colours of vertices");
   return options;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "base/options.h"
+#include "import/import_settings.h"
 
 namespace kiln {
 
@@ -24,7 +25,7 @@ struct SimplifySettings {
   SimplifyAwareness aware = SimplifyAwareness::none;
   double crease = 0;    ///< degrees; edges whose dihedral angle (0 in a plane) is larger stay lines; 0: none
   bool strict = false;  ///< an input that needs repair is refused
-  int fill_holes = 0;   ///< holes of the input of at most so many edges are closed
+  ImportSettings import;
   bool colors = false;  ///< the input's colours are kept at the vertices
 };
 

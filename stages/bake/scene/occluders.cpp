@@ -6,6 +6,8 @@
 #include <iterator>
 #include <utility>
 
+#include "mesh/hard_edges.h"
+
 namespace kiln {
 
 namespace {
@@ -24,6 +26,21 @@ std::vector<Eigen::Vector3f> hull_corners(const TriangleMesh& mesh) {
   std::vector<Eigen::Vector3f> hull;
   for (const Kernel::Point_3& p : corners) hull.emplace_back(p.x(), p.y(), p.z());
   return hull;
+}
+
+/// Gives the whole corner normals where one of its parts has them; other parts get those of their creases.
+void join_corner_normals(const std::vector<TriangleMesh>& parts, TriangleMesh& whole) {
+  constexpr double crease_degrees = 45;  // as a surface cache has it for meshes without hard edges
+  if (std::all_of(parts.begin(), parts.end(), [](const TriangleMesh& part) { return part.corner_normals.empty(); }))
+    return;
+  for (const TriangleMesh& part : parts) {
+    TriangleMesh shaded = part;
+    if (shaded.corner_normals.empty()) compute_normals_between(shaded, hard_edges_by_angle(shaded, crease_degrees));
+    for (std::uint32_t t = 0; t < shaded.triangles.size(); ++t)
+      whole.corner_normals.push_back(
+          {corner_normal(shaded, t, 0), corner_normal(shaded, t, 1), corner_normal(shaded, t, 2)});
+    whole.normals.insert(whole.normals.end(), shaded.normals.begin(), shaded.normals.end());
+  }
 }
 
 }  // namespace
@@ -49,6 +66,7 @@ Occluders join_occluders(const std::vector<TriangleMesh>& meshes, std::vector<Su
     for (const Triangle& t : mesh.triangles)
       joined.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
   }
+  join_corner_normals(meshes, joined.mesh);
   joined.hull = hull_corners(joined.mesh);
   return joined;
 }

@@ -11,7 +11,7 @@ namespace kiln {
 
 /// What casts shadows and what light bounces off, all meshes as one.
 struct Occluders {
-  TriangleMesh mesh;                  ///< positions and triangles
+  TriangleMesh mesh;                  ///< positions, triangles and, where one of the meshes has them, corner normals
   std::vector<Eigen::Vector3f> hull;  ///< the corners of its convex hull
   bool closed = false;                ///< is_closed of every mesh
 

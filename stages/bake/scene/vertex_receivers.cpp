@@ -1,6 +1,5 @@
 #include "bake/scene/vertex_receivers.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,8 +9,9 @@
 #include <utility>
 
 #include "base/errors.h"
+#include "import/import_mesh.h"
 #include "mesh/draco_file.h"
-#include "mesh/mesh_file.h"
+#include "mesh/hard_edges.h"
 #include "mesh/morton_order.h"
 #include "raycast/ray_scene.h"
 
@@ -40,23 +40,6 @@ TexelReceivers pack(const std::vector<Eigen::Vector3f>& positions, const std::ve
 void check(const TriangleMesh& mesh) {
   if (mesh.positions.empty() || mesh.normals.size() != mesh.positions.size())
     throw std::invalid_argument("vertices as receivers: a mesh with normals is needed");
-}
-
-Eigen::Vector3f face_normal(const TriangleMesh& mesh, const Triangle& t) {
-  const Eigen::Vector3f& a = mesh.positions[t[0]];
-  return (mesh.positions[t[1]] - a).cross(mesh.positions[t[2]] - a).normalized();
-}
-
-Eigen::Vector3f at_point(const TriangleMesh& mesh, const std::vector<Eigen::Vector3f>& values,
-                         const SurfacePoint& point) {
-  const Triangle& t = mesh.triangles[point.triangle];
-  return (1 - point.u - point.v) * values[t[0]] + point.u * values[t[1]] + point.v * values[t[2]];
-}
-
-Eigen::Vector3f normal_at(const TriangleMesh& mesh, const SurfacePoint& point) {
-  const Eigen::Vector3f sum = at_point(mesh, mesh.normals, point);
-  // Vertex normals that cancel each other leave the face's.
-  return sum.norm() > 1e-6f ? Eigen::Vector3f(sum.normalized()) : face_normal(mesh, mesh.triangles[point.triangle]);
 }
 
 /// Drops triangles with a repeated vertex, then vertices that no triangle uses: Draco keeps neither.
@@ -90,10 +73,17 @@ void for_each_vertex(std::size_t count, const Operation& operation) {
 
 }  // namespace
 
-TriangleMesh load_vertex_mesh(const std::filesystem::path& file) {
-  const bool is_draco = file.extension() == ".drc";
-  TriangleMesh mesh = is_draco ? load_draco(file) : load_mesh(file);
-  if (mesh.normals.empty()) compute_vertex_normals(mesh);
+TriangleMesh load_vertex_mesh(const std::filesystem::path& file, const ImportSettings& settings,
+                              std::vector<std::string>* warnings) {
+  TriangleMesh mesh;
+  if (is_draco_file(file)) {
+    mesh = load_draco(file);
+    if (mesh.normals.empty()) compute_vertex_normals(mesh);
+  } else {
+    const ImportedMesh imported = import_mesh(file, settings);
+    if (warnings != nullptr) warnings->insert(warnings->end(), imported.warnings.begin(), imported.warnings.end());
+    mesh = split_at_hard_edges(imported.mesh);
+  }
   keep_proper(mesh);
   if (mesh.triangles.empty())
     throw BadInput(file.string(), "has no triangle of three vertices", "a mesh of triangles", "export the mesh again");
@@ -126,7 +116,7 @@ VertexReceivers receivers_on_high_of_vertices(const TriangleMesh& mesh, const Tr
     const SurfacePoint facing = scene.closest_facing_point(mesh.positions[k], mesh.normals[k], farthest);
     away[k] = facing.found() ? 0 : 1;
     if (facing.found()) points[k] = facing;
-    positions[k] = at_point(high, high.positions, points[k]);
+    positions[k] = position_at(high, points[k]);
     normals[k] = normal_at(high, points[k]);
   });
 

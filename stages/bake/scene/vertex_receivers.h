@@ -2,8 +2,11 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "bake/scene/texel_receivers.h"
+#include "import/import_settings.h"
 #include "mesh/triangle_mesh.h"
 
 namespace kiln {
@@ -17,9 +20,11 @@ struct VertexReceivers {
   std::size_t facing_away = 0;  ///< vertices for which that surface has no point near them that faces as they do
 };
 
-/// Loads a mesh whose vertices are to receive light: as load_mesh does, but a Draco file keeps the normals and uvs it
-/// has. Every vertex is in a triangle of three different ones. Throws BadInput.
-TriangleMesh load_vertex_mesh(const std::filesystem::path& file);
+/// Loads a mesh whose vertices are to receive light, as import_mesh does, in a frame of its own, one vertex for each
+/// normal at a place; a Draco file keeps the vertices, normals and uvs it has. Every vertex is in a triangle of three
+/// different ones. `warnings`, if given, get those of import_mesh. Throws BadInput.
+TriangleMesh load_vertex_mesh(const std::filesystem::path& file, const ImportSettings& settings = {},
+                              std::vector<std::string>* warnings = nullptr);
 
 /// Vertices stand on the mesh itself, with its normals, which it must have.
 VertexReceivers receivers_on_vertices(const TriangleMesh& mesh);

@@ -1,5 +1,6 @@
 #include "base/command_line.h"
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -127,6 +128,17 @@ void CommandLine::say(const std::string& line) const {
   if (!quiet_) std::fprintf(stderr, "%s: %s\n", program_.c_str(), line.c_str());
 }
 
+void CommandLine::warn(const std::vector<std::string>& warnings, const std::vector<std::string>& said) {
+  const auto has = [](const std::vector<std::string>& list, const std::string& warning) {
+    return std::find(list.begin(), list.end(), warning) != list.end();
+  };
+  for (const std::string& warning : warnings) {
+    if (has(warnings_, warning)) continue;
+    warnings_.push_back(warning);
+    if (!has(said, warning)) say("WARNING: " + warning);
+  }
+}
+
 Json CommandLine::result(double seconds, const Json& metrics) const {
   Json settings = Json::object();
   for (const OptionSet& set : option_sets_) settings.update(set.to_json());
@@ -140,7 +152,7 @@ Json CommandLine::result(double seconds, const Json& metrics) const {
     for (const fs::path& path : *list) add(path);
   for (const fs::path& path : also_read_) add(path);
   Json result = {{"stage", stage_},  {"version", KILN_VERSION}, {"settings", settings},
-                 {"inputs", inputs}, {"seconds", seconds},      {"peak_memory_bytes", peak_memory_bytes()}};
+                 {"inputs", inputs}, {"seconds", seconds},      {"peak_memory_bytes", peak_memory_bytes()}, {"warnings", warnings_}};
   result.update(metrics);
   return result;
 }

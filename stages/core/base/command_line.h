@@ -61,7 +61,11 @@ class CommandLine {
   /// A line on stderr, unless --quiet.
   void say(const std::string& line) const;
 
-  /// The result: stage, version, settings, inputs' hashes, seconds, peak_memory_bytes, then `metrics` at the same
+  /// Notes warnings, whole sentences without a full stop, for the result, each once; says on stderr, unless --quiet, those
+  /// that are not among `said`, by an earlier stage.
+  void warn(const std::vector<std::string>& warnings, const std::vector<std::string>& said = {});
+
+  /// The result: stage, version, settings, inputs' hashes, seconds, peak_memory_bytes, warnings, then `metrics` at the same
   /// level. `seconds` is the stage's own work, without reading and writing files.
   Json result(double seconds, const Json& metrics) const;
 
@@ -86,6 +90,7 @@ class CommandLine {
   std::vector<const std::filesystem::path*> inputs_;
   std::vector<const std::vector<std::filesystem::path>*> input_lists_;
   std::vector<std::filesystem::path> also_read_;
+  std::vector<std::string> warnings_;
   std::vector<OptionSet> option_sets_;
   std::shared_ptr<void> thread_limit_;
 };

@@ -42,7 +42,10 @@ AssetHints read_asset_hints(const std::filesystem::path& folder) {
   hints.height = static_cast<int>(both ? height : size);
   const nlohmann::json simplify = read_result(folder / "simplify.json");
   hints.hausdorff_distance = positive_number(simplify, "hausdorff_distance");
-  hints.fill_hole_edges = static_cast<int>(std::min(positive_number(simplify, "fill-holes"), 1e6));
+  if (simplify.contains("settings")) hints.import = import_settings_of(simplify["settings"]);
+  if (simplify.contains("warnings") && simplify["warnings"].is_array())
+    for (const nlohmann::json& warning : simplify["warnings"])
+      if (warning.is_string()) hints.warnings.push_back(warning.get<std::string>());
   return hints;
 }
 

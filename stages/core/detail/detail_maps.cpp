@@ -189,6 +189,8 @@ DetailMaps load_detail_maps(const std::filesystem::path& folder, const TriangleM
       refuse(folder / "coverage.png", "a coverage that is not the atlas mesh's", "maps made from the same atlas");
 
   maps.normal_object = decode_normals(encoded, space, atlas, raster);
+  if (atlas.frame.exponent != 0)
+    for (float& value : maps.position.values()) value = static_cast<float>(value / atlas.frame.unit());
   if (!std::all_of(maps.position.values().begin(), maps.position.values().end(),
                    [](float v) { return std::isfinite(v); }))
     refuse(folder / "position.exr", "positions that are not finite", "finite positions");

@@ -17,7 +17,7 @@ struct DetailMaps {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> covered;               ///< 1 or 0 per texel, rows from the bottom
-  Image<float> position;                           ///< 3 channels, object space; gutters filled
+  Image<float> position;                           ///< 3 channels, in the atlas's frame; gutters filled
   Image<float> normal_object;                      ///< 3 channels, unit vectors in object space; gutters filled
   NormalSpace normal_space = NormalSpace::object;  ///< of the map as it is in the file
   Image<float> albedo;                             ///< 3 channels, linear, gutters filled; empty where it is constant

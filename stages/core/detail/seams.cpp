@@ -64,6 +64,15 @@ bool is_seam(const TriangleMesh& mesh, const HalfEdge& a, const HalfEdge& b) {
   return false;
 }
 
+/// Whether the normals of the two sides differ at either end, by more than a file's rounding.
+bool is_hard(const TriangleMesh& mesh, const HalfEdge& a, const HalfEdge& b) {
+  constexpr float least_cosine = 0.9994f;  // 2 degrees
+  if (mesh.normals.empty()) return false;
+  for (int end = 0; end < 2; ++end)
+    if (mesh.normals[vertex_of(mesh, a, end)].dot(mesh.normals[vertex_of(mesh, b, end)]) < least_cosine) return true;
+  return false;
+}
+
 /// How well the normals of both at the edge's ends agree.
 float agreement(const TriangleMesh& mesh, const HalfEdge& a, const HalfEdge& b) {
   if (mesh.normals.empty()) return 0;
@@ -108,7 +117,7 @@ Seams::Seams(const TriangleMesh& atlas, int width, int height) : atlas_(&atlas),
   if (atlas.uvs.size() != atlas.positions.size()) throw std::invalid_argument("Seams: a mesh with uvs is needed");
   const std::vector<HalfEdge> halves = sorted_half_edges(atlas);
   const auto add = [&](const HalfEdge& a, const HalfEdge& b) {
-    if (is_seam(atlas, a, b)) edges_.push_back({{a.triangle, b.triangle}, {a.corners, b.corners}});
+    if (is_seam(atlas, a, b) && !is_hard(atlas, a, b)) edges_.push_back({{a.triangle, b.triangle}, {a.corners, b.corners}});
   };
   for (std::size_t begin = 0, end; begin < halves.size(); begin = end) {
     end = begin + 1;

@@ -90,10 +90,14 @@ SourceMesh read_drc(const std::filesystem::path& file) {
     }
   }
   require_finite(mesh, name);
+  // Files of our own may tell where their coordinates count from.
+  const Eigen::Vector3d origin = draco_origin(*source);
   double largest = 0;
   for (const SourceMesh::Corner& corner : mesh.corners)
     largest = std::max(largest, mesh.places[corner.place].cwiseAbs().maxCoeff());
   mesh.precision = std::ldexp(largest, -23);
+  if (!origin.isZero(0))
+    for (Eigen::Vector3d& place : mesh.places) place += origin;
   return mesh;
 }
 

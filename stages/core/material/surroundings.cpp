@@ -5,26 +5,33 @@
 
 #include "base/errors.h"
 #include "base/numbers.h"
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
 
 namespace kiln {
 
 namespace {
 
-constexpr int most_hole_edges = 1'000'000;
 constexpr double ground_half_size_diagonals = 4;
 
-void move_to_asset(TriangleMesh& mesh, const Placement& placement, const Placement& asset) {
-  for (Eigen::Vector3f& p : mesh.positions) p = asset.to_object(placement.to_scene(p.cast<double>())).cast<float>();
-  compute_vertex_normals(mesh);
+/// Moves a mesh from its own frame into that of the asset, by way of the scene.
+void move_to_asset(TriangleMesh& mesh, const Placement& placement, const Placement& asset, const MeshFrame& frame) {
+  for (Eigen::Vector3f& p : mesh.positions)
+    p = frame.from_file(asset.to_object(placement.to_scene(mesh.frame.to_file(p.cast<double>())))).cast<float>();
+  const Eigen::Matrix3f turn = (asset.rotation.transpose() * placement.rotation).cast<float>();
+  for (Eigen::Vector3f& normal : mesh.normals) normal = (turn * normal).normalized();
+  for (auto& corners : mesh.corner_normals)
+    for (Eigen::Vector3f& normal : corners) normal = (turn * normal).normalized();
+  mesh.frame = frame;
 }
 
-/// A square that faces +Y, in the scene's space.
+/// A square that faces +Y, in the scene's space, with its centre as origin.
 TriangleMesh ground_square(const Eigen::Vector3d& centre, double half_size) {
   TriangleMesh mesh;
+  mesh.frame.origin = centre;
   for (const auto& [x, z] : {std::pair(-1, 1), std::pair(1, 1), std::pair(1, -1), std::pair(-1, -1)})
-    mesh.positions.push_back((centre + half_size * Eigen::Vector3d(x, 0, z)).cast<float>());
+    mesh.positions.push_back((half_size * Eigen::Vector3d(x, 0, z)).cast<float>());
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  compute_vertex_normals(mesh);
   return mesh;
 }
 
@@ -34,7 +41,8 @@ Neighbour parse_neighbour(const std::string& text) {
   Neighbour neighbour;
   std::string place;
   OptionSet fields;
-  fields.text("place", place, "").integer("fill-holes", neighbour.repair.fill_hole_edges, 0, most_hole_edges, "");
+  fields.text("place", place, "");
+  add_import_options(fields, neighbour.import);
   add_material_options(fields, neighbour.material);
 
   std::istringstream parts(text);
@@ -44,7 +52,7 @@ Neighbour parse_neighbour(const std::string& text) {
   const auto refuse = [&](const std::string& found) {
     throw WrongUsage("neighbour: found " + found + " in '" + text +
                      "'; expected FILE[;place=X,Y,Z[,AZIMUTH[,SCALE]]][;albedo=...][;albedo-texture=...]"
-                     "[;albedo-encoding=...][;fill-holes=...]");
+                     "[;albedo-encoding=...][;up=...][;unit=...][;scale=...][;normals=...][;fill-holes=...]");
   };
   if (part.empty()) refuse("no file");
   while (std::getline(parts, part, ';')) {
@@ -58,7 +66,8 @@ Neighbour parse_neighbour(const std::string& text) {
 }
 
 std::vector<PlacedMesh> load_surroundings(const Surroundings& surroundings, const BoundingBox& own,
-                                          const MaterialSettings& material, bool with_albedo) {
+                                          const MaterialSettings& material, bool with_albedo,
+                                          const MeshFrame& frame) {
   const Placement asset = parse_placement("place", surroundings.place);
   std::vector<PlacedMesh> placed;
   for (const std::string& text : surroundings.neighbours) {
@@ -68,24 +77,25 @@ std::vector<PlacedMesh> load_surroundings(const Surroundings& surroundings, cons
       throw BadInput(neighbour.file.string(), "does not exist", "a mesh for --neighbour", "check the path");
     PlacedMesh& mesh = placed.emplace_back();
     mesh.name = neighbour.file.string();
-    mesh.mesh = load_mesh(neighbour.file, nullptr, neighbour.repair);
-    // By places, so before it is moved.
-    if (with_albedo) mesh.material = load_albedo(neighbour.file, mesh.mesh, neighbour.material);
-    move_to_asset(mesh.mesh, neighbour.placement, asset);
+    ImportedMesh imported = import_mesh(neighbour.file, neighbour.import);
+    if (with_albedo) mesh.material = load_albedo(imported, neighbour.material);
+    mesh.warnings = std::move(imported.warnings);
+    mesh.mesh = std::move(imported.mesh);
+    move_to_asset(mesh.mesh, neighbour.placement, asset, frame);
   }
   if (surroundings.ground == "none") return placed;
 
   const std::vector<double> numbers = parse_numbers("ground", surroundings.ground, -1e6, 1e6);
-  Eigen::Vector3d centre = asset.to_scene(own.centre().cast<double>());
+  Eigen::Vector3d centre = asset.to_scene(frame.to_file(own.centre().cast<double>()));
   centre.y() = numbers[0];
   const double half_size =
-      numbers.size() > 1 ? numbers[1] : ground_half_size_diagonals * asset.scale * static_cast<double>(own.diagonal());
+      numbers.size() > 1 ? numbers[1] : ground_half_size_diagonals * asset.scale * frame.unit() * static_cast<double>(own.diagonal());
   if (!(half_size > 0))
     throw WrongUsage("ground: found '" + surroundings.ground + "'; expected HEIGHT[,HALF-SIZE], a size above 0");
   PlacedMesh& ground = placed.emplace_back();
   ground.name = "the ground";
   ground.mesh = ground_square(centre, half_size);
-  move_to_asset(ground.mesh, {}, asset);
+  move_to_asset(ground.mesh, {}, asset, frame);
   if (const auto constant = material.constant())
     ground.material.albedo = SurfaceAlbedo::constant({(*constant)[0], (*constant)[1], (*constant)[2]});
   return placed;

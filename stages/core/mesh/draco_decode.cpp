@@ -87,4 +87,11 @@ std::unique_ptr<draco::Mesh> decode_draco(std::span<const std::uint8_t> bytes, c
   return std::move(decoded).value();
 }
 
+Eigen::Vector3d draco_origin(const draco::Mesh& mesh) {
+  std::vector<double> origin;
+  const bool is_there =
+      mesh.GetMetadata() != nullptr && mesh.GetMetadata()->GetEntryDoubleArray(draco_origin_entry, &origin);
+  return is_there && origin.size() == 3 ? Eigen::Vector3d(origin[0], origin[1], origin[2]) : Eigen::Vector3d(0, 0, 0);
+}
+
 }  // namespace kiln

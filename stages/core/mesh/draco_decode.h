@@ -14,4 +14,10 @@ namespace kiln {
 std::unique_ptr<draco::Mesh> decode_draco(std::span<const std::uint8_t> bytes, const std::string& name,
                                           const std::string& remedy);
 
+/// The entry of a mesh's metadata that holds MeshFrame::origin, left out where it is 0.
+inline constexpr char draco_origin_entry[] = "kiln-origin";
+
+/// The origin that a mesh's metadata names, else 0.
+Eigen::Vector3d draco_origin(const draco::Mesh& mesh);
+
 }  // namespace kiln

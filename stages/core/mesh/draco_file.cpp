@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
@@ -20,8 +21,7 @@ namespace kiln {
 namespace {
 
 constexpr char remedy[] = "run the stage that writes it again";
-constexpr char name_entry[] = "name";           // of an attribute's metadata
-constexpr char origin_entry[] = "kiln-origin";  // of the mesh's: MeshFrame::origin, left out where it is 0
+constexpr char name_entry[] = "name";  // of an attribute's metadata
 
 template <class Vector>
 int add_attribute(draco::Mesh& encoded, draco::GeometryAttribute::Type type, const std::vector<Vector>& values) {
@@ -70,7 +70,7 @@ std::vector<Eigen::Vector3f> in_file_units(const TriangleMesh& mesh) {
 void add_origin(draco::Mesh& encoded, const Eigen::Vector3d& origin) {
   if (origin.isZero(0)) return;
   auto metadata = std::make_unique<draco::GeometryMetadata>();
-  metadata->AddEntryDoubleArray(origin_entry, {origin.x(), origin.y(), origin.z()});
+  metadata->AddEntryDoubleArray(draco_origin_entry, {origin.x(), origin.y(), origin.z()});
   encoded.AddMetadata(std::move(metadata));
 }
 
@@ -162,10 +162,7 @@ TriangleMesh mesh_of(const draco::Mesh& source, const std::string& name) {
   for (const Eigen::Vector3f& position : mesh.positions)
     if (!position.allFinite())
       throw BadInput(name, "has a coordinate that is not a finite number", "finite coordinates", remedy);
-  std::vector<double> origin;
-  if (source.GetMetadata() != nullptr && source.GetMetadata()->GetEntryDoubleArray(origin_entry, &origin) &&
-      origin.size() == 3)
-    mesh.frame.origin = {origin[0], origin[1], origin[2]};
+  mesh.frame.origin = draco_origin(source);
   normalise_size(mesh);
   for (Eigen::Vector3f& normal : mesh.normals)
     normal = normal.squaredNorm() > 0 ? Eigen::Vector3f(normal.normalized()) : Eigen::Vector3f::UnitY();
@@ -251,6 +248,12 @@ AttributedMesh load_attributed_draco(const std::filesystem::path& file) {
     result.attributes.push_back(std::move(attribute));
   }
   return result;
+}
+
+bool is_draco_file(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  for (char& letter : extension) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  return extension == ".drc";
 }
 
 TriangleMesh load_draco(const std::filesystem::path& file) {

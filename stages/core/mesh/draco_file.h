@@ -49,6 +49,9 @@ std::vector<std::uint32_t> save_attributed_draco(const std::filesystem::path& fi
 /// Reads what save_attributed_draco wrote; attributes in the order they were given. Throws BadInput for anything else.
 AttributedMesh load_attributed_draco(const std::filesystem::path& file);
 
+/// Whether a file is Draco by its extension, in any case of letters.
+bool is_draco_file(const std::filesystem::path& file);
+
 /// Reads what save_draco wrote, vertices and triangles as they are in the file, in their frame. Throws BadInput for
 /// anything else.
 TriangleMesh load_draco(const std::filesystem::path& file);

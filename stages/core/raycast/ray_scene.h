@@ -7,20 +7,10 @@
 #include <span>
 #include <string>
 
+#include "mesh/surface_point.h"
 #include "mesh/triangle_mesh.h"
 
 namespace kiln {
-
-/// A point of a surface: which triangle, and where in it.
-struct SurfacePoint {
-  static constexpr std::uint32_t none = ~0u;
-  std::uint32_t triangle = none;  ///< `none`: nothing was hit or found
-  float u = 0;                    ///< weight of the triangle's second corner
-  float v = 0;                    ///< weight of the third
-  float distance = 0;             ///< from the query, in object units
-
-  bool found() const { return triangle != none; }
-};
 
 /// A mesh in a bounding volume hierarchy (Embree 3). All queries may be called from many threads at once.
 class RayScene {

@@ -6,11 +6,15 @@
 #include <map>
 #include <utility>
 
+#include "mesh/surface_point.h"
+
 namespace kiln {
 
 namespace {
 
 constexpr float crease_cosine = 0.70710678f;  // of 45 degrees
+/// Normals of one vertex that lie nearer than this to each other are one.
+constexpr float shared_normal_cosine = 0.999f;
 constexpr float inset = 0.1f;                 // of the way to the triangle's centre, at creases and borders
 
 /// A triangle of the cut surface: its corners, and where they lie in the triangle that it was cut from.
@@ -84,8 +88,9 @@ void cut_long_edges(std::vector<Eigen::Vector3f>& positions, std::vector<Piece>&
 /// Points for the corners of pieces.
 class PointMaker {
  public:
-  PointMaker(const std::vector<Eigen::Vector3f>& positions, const std::vector<Piece>& pieces)
-      : positions_(positions), pieces_(pieces), on_border_(positions.size(), 0) {
+  /// `mesh` is what the pieces were cut from.
+  PointMaker(const TriangleMesh& mesh, const std::vector<Eigen::Vector3f>& positions, const std::vector<Piece>& pieces)
+      : mesh_(mesh), positions_(positions), pieces_(pieces), on_border_(positions.size(), 0) {
     std::vector<Edge> sides;
     for (const Piece& piece : pieces) {
       const auto& [a, b, c] = piece.corners;
@@ -151,7 +156,13 @@ class PointMaker {
     const Eigen::Vector3f& at = positions_[vertices[corner % 3]];
     const Eigen::Vector3f a = positions_[vertices[(corner + 1) % 3]] - at,
                           b = positions_[vertices[(corner + 2) % 3]] - at;
+    // Hard edges of the mesh part groups; without any, edges that bend much do.
+    const bool has_hard_edges = !mesh_.corner_normals.empty();
+    const Eigen::Vector2f& place = pieces_[piece].places[corner % 3];
+    const Eigen::Vector3f shading =
+        has_hard_edges ? normal_at(mesh_, {pieces_[piece].source, place.x(), place.y(), 0}) : Eigen::Vector3f();
     const auto fits = [&](const Group& group) {
+      if (has_hard_edges) return group.normal.dot(shading) > shared_normal_cosine * group.normal.norm();
       // Triangles without area fit anywhere, and where there is nothing but them.
       return length == 0 || group.normal.isZero(0) ||
              group.normal.dot(normal) > crease_cosine * length * group.normal.norm();
@@ -159,10 +170,14 @@ class PointMaker {
     auto group = std::find_if(groups.begin(), groups.end(), fits);
     if (group == groups.end()) group = groups.insert(group, Group{{}, Eigen::Vector3f::Zero(), piece});
     if (length > normals_[group->largest].norm()) group->largest = piece;
-    if (length > 0) group->normal += std::atan2(length, a.dot(b)) / length * normal;
+    if (has_hard_edges)
+      group->normal += std::max(std::atan2(length, a.dot(b)), 1e-6f) * shading;
+    else if (length > 0)
+      group->normal += std::atan2(length, a.dot(b)) / length * normal;
     group->corners.push_back(corner);
   }
 
+  const TriangleMesh& mesh_;
   const std::vector<Eigen::Vector3f>& positions_;
   const std::vector<Piece>& pieces_;
   std::vector<Eigen::Vector3f> normals_;  // twice the areas long
@@ -212,7 +227,7 @@ SurfaceCache make_surface_cache(const TriangleMesh& mesh, const AlbedoAt& albedo
   for (const Piece& piece : pieces) cache.triangles.push_back(piece.corners);
 
   // Step 2: the points.
-  const PointMaker maker(cache.positions, pieces);
+  const PointMaker maker(mesh, cache.positions, pieces);
   maker.make(cache);
   cache.point_albedos = mean_albedos(cache, pieces, maker, albedo_at);
   cache.grey = grey;

@@ -34,8 +34,9 @@ struct SurfaceCache {
 using AlbedoAt = std::function<Eigen::Vector3f(std::uint32_t triangle, float u, float v)>;
 
 /// Edges are halved until none is longer than `longest_edge`, a fraction of the mesh's diagonal (that of their
-/// box); an edge that triangles share is cut for all of them. A vertex is one point for each group of its triangles
-/// whose normals lie within 45 degrees, so that creases stay sharp; a point of a crease or of a border stands a little
+/// box); an edge that triangles share is cut for all of them. A vertex is one point for each of its normals where the
+/// mesh has hard edges, else for each group of its triangles whose normals lie within 45 degrees, so that creases stay
+/// sharp; a point of a crease or of a border stands a little
 /// inside the largest of its triangles, that no ray starts in the other side of a corner. A point's albedo is the mean
 /// over its triangles, weighted as they interpolate it; `grey` says whether its colours are the same everywhere.
 SurfaceCache make_surface_cache(const TriangleMesh& mesh, const AlbedoAt& albedo_at, bool grey, double longest_edge);

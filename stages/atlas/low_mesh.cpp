@@ -1,0 +1,23 @@
+#include "atlas/low_mesh.h"
+
+#include "import/import_mesh.h"
+#include "import/uv_mesh.h"
+#include "mesh/draco_file.h"
+#include "mesh/hard_edges.h"
+
+namespace kiln {
+
+TriangleMesh load_low_mesh(const std::filesystem::path& file, const AtlasSettings& settings,
+                           std::vector<std::string>& warnings) {
+  if (settings.keep_uv) return load_uv_mesh(file, settings.import, &warnings);
+  if (is_draco_file(file)) {
+    TriangleMesh mesh = load_draco(file);
+    if (mesh.normals.empty()) compute_vertex_normals(mesh);
+    return mesh;
+  }
+  const ImportedMesh imported = import_mesh(file, settings.import);
+  warnings.insert(warnings.end(), imported.warnings.begin(), imported.warnings.end());
+  return split_at_hard_edges(imported.mesh);
+}
+
+}  // namespace kiln
