@@ -1,4 +1,3 @@
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,6 +8,7 @@
 #include "import/gltf_material.h"
 #include "import/gltf_primitive.h"
 #include "import/gltf_scene.h"
+#include "import/mesh_transform.h"
 #include "import/readers.h"
 
 // Everything is put where the scene has it, in double. Coordinates are metres, +Y up, as glTF has them.
@@ -16,28 +16,6 @@
 namespace kiln {
 
 namespace {
-
-/// The linear part of a transform and what it does to normals: the inverse transpose, but for a positive factor, which
-/// is the cofactors with the determinant's sign. It is finite for flat transforms as well.
-struct Transform {
-  explicit Transform(const Eigen::Matrix4d& world)
-      : linear(world.topLeftCorner<3, 3>()), offset(world.topRightCorner<3, 1>()) {
-    const Eigen::Vector3d x = linear.col(0), y = linear.col(1), z = linear.col(2);
-    cofactors.col(0) = y.cross(z);
-    cofactors.col(1) = z.cross(x);
-    cofactors.col(2) = x.cross(y);
-    is_mirror = linear.determinant() < 0;
-    if (is_mirror) cofactors = -cofactors;
-  }
-  Eigen::Matrix3d linear, cofactors;
-  Eigen::Vector3d offset;
-  bool is_mirror = false;
-};
-
-Eigen::Vector3d unit_or_zero(const Eigen::Vector3d& v) {
-  const double norm = v.stableNorm();
-  return norm > 0 && std::isfinite(norm) ? Eigen::Vector3d(v / norm) : Eigen::Vector3d::Zero();
-}
 
 class SceneAssembler {
  public:
@@ -52,7 +30,7 @@ class SceneAssembler {
       document_.fail("places triangles out of all proportion to its size",
                      "at most " + std::to_string(buffers_.most_triangles()), "split the file, or place fewer copies");
     const bool is_skinned = placement.joints != nullptr && primitive.influences > 0;
-    const Transform world(placement.world);
+    const MeshTransform world(placement.world);
     first_place_ = static_cast<std::uint32_t>(mesh_.places.size());
     first_normal_ = static_cast<std::uint32_t>(mesh_.normals.size());
     const auto first_uv = static_cast<std::uint32_t>(mesh_.uvs.size());
@@ -62,15 +40,15 @@ class SceneAssembler {
         add_vertex(primitive, i, world);
         continue;
       }
-      const Transform blended(blend(primitive, placement, i));
-      is_mirrored[i] = blended.is_mirror;
+      const MeshTransform blended(blend(primitive, placement, i));
+      is_mirrored[i] = blended.is_mirror();
       add_vertex(primitive, i, blended);
     }
     mesh_.uvs.insert(mesh_.uvs.end(), primitive.uvs.begin(), primitive.uvs.end());
     add_colors(primitive);
     for (const auto& triangle : primitive.triangles) {
       mesh_.faces.push_back({static_cast<std::uint32_t>(mesh_.corners.size()), 3, primitive.material, 0, 0});
-      const bool is_turned = is_skinned ? is_mirrored[triangle[0]] : world.is_mirror;
+      const bool is_turned = is_skinned ? is_mirrored[triangle[0]] : world.is_mirror();
       for (const std::size_t k : {0, is_turned ? 2 : 1, is_turned ? 1 : 2})
         mesh_.corners.push_back({first_place_ + triangle[k],
                                  primitive.uvs.empty() ? SourceMesh::none : first_uv + triangle[k],
@@ -96,17 +74,15 @@ class SceneAssembler {
     return total > 0 ? Eigen::Matrix4d(sum / total) : placement.world;
   }
 
-  void add_vertex(const GltfPrimitive& primitive, std::size_t i, const Transform& transform) {
-    const Eigen::Vector3d place = transform.linear * primitive.positions[i] + transform.offset;
+  void add_vertex(const GltfPrimitive& primitive, std::size_t i, const MeshTransform& transform) {
+    const Eigen::Vector3d place = transform.place(primitive.positions[i]);
     if (!place.allFinite())
       document_.fail("vertex " + std::to_string(primitive.numbers[i]) + " of " + primitive.place +
                          " is put infinitely far away by its node",
                      "finite places");
     mesh_.places.push_back(place);
-    mesh_.precision =
-        std::max(mesh_.precision, std::ldexp(primitive.largest * transform.linear.colwise().norm().maxCoeff(), -23));
-    if (!primitive.normals.empty())
-      mesh_.normals.push_back(unit_or_zero(transform.cofactors * unit_or_zero(primitive.normals[i])).cast<float>());
+    mesh_.precision = std::max(mesh_.precision, std::ldexp(primitive.largest * transform.largest_scale(), -23));
+    if (!primitive.normals.empty()) mesh_.normals.push_back(transform.normal(primitive.normals[i]));
   }
 
   /// Colours are of all places or of none; where other primitives have them a primitive without is white.

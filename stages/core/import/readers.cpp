@@ -18,7 +18,7 @@ SourceMesh read_source_mesh(const std::filesystem::path& file) {
   if (extension == ".off") return read_off(file);
   if (extension == ".drc") return read_drc(file);
   if (extension == ".gltf" || extension == ".glb") return read_gltf(file);
-  // FBX
+  if (extension == ".fbx") return read_fbx(file);
   throw BadInput(file.string(), "has the unknown extension '" + extension + "'",
                  "obj, ply, stl, off, drc, gltf, glb or fbx", "convert the mesh");
 }

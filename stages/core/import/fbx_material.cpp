@@ -1,0 +1,151 @@
+#include "import/fbx_material.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "import/base64.h"
+
+// Colours and pictures are connected to properties of materials. Those of the classic Lambert and Phong materials are
+// the FBX SDK's (FbxSurfaceLambert); the others are what 3ds Max and Maya write of their physical materials.
+
+namespace kiln {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array color_properties = {"DiffuseColor",          "Diffuse",        "3dsMax|Parameters|base_color",
+                                         "3dsMax|main|basecolor", "Maya|baseColor", "Maya|base_color"};
+constexpr std::array picture_properties = {"DiffuseColor",
+                                           "3dsMax|Parameters|base_color_map",
+                                           "3dsMax|main|base_color_map",
+                                           "Maya|TEX_color_map",
+                                           "Maya|baseColor",
+                                           "Maya|base_color"};
+
+/// The file of a path that another machine may have written: as given, from `folder`, or by its bare name there. The
+/// second where none exists.
+fs::path find_file(const fs::path& folder, std::string given, std::string relative) {
+  for (std::string* path : {&given, &relative}) std::replace(path->begin(), path->end(), '\\', '/');
+  if (relative.empty()) relative = given;
+  std::error_code error;
+  const auto exists = [&error](const fs::path& file) { return fs::is_regular_file(file, error); };
+  if (!given.empty() && fs::path(given).is_absolute() && exists(given)) return given;
+  if (exists(folder / relative)) return folder / relative;
+  for (const std::string& path : {relative, given})
+    if (const fs::path bare = folder / path.substr(path.find_last_of('/') + 1); !path.empty() && exists(bare))
+      return bare;
+  return folder / relative;
+}
+
+/// The bytes that a video holds; of text files they are strings of base64.
+std::vector<std::uint8_t> embedded_bytes(const FbxRecord& video) {
+  const FbxRecord* content = video.child("Content");
+  if (content == nullptr) return {};
+  std::string text;
+  for (const FbxValue& value : content->values) {
+    if (value.type == 'R') return {value.bytes.begin(), value.bytes.end()};
+    if (value.type != 'S') continue;
+    std::copy_if(value.bytes.begin(), value.bytes.end(), std::back_inserter(text),
+                 [](char c) { return c != '\n' && c != '\r' && c != ' '; });
+    while (!text.empty() && text.back() == '=') text.pop_back();
+  }
+  return base64_decoded(text).value_or(std::vector<std::uint8_t>());
+}
+
+std::string text_of(const FbxRecord& record, std::string_view child) {
+  const FbxRecord* found = record.child(child);
+  return found == nullptr ? std::string() : std::string(found->text(0));
+}
+
+}  // namespace
+
+std::int32_t FbxMaterials::number_of(const FbxObjects::Object& material) {
+  const auto known = numbers_.find(material.id);
+  if (known != numbers_.end()) return known->second;
+  materials_.push_back(read(material));
+  return numbers_[material.id] = static_cast<std::int32_t>(materials_.size() - 1);
+}
+
+const FbxObjects::Object* FbxMaterials::diffuse_texture(const FbxObjects::Object& material) {
+  for (const char* property : picture_properties)
+    for (const FbxObjects::Link& link : objects_.children(material.id)) {
+      if (link.property != property) continue;
+      const FbxObjects::Object* texture = objects_.find(link.other);
+      if (texture != nullptr && texture->kind() == "LayeredTexture") ++layered_;
+      if (texture != nullptr && texture->kind() == "Texture") return texture;
+    }
+  return nullptr;
+}
+
+SourceMaterial FbxMaterials::read(const FbxObjects::Object& object) {
+  SourceMaterial material;
+  material.name = object.name();
+  material.place = document_.file().string() + ", " + document_.place_of(*object.record);
+  const FbxProperties properties = objects_.properties(object);
+  const double factor = std::clamp(properties.number("DiffuseFactor").value_or(1), 0.0, 1.0);
+  if (const FbxObjects::Object* texture = diffuse_texture(object)) {
+    // A picture stands in place of the colour, and the factor, which is proportional to light, remains.
+    read_texture(*texture, material);
+    material.has_diffuse = factor != 1;
+    material.linear_diffuse = true;
+    material.diffuse.setConstant(static_cast<float>(factor));
+  } else {
+    for (const char* property : color_properties) {
+      const auto color = properties.vector(property);
+      if (!color) continue;
+      // "Diffuse" is the product already.
+      const double scale = std::string_view(property) == "DiffuseColor" ? factor : 1;
+      material.diffuse = (scale * *color).cast<float>().cwiseMax(0).cwiseMin(1);
+      material.has_diffuse = true;
+      break;
+    }
+  }
+  const double emissive = properties.vector("EmissiveColor").value_or(Eigen::Vector3d::Zero()).maxCoeff();
+  glowing_ += emissive > 0 && properties.number("EmissiveFactor").value_or(1) > 0;
+  see_through_ += properties.number("Opacity").value_or(1) < 1;
+  return material;
+}
+
+void FbxMaterials::read_texture(const FbxObjects::Object& texture, SourceMaterial& material) {
+  material.texture = picture(texture);
+  material.texture_place = document_.file().string() + ", " + document_.place_of(*texture.record);
+  const FbxProperties properties = objects_.properties(texture);
+  const Eigen::Vector3d move = properties.vector("Translation").value_or(Eigen::Vector3d::Zero());
+  const Eigen::Vector3d scale = properties.vector("Scaling").value_or(Eigen::Vector3d::Ones());
+  material.texture_transform << static_cast<float>(scale.x()), 0, static_cast<float>(move.x()),  //
+      0, static_cast<float>(scale.y()), static_cast<float>(move.y());
+  turned_ += !properties.vector("Rotation").value_or(Eigen::Vector3d::Zero()).isZero(0);
+  const auto wrap = [&](const char* name) {
+    return properties.number(name).value_or(0) == 1 ? SourceMaterial::Wrap::clamp : SourceMaterial::Wrap::repeat;
+  };
+  material.wrap_u = wrap("WrapModeU");
+  material.wrap_v = wrap("WrapModeV");
+}
+
+SourcePicture FbxMaterials::picture(const FbxObjects::Object& texture) const {
+  for (const FbxObjects::Link& link : objects_.children(texture.id)) {
+    const FbxObjects::Object* video = objects_.find(link.other);
+    if (video == nullptr || video->kind() != "Video") continue;
+    std::vector<std::uint8_t> bytes = embedded_bytes(*video->record);
+    if (bytes.empty()) continue;
+    return {document_.file(), std::make_shared<const std::vector<std::uint8_t>>(std::move(bytes)),
+            "picture '" + video->name() + "' of " + document_.file().filename().string()};
+  }
+  const fs::path file = find_file(document_.file().parent_path(), text_of(*texture.record, "FileName"),
+                                  text_of(*texture.record, "RelativeFilename"));
+  return {file, nullptr, file.string()};
+}
+
+void FbxMaterials::add_warnings(std::vector<std::string>& warnings) const {
+  const auto add = [&](std::size_t count, const std::string& thing, const std::string& what) {
+    if (count > 0) warnings.push_back(std::to_string(count) + " " + thing + (count == 1 ? " " : "s ") + what);
+  };
+  add(layered_, "material", "with layers of pictures, which are not used");
+  add(turned_, "texture", "turned within its coordinates, which is not used");
+  add(glowing_, "material", "with light of its own (emissive), which is not used");
+  add(see_through_, "material", "that can be seen through, taken for opaque");
+}
+
+}  // namespace kiln

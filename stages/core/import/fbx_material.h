@@ -1,0 +1,38 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "import/fbx_objects.h"
+#include "import/source_mesh.h"
+
+namespace kiln {
+
+/// Reads the materials of an FBX file as models ask for them.
+class FbxMaterials {
+ public:
+  FbxMaterials(const FbxDocument& document, const FbxObjects& objects) : document_(document), objects_(objects) {}
+
+  /// The number of a material in all(). Throws BadInput.
+  std::int32_t number_of(const FbxObjects::Object& material);
+
+  std::vector<SourceMaterial> all() && { return std::move(materials_); }
+
+  /// What was passed by.
+  void add_warnings(std::vector<std::string>& warnings) const;
+
+ private:
+  SourceMaterial read(const FbxObjects::Object& object);
+  void read_texture(const FbxObjects::Object& texture, SourceMaterial& material);
+  SourcePicture picture(const FbxObjects::Object& texture) const;
+  const FbxObjects::Object* diffuse_texture(const FbxObjects::Object& material);
+
+  const FbxDocument& document_;
+  const FbxObjects& objects_;
+  std::map<std::int64_t, std::int32_t> numbers_;
+  std::vector<SourceMaterial> materials_;
+  std::size_t layered_ = 0, turned_ = 0, glowing_ = 0, see_through_ = 0;
+};
+
+}  // namespace kiln

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string_view>
+
+#include "import/fbx_document.h"
+
+namespace kiln {
+
+/// Reads the records of an FBX file as text beneath `root`. They refer to `text`. Throws BadInput with the line.
+void parse_fbx_text(const FbxDocument& document, std::string_view text, FbxRecord& root);
+
+}  // namespace kiln
