@@ -198,6 +198,7 @@ void MapStatement::apply_to(SourceMaterial& material) const {
 }
 
 MapStatement read_map_statement(std::string_view text, const fs::path& folder) {
+  text = trimmed(text);
   if (text.size() > most_characters) {
     MapStatement too_long;
     too_long.fault = MapFault{"map_Kd of " + std::to_string(text.size()) + " characters",

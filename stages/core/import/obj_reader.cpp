@@ -205,7 +205,8 @@ class ObjReader {
     if (k == first_digit) refuse_corner(word);
     const std::string_view digits = rest.substr(0, k);
     rest.remove_prefix(k);
-    if (value == 0) refuse("a face names " + std::string(kind.name) + " 0", "numbers from 1, as OBJ counts", remedy);
+    if (value == 0)
+      refuse("a face names " + std::string(kind.name) + " 0", "numbers from 1: OBJ counts from 1", remedy);
     const std::int64_t index = is_negative ? static_cast<std::int64_t>(count) - value : value - 1;
     if (index < 0)
       refuse("a face names " + std::string(kind.name) + " " + std::string(digits) + " of " + std::to_string(count) +

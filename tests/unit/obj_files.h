@@ -1,0 +1,74 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "base/errors.h"
+#include "import/readers.h"
+#include "scratch.h"
+
+namespace kiln {
+
+/// Writes OBJ files and their libraries into a folder of its own, and reads them.
+class ObjFiles : public testing::Test {
+ protected:
+  std::filesystem::path path(const std::string& name) const { return scratch_.folder() / name; }
+
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::filesystem::create_directories(path(name).parent_path());
+    std::ofstream(path(name), std::ios::binary) << text;
+    return path(name);
+  }
+
+  SourceMesh read(const std::string& obj) const { return read_obj(write("a.obj", obj)); }
+
+  /// What read() throws, or "no error".
+  std::string refusal(const std::string& obj) const {
+    try {
+      read(obj);
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+ private:
+  Scratch scratch_;
+};
+
+inline testing::AssertionResult says(const std::string& text, const std::vector<std::string>& parts) {
+  for (const std::string& part : parts)
+    if (text.find(part) == std::string::npos) return testing::AssertionFailure() << "'" << text << "' lacks " << part;
+  return testing::AssertionSuccess();
+}
+
+/// Whether there is one warning alone, which has all these parts.
+inline testing::AssertionResult warns_only(const SourceMesh& mesh, const std::vector<std::string>& parts) {
+  if (mesh.warnings.size() != 1) {
+    testing::AssertionResult failure = testing::AssertionFailure() << mesh.warnings.size() << " warnings:";
+    for (const std::string& warning : mesh.warnings) failure << " " << warning << ";";
+    return failure;
+  }
+  return says(mesh.warnings[0], parts);
+}
+
+/// Flips, drops, doubles or cuts some bytes of a text.
+inline std::string mutated(std::string text, std::mt19937& random) {
+  const auto below = [&](std::size_t count) { return static_cast<std::size_t>(random()) % count; };
+  for (std::size_t k = 1 + below(4); k > 0 && !text.empty(); --k) {
+    const std::size_t at = below(text.size()), kind = below(6);
+    if (kind == 0) text[at] = static_cast<char>(random());
+    if (kind == 1) text.erase(at, 1 + below(8));
+    if (kind == 2) text.insert(at, text.substr(below(text.size()), 1 + below(12)));
+    if (kind == 3) text.resize(at);
+    if (kind == 4) text[at] = " \t\n\r\\/#-\"09e.,"[below(15)];
+    if (kind == 5) text[at] = static_cast<char>(text[at] ^ 1 << below(8));
+  }
+  return text;
+}
+
+}  // namespace kiln
