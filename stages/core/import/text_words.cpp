@@ -13,7 +13,8 @@ namespace kiln {
 
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\f' || c == '\v'; }
+/// A carriage return is no gap here, but ends a line.
+bool is_gap(char c) { return c == ' ' || c == '\t' || c == '\f' || c == '\v'; }
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
@@ -32,7 +33,7 @@ bool TextWords::to_word() {
   const char* at = rest_.data();
   const char* const end = at + rest_.size();
   while (at != end) {
-    if (is_blank(*at)) {
+    if (is_gap(*at)) {
       ++at;
     } else if (is_line_end(*at)) {
       at += *at == '\r' && at + 1 != end && at[1] == '\n' ? 2 : 1;
@@ -50,9 +51,9 @@ bool TextWords::to_word() {
 std::string_view TextWords::next_on_line() {
   const char* begin = rest_.data();
   const char* const end = begin + rest_.size();
-  while (begin != end && is_blank(*begin)) ++begin;
+  while (begin != end && is_gap(*begin)) ++begin;
   const char* stop = begin;
-  while (stop != end && !is_blank(*stop) && !is_line_end(*stop) && (comment_ == '\0' || *stop != comment_)) ++stop;
+  while (stop != end && !is_gap(*stop) && !is_line_end(*stop) && (comment_ == '\0' || *stop != comment_)) ++stop;
   rest_.remove_prefix(static_cast<std::size_t>(stop - rest_.data()));
   return {begin, static_cast<std::size_t>(stop - begin)};
 }
@@ -88,7 +89,7 @@ std::uint64_t count_lines_with_words(std::string_view text) {
       count += has_word;
       has_word = false;
     } else {
-      has_word |= !is_blank(c);
+      has_word |= !is_gap(c);
     }
   }
   return count + has_word;
