@@ -405,7 +405,7 @@ CollapseSequence collapse_edges_in_two_steps(TriangleMesh mesh, int quick_faces,
   CollapseSequence first;
   first.start = std::move(mesh);
   if (first.faces_after(0) <= settings.faces) return first;
-  std::vector<VertexPair> lines = feature_lines(first.start, settings.crease_degrees);
+  std::vector<VertexPair> lines = find_feature_edges(first.start, settings.crease_degrees, settings.feature_edges);
   std::vector<VertexWeight> weights = to_vertex_weights(first.start, settings.vertex_weights);
   collapse_quickly(first, lines, weights, quick_faces, [&](double fraction) { progress(0.2 * fraction); });
   if (first.collapses.empty()) {

@@ -7,6 +7,7 @@
 
 #include "base/progress.h"
 #include "mesh/triangle_mesh.h"
+#include "simplify/feature_edges.h"
 
 namespace kiln {
 
@@ -32,10 +33,17 @@ struct CollapseSequence {
   TriangleMesh after(std::size_t count, std::vector<std::uint32_t>* vertex_origins = nullptr) const;
 };
 
+/// Which of the given edges of the start are left after the first `count` collapses, as vertices of after(count): each
+/// once, the smaller vertex first, sorted. An edge whose ends became one vertex is gone; several may have become one.
+std::vector<VertexPair> surviving_edges(const CollapseSequence& sequence, std::size_t count,
+                                        std::span<const VertexPair> edges);
+
 /// How edges are collapsed.
 struct CollapseSettings {
   int faces = 4;              ///< triangles to stop at
-  double crease_degrees = 0;  ///< edges of a larger dihedral angle stay lines; 0: none
+  double crease_degrees = 0;  ///< edges of a larger dihedral angle are feature edges; 0: none
+  /// Edges of the input that are feature edges whatever their angle is.
+  std::span<const VertexPair> feature_edges = {};
   /// From this many triangles on, those of a collapse are compared with the input, or with a large one that was
   /// simplified quickly: they may not leave that surface, nor face against it. 0: never.
   int compared_faces = std::numeric_limits<int>::max();
@@ -46,7 +54,8 @@ struct CollapseSettings {
 
 /// Collapses edges of an oriented manifold, cheapest first, until at most settings.faces triangles are left or no
 /// collapse is left that keeps the topology, folds nothing over and leaves no triangle too thin for a Draco file of 16
-/// bits. Edges of borders and creases are collapsed along them only; where these branch or end, the vertex stays.
+/// bits. Feature edges (borders, creases and those given) are collapsed along their lines only; where these branch or
+/// end, the vertex stays.
 /// Lindstrom and Turk, "Fast and memory efficient polygonal simplification" (1998). Costs are computed when they are
 /// needed: an edge's is renewed when it is next in the queue.
 CollapseSequence collapse_edges(TriangleMesh mesh, const CollapseSettings& settings,

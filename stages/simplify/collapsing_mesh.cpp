@@ -1,9 +1,6 @@
 #include "simplify/collapsing_mesh.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 namespace kiln {
 
@@ -11,11 +8,6 @@ namespace {
 
 int corner_of(const Triangle& triangle, std::uint32_t vertex) {
   return triangle[0] == vertex ? 0 : triangle[1] == vertex ? 1 : 2;
-}
-
-Eigen::Vector3d unit_normal(const TriangleMesh& mesh, std::uint32_t triangle) {
-  const auto at = [&](int k) { return mesh.positions[mesh.triangles[triangle][k]].cast<double>().eval(); };
-  return (at(1) - at(0)).cross(at(2) - at(0)).normalized();
 }
 
 }  // namespace
@@ -26,44 +18,7 @@ UnitFrame::UnitFrame(const TriangleMesh& mesh) {
   diagonal = (box.highest - box.lowest).cast<double>().norm();
 }
 
-std::vector<VertexPair> feature_lines(const TriangleMesh& mesh, double crease_degrees) {
-  // Each vertex's edges to larger ones, with the triangles on them: counted, then filled in.
-  struct Side {
-    std::uint32_t other, triangle;
-  };
-  std::vector<std::uint32_t> begin(mesh.positions.size() + 1, 0);
-  const auto for_each = [&](const auto& visit) {
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
-      for (int k = 0; k < 3; ++k) visit(std::minmax(mesh.triangles[i][k], mesh.triangles[i][(k + 1) % 3]), i);
-  };
-  for_each([&](const auto& edge, std::uint32_t) { ++begin[edge.first + 1]; });
-  for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
-  std::vector<Side> sides(begin.back());
-  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
-  for_each([&](const auto& edge, std::uint32_t i) { sides[next[edge.first]++] = {edge.second, i}; });
-
-  const double smallest_cosine =
-      crease_degrees > 0 ? std::cos(crease_degrees * std::numbers::pi / 180) : -2;  // nothing is below -2
-  std::vector<VertexPair> lines;
-  for (std::uint32_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {
-    const auto first = sides.begin() + begin[vertex], last = sides.begin() + begin[vertex + 1];
-    std::sort(first, last, [](const Side& l, const Side& r) {
-      return std::pair(l.other, l.triangle) < std::pair(r.other, r.triangle);
-    });
-    for (auto side = first; side != last;) {
-      auto end = side + 1;
-      while (end != last && end->other == side->other) ++end;
-      if (end - side == 1 ||
-          (smallest_cosine > -2 &&
-           unit_normal(mesh, side->triangle).dot(unit_normal(mesh, (side + 1)->triangle)) < smallest_cosine))
-        lines.emplace_back(vertex, side->other);
-      side = end;
-    }
-  }
-  return lines;
-}
-
-CollapsingMesh::CollapsingMesh(const TriangleMesh& mesh, std::span<const VertexPair> lines)
+CollapsingMesh::CollapsingMesh(const TriangleMesh& mesh, std::span<const VertexPair> feature_edges)
     : triangles_(mesh.triangles),
       line_bits_(mesh.triangles.size(), 0),
       lines_at_(mesh.positions.size(), 0),
@@ -81,7 +36,7 @@ CollapsingMesh::CollapsingMesh(const TriangleMesh& mesh, std::span<const VertexP
   pool_.resize(end);
   for (std::uint32_t i = 0; i < triangles_.size(); ++i)
     for (std::uint32_t vertex : triangles_[i]) pool_[around_[vertex].begin + around_[vertex].size++] = i;
-  for (const auto& [a, b] : lines) {
+  for (const auto& [a, b] : feature_edges) {
     mark_line(a, b);
     for (std::uint32_t vertex : {a, b}) lines_at_[vertex] = std::min(lines_at_[vertex] + 1, 200);
   }

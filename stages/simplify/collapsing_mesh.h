@@ -3,14 +3,12 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "mesh/triangle_mesh.h"
+#include "simplify/feature_edges.h"
 
 namespace kiln {
-
-using VertexPair = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Of a vertex, or of several that became one.
 struct VertexWeight {
@@ -23,11 +21,6 @@ struct VertexWeight {
     return *this;
   }
 };
-
-/// Edges that are to stay lines: those of the border, and those whose dihedral angle (0 in a plane) exceeds
-/// `crease_degrees`; 0 is none of the latter. Each once, the smaller vertex first, sorted. `mesh` is an oriented
-/// manifold.
-std::vector<VertexPair> feature_lines(const TriangleMesh& mesh, double crease_degrees);
 
 /// Collapses are computed in a frame where the bounding box is centred on the origin with a diagonal of 1: quadrics of
 /// far away or tiny objects lose their digits, and tolerances get a meaning.
@@ -44,7 +37,7 @@ struct UnitFrame {
 /// whoever holds it.
 class CollapsingMesh {
  public:
-  CollapsingMesh(const TriangleMesh& mesh, std::span<const VertexPair> lines);
+  CollapsingMesh(const TriangleMesh& mesh, std::span<const VertexPair> feature_edges);
 
   const std::vector<Triangle>& triangles() const { return triangles_; }
   std::span<const std::uint32_t> triangles_of(std::uint32_t vertex) const {

@@ -52,10 +52,10 @@ class Writer {
   double seconds_ = 0;
 };
 
-/// The Hausdorff distance; few samples suffice to see most that are too far.
-double error_of(const TriangleMesh& high, const TriangleMesh& low, double max_error) {
-  const double least = mesh_distance(high, low, {.samples = 2'000}).hausdorff;
-  return least > max_error ? least : mesh_distance(high, low).hausdorff;
+/// Few samples suffice to see most that are too far.
+MeshDistance distance_within(const TriangleMesh& high, const TriangleMesh& low, double max_error) {
+  const MeshDistance least = mesh_distance(high, low, {.samples = 2'000});
+  return least.hausdorff > max_error ? least : mesh_distance(high, low);
 }
 
 }  // namespace
@@ -94,16 +94,14 @@ SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settin
   if (settings.aware == SimplifyAwareness::transfer) weights = transfer_weights(manifold);
   const Stopwatch reduce_stopwatch;
   const ProgressFunction reduce_progress = [&](double fraction) { progress(0.9 * fraction); };
-  TriangleMesh low;
-  if (by_error)
-    low = reduce_to_error(
-        manifold, settings,
-        [&](const TriangleMesh& candidate) { return error_of(high, write(candidate), settings.max_error); }, weights,
-        reduce_progress);
-  else
-    low = reduce_to_faces(manifold, settings, weights, reduce_progress);
+  const CandidateDistance distance = [&](const TriangleMesh& candidate) {
+    const TriangleMesh form = write(candidate);
+    return by_error ? distance_within(high, form, settings.max_error) : mesh_distance(high, form);
+  };
+  const auto reduce = by_error ? reduce_to_error : reduce_to_faces;
+  const Reduced low = reduce(manifold, settings, distance, weights, {}, reduce_progress);
   result.collapse_seconds = reduce_stopwatch.seconds();
-  result.mesh = write(low);
+  result.mesh = write(low.mesh);
 
   // Measure what was written.
   progress(0.9);

@@ -163,7 +163,8 @@ TriangleMesh openmesh(const TriangleMesh& mesh, int faces, Cost& cost) {
 Simplifier ours(SimplifyQuality quality) {
   return [quality](const TriangleMesh& mesh, int faces, Cost& cost) {
     TriangleMesh result;
-    cost = cost_of([&] { result = reduce_to_faces(mesh, {.faces = faces, .quality = quality}); });
+    const auto distance = [&](const TriangleMesh& candidate) { return mesh_distance(mesh, candidate); };
+    cost = cost_of([&] { result = reduce_to_faces(mesh, {.faces = faces, .quality = quality}, distance).mesh; });
     return result;
   };
 }

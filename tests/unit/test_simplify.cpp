@@ -18,7 +18,7 @@
 #include "mesh/mesh_repair.h"
 #include "shapes.h"
 #include "simplify/collapse.h"
-#include "simplify/collapsing_mesh.h"
+#include "simplify/feature_edges.h"
 #include "simplify/fit.h"
 #include "simplify/low_file.h"
 #include "simplify/reduce.h"
@@ -242,7 +242,7 @@ TEST(SimplifyCreases, OfACubeStayExact) {
       EXPECT_LT(result.distance.hausdorff, 1e-7);
       // Its edges are 12 long in all; they are found in the result again by their angle.
       double length = 0;
-      for (const auto& [a, b] : feature_lines(result.mesh, 30))
+      for (const auto& [a, b] : find_feature_edges(result.mesh, 30))
         length += (result.mesh.positions[a] - result.mesh.positions[b]).norm();
       EXPECT_NEAR(length, 12, 1e-4);
     }
@@ -250,7 +250,7 @@ TEST(SimplifyCreases, OfACubeStayExact) {
 
 TEST(SimplifyCreases, OfACylinderStayCircles) {
   const TriangleMesh cylinder = closed_cylinder(96, 24);
-  const auto rims = feature_lines(cylinder, 45);
+  const auto rims = find_feature_edges(cylinder, 45);
   ASSERT_EQ(rims.size(), 2u * 96);
   for (const SimplifyQuality quality : all_qualities) {
     SCOPED_TRACE(static_cast<int>(quality));
@@ -259,7 +259,7 @@ TEST(SimplifyCreases, OfACylinderStayCircles) {
     EXPECT_TRUE(result.closed);
     // What is left of the rims: closed lines in their planes, near the circles.
     std::map<std::uint32_t, int> ends;
-    for (const auto& [a, b] : feature_lines(result.mesh, 45)) {
+    for (const auto& [a, b] : find_feature_edges(result.mesh, 45)) {
       for (const std::uint32_t vertex : {a, b}) {
         ++ends[vertex];
         const Eigen::Vector3f& p = result.mesh.positions[vertex];
@@ -272,6 +272,99 @@ TEST(SimplifyCreases, OfACylinderStayCircles) {
   }
 }
 
+/// The edges of `cube` between its sides.
+std::vector<VertexPair> edges_between_sides(const TriangleMesh& cube) { return find_feature_edges(cube, 45); }
+
+double length_of(const TriangleMesh& mesh, const std::vector<VertexPair>& edges) {
+  double length = 0;
+  for (const auto& [a, b] : edges) length += (mesh.positions[a] - mesh.positions[b]).norm();
+  return length;
+}
+
+Reduced reduced(const TriangleMesh& mesh, const SimplifySettings& settings, const std::vector<VertexPair>& edges) {
+  const auto distance = [&](const TriangleMesh& candidate) { return mesh_distance(mesh, candidate); };
+  return reduce_to_faces(mesh, settings, distance, {}, edges);
+}
+
+TEST(SimplifyFeatureEdges, OfACubeComeDownToItsTwelve) {
+  const TriangleMesh cube = shapes::cube(10);
+  ASSERT_EQ(cube.triangles.size(), 6u * 200);
+  const std::vector<VertexPair> edges = edges_between_sides(cube);
+  ASSERT_EQ(edges.size(), 12u * 10);
+  for (const SimplifyQuality quality : all_qualities) {
+    SCOPED_TRACE(static_cast<int>(quality));
+    const Reduced low = reduced(cube, {.faces = 12, .quality = quality}, edges);
+    EXPECT_EQ(low.mesh.triangles.size(), 12u);
+    EXPECT_EQ(low.feature_edges.size(), 12u);
+    EXPECT_EQ(low.feature_edges, find_feature_edges(low.mesh, 45));
+    EXPECT_LT(mesh_distance(cube, low.mesh).hausdorff, 1e-6);
+  }
+}
+
+TEST(SimplifyFeatureEdges, InsideAPlaneGoAlongTheirLine) {
+  // A square in two halves: the line between them is no crease, but stays.
+  const TriangleMesh square = shapes::plane(20);
+  const auto is_between = [&](std::uint32_t vertex) { return square.positions[vertex].x() == 0; };
+  std::vector<VertexPair> edges;
+  for (const Triangle& t : square.triangles)
+    for (int k = 0; k < 3; ++k)
+      if (is_between(t[k]) && is_between(t[(k + 1) % 3])) edges.emplace_back(t[k], t[(k + 1) % 3]);
+  ASSERT_EQ(edges.size(), 2u * 20) << "from either side";
+  for (const SimplifyQuality quality : all_qualities) {
+    SCOPED_TRACE(static_cast<int>(quality));
+    const Reduced low = reduced(square, {.faces = 4, .quality = quality}, edges);
+    EXPECT_EQ(low.mesh.triangles.size(), 4u) << "two halves";
+    ASSERT_EQ(low.feature_edges.size(), 1u);
+    EXPECT_NEAR(length_of(low.mesh, low.feature_edges), 1, 1e-6);
+    for (const std::uint32_t vertex : {low.feature_edges[0].first, low.feature_edges[0].second})
+      EXPECT_EQ(low.mesh.positions[vertex].x(), 0);
+    EXPECT_EQ(surface_area(low.mesh), 1);
+  }
+}
+
+TEST(SimplifyFeatureEdges, OnASphereAreStillALoop) {
+  const TriangleMesh sphere = shapes::cube_sphere(16);
+  TriangleMesh whole{sphere.positions, sphere.triangles, {}, {}};
+  repair_mesh(whole);
+  ASSERT_TRUE(is_closed(whole));
+  // The equator.
+  std::vector<VertexPair> edges;
+  const auto is_on = [&](std::uint32_t vertex) { return std::abs(whole.positions[vertex].y()) < 1e-6f; };
+  for (const Triangle& t : whole.triangles)
+    for (int k = 0; k < 3; ++k)
+      if (t[k] < t[(k + 1) % 3] && is_on(t[k]) && is_on(t[(k + 1) % 3])) edges.emplace_back(t[k], t[(k + 1) % 3]);
+  ASSERT_EQ(edges.size(), 4u * 16);
+  for (const SimplifyQuality quality : all_qualities) {
+    SCOPED_TRACE(static_cast<int>(quality));
+    const Reduced low = reduced(whole, {.faces = 300, .quality = quality}, edges);
+    EXPECT_EQ(low.mesh.triangles.size(), 300u);
+    std::map<std::uint32_t, int> ends;
+    for (const auto& [a, b] : low.feature_edges) {
+      ++ends[a];
+      ++ends[b];
+    }
+    EXPECT_GE(ends.size(), 8u);
+    EXPECT_EQ(ends.size(), low.feature_edges.size());
+    for (const auto& [vertex, count] : ends) {
+      EXPECT_EQ(count, 2) << "of vertex " << vertex;
+      EXPECT_NEAR(low.mesh.positions[vertex].y(), 0, 1e-3);
+    }
+    // An inscribed polygon of n sides is shorter than the circle by pi^2 / 6 n^2: 3 % of 8 sides.
+    EXPECT_NEAR(length_of(low.mesh, low.feature_edges), 2 * 3.14159265, 0.03 * 2 * 3.14159265);
+  }
+}
+
+TEST(SimplifyFeatureEdges, SurviveUnlessTheirEndsBecomeOne) {
+  CollapseSequence sequence;
+  sequence.start = shapes::plane(2);  // 3 x 3 vertices in rows
+  sequence.collapses = {{1, 0, 7, {0, 0, 0}}, {3, 0, 5, {0, 0, 0}}};
+  const std::vector<VertexPair> edges = {{0, 1}, {1, 2}, {2, 5}, {5, 8}, {3, 4}, {4, 1}};
+  EXPECT_EQ(surviving_edges(sequence, 0, edges),
+            (std::vector<VertexPair>{{0, 1}, {1, 2}, {1, 4}, {2, 5}, {3, 4}, {5, 8}}));
+  // 0, 2, 4, 5, 6, 7 and 8 are left after both, and numbered so; 1-4 and 3-4 are one.
+  EXPECT_EQ(surviving_edges(sequence, 2, edges), (std::vector<VertexPair>{{0, 1}, {0, 2}, {1, 3}, {3, 6}}));
+}
+
 TEST(SimplifyWeights, TrianglesGoWhereTheyCount) {
   const TriangleMesh sphere = shapes::icosphere(5);
   std::vector<double> weights;
@@ -279,7 +372,9 @@ TEST(SimplifyWeights, TrianglesGoWhereTheyCount) {
   for (const SimplifyQuality quality : all_qualities) {
     SCOPED_TRACE(static_cast<int>(quality));
     const auto upper_share = [&](std::span<const double> vertex_weights) {
-      const TriangleMesh low = reduce_to_faces(sphere, {.faces = 400, .quality = quality}, vertex_weights);
+      const auto distance = [&](const TriangleMesh& candidate) { return mesh_distance(sphere, candidate); };
+      const TriangleMesh low =
+          reduce_to_faces(sphere, {.faces = 400, .quality = quality}, distance, vertex_weights).mesh;
       EXPECT_EQ(low.triangles.size(), 400u);
       return static_cast<double>(std::count_if(low.positions.begin(), low.positions.end(),
                                                [](const Eigen::Vector3f& p) { return p.y() > 0; })) /
