@@ -8,7 +8,6 @@
 #include "image/image_file.h"
 #include "import/import_mesh.h"
 
-
 int main(int argc, char** argv) {
   using namespace kiln;
   return run_program("kiln-atlas", [&] {

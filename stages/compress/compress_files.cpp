@@ -43,6 +43,8 @@ void add_names(Json& head, const PrtAsset& asset) {
   head["mesh"] = asset.mesh_file;
   if (!asset.normals_file.empty()) head["normals"] = asset.normals_file;
   if (asset.normal_space == NormalSpace::tangent) head["normal_space"] = "tangent";
+  if (const Eigen::Vector3d& origin = asset.mesh.frame.origin; !origin.isZero(0))
+    head["origin"] = {origin.x(), origin.y(), origin.z()};
   const Eigen::Vector3f& constant = asset.albedo.constant;
   if (!asset.albedo.file.empty())
     head["albedo"] = asset.albedo.file;

@@ -147,8 +147,9 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   result.cage_source = "option";
   if (settings.cage == 0) {
     result.cage_source = hints.hausdorff_distance > 0 ? "simplify.json" : "measured";
-    distance = cage_per_hausdorff_distance *
-               (hints.hausdorff_distance > 0 ? hints.hausdorff_distance / high.frame.unit() : measure_distance(high, scene, atlas, raster));
+    distance =
+        cage_per_hausdorff_distance * (hints.hausdorff_distance > 0 ? hints.hausdorff_distance / high.frame.unit()
+                                                                    : measure_distance(high, scene, atlas, raster));
     distance = std::max(distance, smallest_cage * diagonal);
   }
   const MatchLimits limits{static_cast<float>(distance), static_cast<float>(surface_tolerance * diagonal)};

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "mesh/draco_file.h"
+#include "mesh/hard_edges.h"
 
 namespace kiln {
 
@@ -39,7 +40,7 @@ TriangleMesh LowFile::write(const TriangleMesh& mesh) {
   DracoQuantisation quantisation;
   quantisation.position_bits = position_bits_ = sufficient_position_bits(mesh);
   // The normals are those of the rounded positions.
-  TriangleMesh low = mesh;
+  TriangleMesh low = split_at_hard_edges(mesh);
   low.normals.clear();
   low.colors.clear();
   save_draco(file_, low, quantisation);

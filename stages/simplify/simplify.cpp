@@ -3,11 +3,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 #include <vector>
 
 #include "base/command_line.h"
 #include "base/errors.h"
+#include "mesh/hard_edges.h"
 #include "mesh/nearest_surface.h"
 #include "simplify/reduce.h"
 #include "simplify/transfer_weights.h"
@@ -58,6 +60,26 @@ MeshDistance distance_within(const TriangleMesh& high, const TriangleMesh& low, 
   return least.hausdorff > max_error ? least : mesh_distance(high, low);
 }
 
+/// The hard edges of the input that its shape has too: where it is all but flat, the normal map can do without the
+/// edge.
+std::vector<VertexPair> feature_edges_of(const TriangleMesh& high) {
+  constexpr double least_dihedral_degrees = 15;
+  const HardEdges hard = hard_edges_of_normals(high);
+  if (hard.empty()) return {};
+  const HardEdges bent = hard_edges_by_angle(high, least_dihedral_degrees);
+  std::vector<VertexPair> features;
+  std::set_intersection(hard.begin(), hard.end(), bent.begin(), bent.end(), std::back_inserter(features));
+  return features;
+}
+
+/// The simplified mesh with normals that are smooth but for its feature edges, in the input's frame.
+TriangleMesh shaded(const Reduced& reduced, const MeshFrame& frame) {
+  TriangleMesh mesh = reduced.mesh;
+  mesh.frame = frame;
+  compute_normals_between(mesh, reduced.feature_edges);
+  return mesh;
+}
+
 }  // namespace
 
 int count_degenerate(const TriangleMesh& mesh) {
@@ -72,7 +94,7 @@ int count_flipped(const TriangleMesh& mesh, const TriangleMesh& high) {
 }
 
 TriangleMesh with_normals(const TriangleMesh& mesh) {
-  TriangleMesh result = mesh;
+  TriangleMesh result = split_at_hard_edges(mesh);
   compute_vertex_normals(result);
   return result;
 }
@@ -89,7 +111,11 @@ SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settin
   result.input_triangles = static_cast<int>(high.triangles.size());
 
   TriangleMesh manifold{high.positions, high.triangles, {}, {}};
-  if (!is_manifold(manifold)) repair_mesh(manifold);  // load_mesh gives a manifold
+  std::vector<VertexPair> features;
+  if (is_manifold(manifold))  // import_mesh gives one
+    features = feature_edges_of(high);
+  else
+    repair_mesh(manifold);
   std::vector<double> weights;
   if (settings.aware == SimplifyAwareness::transfer) weights = transfer_weights(manifold);
   const Stopwatch reduce_stopwatch;
@@ -99,16 +125,16 @@ SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settin
     return by_error ? distance_within(high, form, settings.max_error) : mesh_distance(high, form);
   };
   const auto reduce = by_error ? reduce_to_error : reduce_to_faces;
-  const Reduced low = reduce(manifold, settings, distance, weights, {}, reduce_progress);
+  const Reduced low = reduce(manifold, settings, distance, weights, features, reduce_progress);
   result.collapse_seconds = reduce_stopwatch.seconds();
-  result.mesh = write(low.mesh);
+  result.mesh = write(shaded(low, high.frame));
 
   // Measure what was written.
   progress(0.9);
   result.distance = mesh_distance(high, result.mesh);
   result.hausdorff_distance = result.distance.hausdorff * bounding_box(high).diagonal() * high.frame.unit();
   result.manifold = is_manifold(result.mesh);
-  result.closed = result.manifold && is_closed(result.mesh);
+  result.closed = result.manifold && is_closed(features.empty() ? result.mesh : join_at_places(result.mesh));
   result.degenerate_triangles = count_degenerate(result.mesh);
   result.flipped_triangles = count_flipped(result.mesh, high);
   progress(1);

@@ -16,6 +16,7 @@
 #include "base/outputs.h"
 #include "base/process.h"
 #include "base/progress.h"
+#include "import/import_settings.h"
 #include "kiln/step.h"
 
 namespace kiln {
@@ -82,7 +83,10 @@ std::string neighbour_text(const fs::path& mesh, const std::string& place, const
     text += fmt::format(";{}={}", name, value);
   };
   for (const char* name : {"albedo", "albedo-texture", "albedo-encoding"}) add(Stage::normals, name);
-  add(Stage::simplify, "fill-holes");
+  ImportSettings import;
+  OptionSet import_options;
+  add_import_options(import_options, import);
+  for (const Option& option : import_options.options()) add(Stage::simplify, option.name.c_str());
   return text;
 }
 
@@ -199,7 +203,7 @@ int say_what_would_run(const Pipeline& pipeline, const std::vector<const Asset*>
   // make itself decides, on stamps as they would be: those that would change are new files elsewhere.
   for (MakeRule& rule : rules) {
     std::erase_if(rule.run.inputs, as_its_stage_left_it);
-    const std::string text = stamp_text(rule.run, programs);
+    const std::string text = stamp_text(rule, pipeline.folder, programs);
     if (holds(pipeline.folder / rule.stamp, text)) continue;
     rule.stamp = temporary.path() / fmt::format("{}.command", ++count);
     write_if_changed(rule.stamp, text);
@@ -271,13 +275,19 @@ std::vector<MakeRule> make_rules(const Pipeline& pipeline) {
     }
     for (StageRun& run : runs) {
       const fs::path stamp = pipeline.output / ".kiln" / asset.name / (run.name + ".command");
-      rules.push_back({asset.name, std::move(run), stamp});
+      rules.push_back({asset.name, std::move(run), stamp, {}});
     }
   }
+  std::set<fs::path> made;
+  for (const MakeRule& rule : rules) made.insert(rule.run.outputs.begin(), rule.run.outputs.end());
+  for (MakeRule& rule : rules)
+    std::copy_if(rule.run.inputs.begin(), rule.run.inputs.end(), std::back_inserter(rule.sources),
+                 [&](const fs::path& input) { return !made.contains(input); });
   return rules;
 }
 
-std::string stamp_text(const StageRun& run, const fs::path& programs) {
+std::string stamp_text(const MakeRule& rule, const fs::path& folder, const fs::path& programs) {
+  const StageRun& run = rule.run;
   std::string text;
   for (const std::string& word : run.command) text += (text.empty() ? "" : " ") + shell_quoted(word);
   text += fmt::format("\nversion {}\n", KILN_VERSION);
@@ -289,6 +299,11 @@ std::string stamp_text(const StageRun& run, const fs::path& programs) {
       throw MachineLacks(fmt::format("{} is not beside kiln in {}; build it: make build", name, programs.string()));
     text += fmt::format("{} {}\n", name, hash_file(programs / name));
   }
+  // A file that was replaced by an older one is another input, which times alone do not tell.
+  std::error_code error;
+  for (const fs::path& source : rule.sources)
+    if (fs::is_regular_file(folder / source, error))
+      text += fmt::format("{} {}\n", source.string(), hash_file(folder / source));
   return text;
 }
 
@@ -327,7 +342,8 @@ int build(const Pipeline& pipeline, const std::vector<const Asset*>& assets, con
   // The Makefile and the stamps it depends on.
   const fs::path programs = program_folder();
   std::map<std::string, std::string> stamps;
-  for (const MakeRule& rule : rules) write_if_changed(pipeline.folder / rule.stamp, stamp_text(rule.run, programs));
+  for (const MakeRule& rule : rules)
+    write_if_changed(pipeline.folder / rule.stamp, stamp_text(rule, pipeline.folder, programs));
   const fs::path makefile = pipeline.output / "Makefile";
   write_if_changed(pipeline.folder / makefile, makefile_text(rules, programs));
 

@@ -6,10 +6,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <set>
+#include <sstream>
 #include <yaml-cpp/yaml.h>
 
 #include "base/errors.h"
 #include "base/outputs.h"
+#include "import/import_settings.h"
 
 namespace kiln {
 
@@ -45,7 +47,7 @@ class Reader {
     const std::string text = read_text(file_);
     YAML::Node root;
     try {
-      root = YAML::Load(text);
+      root = only_document(text);
     } catch (const YAML::Exception& error) {
       throw BadInput(place(error.mark), error.msg, "YAML", "mend the line");
     }
@@ -72,6 +74,25 @@ class Reader {
   }
 
  private:
+  /// The document of a text; a second one would be passed by.
+  YAML::Node only_document(const std::string& text) const {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.empty()) return YAML::Load(text);
+    for (std::size_t k = 1; k < documents.size(); ++k) {
+      if (documents[k].IsNull()) continue;
+      // Its mark is that of its first word; it begins at the "---" before that.
+      int line = 0, begin = 0;
+      std::istringstream lines(text);
+      for (std::string content; line <= documents[k].Mark().line && std::getline(lines, content);) {
+        ++line;
+        if (content.starts_with("---")) begin = line;
+      }
+      throw BadInput(fmt::format("{}:{}", file_.string(), begin), "a second document", "one document",
+                     "put its assets into the first, or into a file of their own");
+    }
+    return documents[0];
+  }
+
   std::string place(const YAML::Mark& mark) const {
     return mark.is_null() ? file_.string() : fmt::format("{}:{}", file_.string(), mark.line + 1);
   }
@@ -90,6 +111,7 @@ class Reader {
   static std::vector<std::string> setting_blocks() {
     std::vector<std::string> names = stage_names();
     names.push_back("material");
+    names.push_back("import");
     return names;
   }
 
@@ -139,7 +161,20 @@ class Reader {
         entry.settings = stage_settings(stage, block);
     }
     if (const YAML::Node material = map["material"]) add_material(material, result);
+    if (const YAML::Node block = map["import"]) add_import(block, result);
     return result;
+  }
+
+  /// How the mesh file is read is for the first stage, whose record tells the others.
+  void add_import(const YAML::Node& block, Settings& settings) const {
+    ImportSettings import;
+    OptionSet options;
+    add_import_options(options, import);
+    std::vector<std::string> names;
+    for (const Option& option : options.options()) names.push_back(option.name);
+    check_keys(block, names);
+    // Settings of the stage itself come first.
+    if (block.size() > 0) settings[Stage::simplify].settings.merge(stage_settings(Stage::simplify, block));
   }
 
   /// What a surface reflects is for the normals stage, which makes a map of it, and for light that bounces in the bake.

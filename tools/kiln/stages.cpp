@@ -1,5 +1,6 @@
 #include "kiln/stages.h"
 
+#include <cctype>
 #include <fmt/format.h>
 
 #include "atlas/atlas_settings.h"
@@ -74,8 +75,10 @@ void append_settings(std::vector<std::string>& command, const AssetPlan& plan, S
   for (const Option& option : options.all()) {
     const auto found = given.find(option.name);
     if (found == given.end() || (option.is_switch && found->second == "false")) continue;
-    command.push_back("--" + option.name);
-    if (!option.is_switch) command.push_back(found->second);
+    const std::string& value = found->second;
+    const bool looks_like_option = value.size() > 1 && value[0] == '-' && std::isalpha(value[1]) != 0;
+    command.push_back("--" + option.name + (looks_like_option ? "=" + value : ""));
+    if (!option.is_switch && !looks_like_option) command.push_back(value);
   }
 }
 

@@ -105,6 +105,11 @@ PlaneRange range_of(std::span<const float> values) {
   return {*lowest, *highest};
 }
 
+void add_origin(Json& ranges, const TriangleMesh& mesh) {
+  const Eigen::Vector3d& origin = mesh.frame.origin;
+  if (!origin.isZero(0)) ranges["origin"] = {origin.x(), origin.y(), origin.z()};
+}
+
 Json ranges_head(int channels, int coefficients, int bits) {
   return {{"format", "kiln-prt"},
           {"version", 1},
@@ -167,6 +172,7 @@ PlaneSeams write_planes(OutputSet& outputs, const std::vector<TransferVectors>& 
   if (!files.normals.empty()) ranges["normals"] = files.normals;
   if (!files.normals.empty() && files.normal_space == NormalSpace::tangent) ranges["normal_space"] = "tangent";
   if (!files.albedo.is_null()) ranges["albedo"] = files.albedo;
+  add_origin(ranges, seams.atlas());
   ranges["planes"] = planes;
   outputs.add_text("ranges.json", ranges.dump(2) + "\n");
   remove_stale_planes(outputs, written);

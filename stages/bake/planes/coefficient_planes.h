@@ -32,6 +32,9 @@ PlaneRange range_of(std::span<const float> values);
 /// What ranges.json says of the basis: sh/basis.h.
 inline constexpr char basis_name[] = "real-sh-orthonormal";
 
+/// Adds where the positions of the mesh count from, "origin", to ranges.json; left out where that is 0.
+void add_origin(Json& ranges, const TriangleMesh& mesh);
+
 /// The fields that every ranges.json begins with.
 Json ranges_head(int channels, int coefficients, int bits);
 

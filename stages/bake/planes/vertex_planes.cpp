@@ -65,6 +65,7 @@ std::vector<std::uint32_t> write_vertex_planes(OutputSet& outputs, const std::ve
   ranges["basis"] = basis_name;
   ranges["mesh"] = vertex_mesh_name;
   if (!albedo.is_null()) ranges["albedo"] = albedo;
+  add_origin(ranges, mesh);
   ranges["planes"] = planes;
   outputs.add_text("ranges.json", ranges.dump(2) + "\n");
   remove_stale_planes(outputs, {});

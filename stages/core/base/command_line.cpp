@@ -1,6 +1,7 @@
 #include "base/command_line.h"
 
 #include <algorithm>
+#include <cctype>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -101,9 +102,32 @@ void CommandLine::options(const std::string& heading, const OptionSet& options) 
   }
 }
 
+std::vector<std::string> CommandLine::joined_values(int argc, char** argv) const {
+  const auto takes = [&](const std::string& word, const std::string& value) {
+    for (const OptionSet& set : option_sets_)
+      for (const Option& option : set.options())
+        if (word == "--" + option.name && !option.is_switch) return option.value_range.find(value) != std::string::npos;
+    return false;
+  };
+  std::vector<std::string> words;
+  for (int k = 1; k < argc; ++k) {
+    const std::string word = argv[k], next = k + 1 < argc ? argv[k + 1] : "";
+    const bool looks_like_option = next.size() == 2 && next[0] == '-' && std::isalpha(next[1]) != 0;
+    if (looks_like_option && takes(word, next)) {
+      words.push_back(word + "=" + next);
+      ++k;
+    } else {
+      words.push_back(word);
+    }
+  }
+  return words;
+}
+
 void CommandLine::parse(int argc, char** argv) {
   try {
-    app_.parse(argc, argv);
+    std::vector<std::string> words = joined_values(argc, argv);
+    std::reverse(words.begin(), words.end());  // CLI11 takes them off the end
+    app_.parse(words);
   } catch (const CLI::Success& asked_for_help) {
     app_.exit(asked_for_help);
     throw;
@@ -151,8 +175,9 @@ Json CommandLine::result(double seconds, const Json& metrics) const {
   for (const auto* list : input_lists_)
     for (const fs::path& path : *list) add(path);
   for (const fs::path& path : also_read_) add(path);
-  Json result = {{"stage", stage_},  {"version", KILN_VERSION}, {"settings", settings},
-                 {"inputs", inputs}, {"seconds", seconds},      {"peak_memory_bytes", peak_memory_bytes()}, {"warnings", warnings_}};
+  Json result = {{"stage", stage_},      {"version", KILN_VERSION}, {"settings", settings},
+                 {"inputs", inputs},     {"seconds", seconds},      {"peak_memory_bytes", peak_memory_bytes()},
+                 {"warnings", warnings_}};
   result.update(metrics);
   return result;
 }

@@ -61,12 +61,12 @@ class CommandLine {
   /// A line on stderr, unless --quiet.
   void say(const std::string& line) const;
 
-  /// Notes warnings, whole sentences without a full stop, for the result, each once; says on stderr, unless --quiet, those
-  /// that are not among `said`, by an earlier stage.
+  /// Notes warnings, whole sentences without a full stop, for the result, each once; says on stderr, unless --quiet,
+  /// those that are not among `said`, by an earlier stage.
   void warn(const std::vector<std::string>& warnings, const std::vector<std::string>& said = {});
 
-  /// The result: stage, version, settings, inputs' hashes, seconds, peak_memory_bytes, warnings, then `metrics` at the same
-  /// level. `seconds` is the stage's own work, without reading and writing files.
+  /// The result: stage, version, settings, inputs' hashes, seconds, peak_memory_bytes, warnings, then `metrics` at the
+  /// same level. `seconds` is the stage's own work, without reading and writing files.
   Json result(double seconds, const Json& metrics) const;
 
   /// Writes `result` to `<stage>.json` of `outputs`, commits them all, and prints `result` on stdout if --json was
@@ -80,6 +80,10 @@ class CommandLine {
   void finish_without_output(const Json& result) const;
 
  private:
+  /// The command line's words, values that look like options, such as "-z", joined to the option before that takes
+  /// them.
+  std::vector<std::string> joined_values(int argc, char** argv) const;
+
   std::string program_;
   std::string stage_;
   CLI::App app_;

@@ -117,7 +117,8 @@ Seams::Seams(const TriangleMesh& atlas, int width, int height) : atlas_(&atlas),
   if (atlas.uvs.size() != atlas.positions.size()) throw std::invalid_argument("Seams: a mesh with uvs is needed");
   const std::vector<HalfEdge> halves = sorted_half_edges(atlas);
   const auto add = [&](const HalfEdge& a, const HalfEdge& b) {
-    if (is_seam(atlas, a, b) && !is_hard(atlas, a, b)) edges_.push_back({{a.triangle, b.triangle}, {a.corners, b.corners}});
+    if (is_seam(atlas, a, b) && !is_hard(atlas, a, b))
+      edges_.push_back({{a.triangle, b.triangle}, {a.corners, b.corners}});
   };
   for (std::size_t begin = 0, end; begin < halves.size(); begin = end) {
     end = begin + 1;

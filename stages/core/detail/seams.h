@@ -46,8 +46,8 @@ struct SeamMismatch {
 };
 
 /// The seams of an atlas in a texture of `width` x `height` texels: edges between two triangles whose ends have the
-/// same positions (bit for bit, as Draco decodes them) but not the same uvs. Hard edges, on either side of which the mesh
-/// has other normals, are none: what lies on both sides is not to be made equal.
+/// same positions (bit for bit, as Draco decodes them) but not the same uvs. Hard edges, on either side of which the
+/// mesh has other normals, are none: what lies on both sides is not to be made equal.
 class Seams {
  public:
   /// Throws std::invalid_argument for a mesh without uvs.

@@ -91,7 +91,10 @@ void add_import_options(OptionSet& options, ImportSettings& settings) {
                           {"+y", UpAxis::plus_y},
                           {"-y", UpAxis::minus_y},
                           {"+z", UpAxis::plus_z},
-                          {"-z", UpAxis::minus_z}},
+                          {"-z", UpAxis::minus_z},
+                          {"x", UpAxis::plus_x},
+                          {"y", UpAxis::plus_y},
+                          {"z", UpAxis::plus_z}},
                          "The axis of the mesh file that points up; it becomes +Y");
   options.choice<LengthUnit>("unit", settings.unit,
                              {{"none", LengthUnit::none},

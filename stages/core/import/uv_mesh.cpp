@@ -1,6 +1,7 @@
 #include "import/uv_mesh.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <map>
 
@@ -8,6 +9,7 @@
 #include "import/import_mesh.h"
 #include "import/readers.h"
 #include "import/triangulate.h"
+#include "mesh/hard_edges.h"
 
 namespace kiln {
 
@@ -32,20 +34,13 @@ void require_uvs(const std::string& name, const SourceMesh& source) {
 
 /// Vertices without a normal in the file get that of compute_vertex_normals, as if vertices at one place were one.
 void complete_normals(TriangleMesh& mesh, const std::vector<bool>& has_normal) {
-  std::map<std::array<float, 3>, std::uint32_t> at_place;
-  std::vector<std::uint32_t> welded(mesh.positions.size());
-  TriangleMesh whole;
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    const Eigen::Vector3f& p = mesh.positions[v];
-    const auto [found, inserted] = at_place.try_emplace({p.x() + 0.f, p.y() + 0.f, p.z() + 0.f},
-                                                        static_cast<std::uint32_t>(whole.positions.size()));
-    if (inserted) whole.positions.push_back(p);
-    welded[v] = found->second;
-  }
-  for (const Triangle& t : mesh.triangles) whole.triangles.push_back({welded[t[0]], welded[t[1]], welded[t[2]]});
+  if (std::find(has_normal.begin(), has_normal.end(), false) == has_normal.end()) return;
+  TriangleMesh whole = join_at_places(mesh);
   compute_vertex_normals(whole);
-  for (std::size_t v = 0; v < welded.size(); ++v)
-    if (!has_normal[v]) mesh.normals[v] = whole.normals[welded[v]];
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      if (const std::uint32_t v = mesh.triangles[t][k]; !has_normal[v])
+        mesh.normals[v] = whole.normals[whole.triangles[t][k]];
 }
 
 }  // namespace

@@ -66,8 +66,7 @@ Neighbour parse_neighbour(const std::string& text) {
 }
 
 std::vector<PlacedMesh> load_surroundings(const Surroundings& surroundings, const BoundingBox& own,
-                                          const MaterialSettings& material, bool with_albedo,
-                                          const MeshFrame& frame) {
+                                          const MaterialSettings& material, bool with_albedo, const MeshFrame& frame) {
   const Placement asset = parse_placement("place", surroundings.place);
   std::vector<PlacedMesh> placed;
   for (const std::string& text : surroundings.neighbours) {
@@ -88,8 +87,9 @@ std::vector<PlacedMesh> load_surroundings(const Surroundings& surroundings, cons
   const std::vector<double> numbers = parse_numbers("ground", surroundings.ground, -1e6, 1e6);
   Eigen::Vector3d centre = asset.to_scene(frame.to_file(own.centre().cast<double>()));
   centre.y() = numbers[0];
-  const double half_size =
-      numbers.size() > 1 ? numbers[1] : ground_half_size_diagonals * asset.scale * frame.unit() * static_cast<double>(own.diagonal());
+  const double half_size = numbers.size() > 1 ? numbers[1]
+                                              : ground_half_size_diagonals * asset.scale * frame.unit() *
+                                                    static_cast<double>(own.diagonal());
   if (!(half_size > 0))
     throw WrongUsage("ground: found '" + surroundings.ground + "'; expected HEIGHT[,HALF-SIZE], a size above 0");
   PlacedMesh& ground = placed.emplace_back();

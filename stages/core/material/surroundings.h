@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "import/import_settings.h"
 #include "material/load_albedo.h"
 #include "material/material_settings.h"
 #include "material/surroundings_settings.h"
-#include "import/import_settings.h"
 #include "mesh/placement.h"
 #include "mesh/triangle_mesh.h"
 
@@ -22,7 +22,8 @@ struct Neighbour {
 };
 
 /// Reads "FILE[;place=X,Y,Z[,AZIMUTH[,SCALE]]][;albedo=A][;albedo-texture=PICTURE][;albedo-encoding=E]"
-/// and the import options, such as ";up=+z" and ";fill-holes=EDGES", each value as the option of that name takes it. Throws WrongUsage.
+/// and the import options, such as ";up=+z" and ";fill-holes=EDGES", each value as the option of that name takes it.
+/// Throws WrongUsage.
 Neighbour parse_neighbour(const std::string& text);
 
 /// A mesh around an asset, in the asset's object space.

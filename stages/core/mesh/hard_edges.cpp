@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "mesh/mesh_components.h"
 #include "mesh/surface_point.h"
@@ -167,6 +168,22 @@ TriangleMesh split_at_hard_edges(const TriangleMesh& mesh, std::vector<std::uint
     }
   if (sources != nullptr) *sources = std::move(from);
   return split;
+}
+
+TriangleMesh join_at_places(const TriangleMesh& mesh) {
+  std::map<std::array<float, 3>, std::uint32_t> at_place;
+  TriangleMesh joined;
+  joined.frame = mesh.frame;
+  std::vector<std::uint32_t> number;
+  number.reserve(mesh.positions.size());
+  for (const Eigen::Vector3f& p : mesh.positions) {
+    const auto [found, inserted] = at_place.try_emplace({p.x() + 0.f, p.y() + 0.f, p.z() + 0.f},
+                                                        static_cast<std::uint32_t>(joined.positions.size()));
+    if (inserted) joined.positions.push_back(p);
+    number.push_back(found->second);
+  }
+  for (const Triangle& t : mesh.triangles) joined.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
+  return joined;
 }
 
 }  // namespace kiln

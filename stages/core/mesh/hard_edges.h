@@ -39,4 +39,8 @@ void average_corner_normals(TriangleMesh& mesh, double degrees = 0.5);
 TriangleMesh split_at_hard_edges(const TriangleMesh& mesh, std::vector<std::uint32_t>* sources = nullptr,
                                  double degrees = 0.1);
 
+/// A mesh whose vertices at the very same place are one; the triangles keep their order. Normals and what else vertices
+/// have is left out.
+TriangleMesh join_at_places(const TriangleMesh& mesh);
+
 }  // namespace kiln

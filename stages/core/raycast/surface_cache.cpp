@@ -15,7 +15,7 @@ namespace {
 constexpr float crease_cosine = 0.70710678f;  // of 45 degrees
 /// Normals of one vertex that lie nearer than this to each other are one.
 constexpr float shared_normal_cosine = 0.999f;
-constexpr float inset = 0.1f;                 // of the way to the triangle's centre, at creases and borders
+constexpr float inset = 0.1f;  // of the way to the triangle's centre, at creases and borders
 
 /// A triangle of the cut surface: its corners, and where they lie in the triangle that it was cut from.
 struct Piece {
