@@ -113,7 +113,7 @@ std::vector<Eigen::Vector3f> ObjColors::finish(const std::vector<bool>& is_used,
   std::size_t missing = 0;
   for (std::size_t k = 0; k < is_used.size(); ++k) missing += is_used[k] && !has_color_[k];
   if (missing > 0)
-    warnings.push_back((missing == 1 ? "1 vertex" : std::to_string(missing) + " vertices") +
+    warnings.push_back(counted(missing, "vertex", "vertices") +
                        " without a colour among others that have one, taken for white");
   return std::move(colors_);
 }

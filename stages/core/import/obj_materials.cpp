@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "base/errors.h"
-#include "base/outputs.h"
 #include "import/mtl_reader.h"
 #include "import/named_file.h"
 #include "import/wavefront_lines.h"
@@ -41,7 +40,6 @@ class Libraries {
 
   /// Reads the libraries that a line names: one whose name may have blanks, or several.
   void read(const std::string& names, std::uint32_t line) {
-    const fs::path folder = folder_of(obj_file_);
     for (const std::string_view whole : {std::string_view(names), name_without_comment(names)})
       if (const auto file = find_named_file(obj_file_.parent_path(), unquoted(whole))) return read_file(*file);
     for (const std::string& name : split_names(name_without_comment(names))) {
@@ -130,7 +128,9 @@ std::int32_t ObjMaterials::use(std::string_view name) {
 }
 
 void ObjMaterials::add_library(std::string_view names, std::uint32_t line) {
-  if (!trimmed(names).empty()) libraries_.push_back({std::string(trimmed(names)), line});
+  names = trimmed(names);
+  const bool is_again = !libraries_.empty() && libraries_.back().names == names;
+  if (!names.empty() && !is_again) libraries_.push_back({std::string(names), line});
 }
 
 void ObjMaterials::finish(const fs::path& file, SourceMesh& mesh) const {

@@ -69,14 +69,14 @@ void ObjVertices::finish(SourceMesh& mesh) {
       if (!alpha) weigh(seven.rest[0], mesh.places[seven.index]);
       colors_.set(seven.index, Eigen::Vector3d(seven.rest.segment<3>(alpha ? 0 : 1)).cast<float>());
     }
-    mesh.warnings.push_back(std::to_string(sevens.size()) + " vertices of 7 numbers, read as " +
+    mesh.warnings.push_back(counted(sevens.size(), "vertex", "vertices") + " of 7 numbers, read as " +
                             (alpha ? "x y z r g b a, of which a is not used" : "x y z w r g b"));
   }
   if (weighed_ > 0)
-    mesh.warnings.push_back(std::to_string(weighed_) + " vertices with a weight w other than 1, divided by it");
+    mesh.warnings.push_back(counted(weighed_, "vertex", "vertices") + " with a weight w other than 1, divided by it");
   if (odd_ > 0)
-    mesh.warnings.push_back(std::to_string(odd_) +
-                            " vertices of 5, 8 or more numbers, of which the first three are used");
+    mesh.warnings.push_back(counted(odd_, "vertex", "vertices") +
+                            " of 5, 8 or more numbers, of which the first three are used");
 }
 
 double ObjVertices::precision(const std::vector<Eigen::Vector3d>& places, const std::vector<bool>& is_used) const {

@@ -90,8 +90,8 @@ std::string shown(std::string_view text) {
   return "'" + result + (text.size() > longest ? "...'" : "'");
 }
 
-std::string counted(std::size_t count, const std::string& what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+std::string counted(std::size_t count, const std::string& what, const std::string& plural) {
+  return std::to_string(count) + " " + (count == 1 ? what : plural.empty() ? what + "s" : plural);
 }
 
 }  // namespace kiln
