@@ -83,17 +83,12 @@ std::string read_text(const fs::path& file) {
   if (fs::is_directory(file)) throw fail("is a folder");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw fail(std::string("cannot be opened (") + std::strerror(errno) + ")");
-  constexpr std::size_t block = std::size_t{1} << 20;
-  std::string text;
-  std::error_code error;
-  if (const std::uintmax_t size = fs::file_size(file, error); !error) text.reserve(size + block);
-  for (std::size_t count = block; count == block;) {
-    const std::size_t before = text.size();
-    text.resize(before + block);
-    stream.read(text.data() + before, block);
-    count = static_cast<std::size_t>(stream.gcount());
-    text.resize(before + count);
-  }
+  std::error_code no_size;  // a pipe has none
+  const auto size = fs::file_size(file, no_size);
+  std::string text(no_size ? 0 : size, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  if (stream) text.append(std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>());
   if (stream.bad()) throw fail("cannot be read to its end");
   return text;
 }

@@ -57,7 +57,8 @@ class TextRows : public PlyRows {
     while (row_ < element_->count) next(row);
   }
 
-  void add_warnings(std::vector<std::string>& warnings) const override {
+  void add_warnings(std::vector<std::string>& warnings) override {
+    words_.to_word();
     if (long_lines_ == 0) return;
     warnings.push_back(counted(long_lines_, "line has", "lines have") +
                        " more values than the header says, which are not used; the first is line " +
@@ -205,7 +206,7 @@ class BinaryRows : public PlyRows {
       skip_bytes(row_size);
   }
 
-  void add_warnings(std::vector<std::string>&) const override {}
+  void add_warnings(std::vector<std::string>&) override {}
 
  private:
   void skip_bytes(std::size_t row_size) {
@@ -255,7 +256,7 @@ std::uint64_t PlyRows::most_rows(const PlyElement& element) const {
   return std::min(element.count, (rest().size() + 1) / std::max<std::size_t>(row_size, 1));
 }
 
-void PlyRows::finish(std::vector<std::string>& warnings) const {
+void PlyRows::finish(std::vector<std::string>& warnings) {
   add_warnings(warnings);
   if (rest().find_first_not_of(" \t\r\n\f\v") != std::string_view::npos)
     warnings.push_back(counted(rest().size(), "byte follows", "bytes follow") + " the last element and are not used");

@@ -47,14 +47,15 @@ class PlyRows {
   virtual double text_precision(double largest) const = 0;
 
   /// Says in `warnings` what stands behind the last row, and what was passed by.
-  void finish(std::vector<std::string>& warnings) const;
+  void finish(std::vector<std::string>& warnings);
 
  protected:
   explicit PlyRows(std::string file) : file_(std::move(file)) {}
 
   virtual std::string_view rest() const = 0;
   virtual void skip_rows() = 0;
-  virtual void add_warnings(std::vector<std::string>& warnings) const = 0;
+  /// Says what was passed by, and moves to what follows the last row.
+  virtual void add_warnings(std::vector<std::string>& warnings) = 0;
 
   /// How many bytes a value takes at least.
   virtual std::size_t smallest_size(PlyType type) const = 0;
