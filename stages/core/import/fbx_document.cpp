@@ -114,6 +114,7 @@ class BinaryParser {
         value.bytes = take_bytes(take<std::uint32_t>());
         return value;
       case 'b':
+      case 'c':
       case 'i':
       case 'l':
       case 'f':
@@ -222,6 +223,8 @@ void FbxDocument::parse_binary() {
 
 void FbxDocument::parse_text() {
   const std::string remedy = "export it as FBX 2011 or later";
+  if (bytes_.starts_with("Kaydara FBX Binary"))
+    fail("is a binary FBX file with a damaged header, as of one copied as text", "a whole FBX file", "copy it again");
   const std::size_t begin = bytes_.find_first_not_of(" \t\r\n");
   if (begin == std::string::npos || (bytes_[begin] != ';' && bytes_.find("FBXHeaderExtension") == std::string::npos))
     fail("is no FBX file", "one, binary or as text", remedy);

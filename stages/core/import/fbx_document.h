@@ -11,8 +11,8 @@ namespace kiln {
 
 /// One value of a record of an FBX file. Refers to the file's bytes.
 struct FbxValue {
-  /// 'L' whole number, 'D' number, 'S' string, 'R' bytes, 'W' bare word of a text file, and arrays: 'b' bytes, 'i' and
-  /// 'l' whole numbers of 4 and 8 bytes, 'f' and 'd' numbers of 4 and 8 bytes, 'a' of a text file.
+  /// 'L' whole number, 'D' number, 'S' string, 'R' bytes, 'W' bare word of a text file, and arrays: 'b' and 'c' bytes,
+  /// 'i' and 'l' whole numbers of 4 and 8 bytes, 'f' and 'd' numbers of 4 and 8 bytes, 'a' of a text file.
   char type = 'L';
   std::int64_t whole = 0;
   double number = 0;
@@ -20,7 +20,7 @@ struct FbxValue {
   std::uint32_t length = 0;  ///< of an array: how many numbers
   bool is_packed = false;    ///< an array by zlib
 
-  bool is_array() const { return std::string_view("bilfda").find(type) != std::string_view::npos; }
+  bool is_array() const { return std::string_view("bcilfda").find(type) != std::string_view::npos; }
 };
 
 /// A record: a name, values and records beneath it.

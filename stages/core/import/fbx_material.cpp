@@ -24,8 +24,8 @@ constexpr std::array picture_properties = {"DiffuseColor",
                                            "Maya|baseColor",
                                            "Maya|base_color"};
 
-/// The file of a path that another machine may have written: as given, from `folder`, or by its bare name there. The
-/// second where none exists.
+/// The file of a path that another machine may have written: as given, from `folder`, or by its bare name there. Where
+/// none exists the second, or the third of a path with a drive.
 fs::path find_file(const fs::path& folder, std::string given, std::string relative) {
   for (std::string* path : {&given, &relative}) std::replace(path->begin(), path->end(), '\\', '/');
   if (relative.empty()) relative = given;
@@ -33,25 +33,33 @@ fs::path find_file(const fs::path& folder, std::string given, std::string relati
   const auto exists = [&error](const fs::path& file) { return fs::is_regular_file(file, error); };
   if (!given.empty() && fs::path(given).is_absolute() && exists(given)) return given;
   if (exists(folder / relative)) return folder / relative;
+  const auto bare = [&folder](const std::string& path) { return folder / path.substr(path.find_last_of('/') + 1); };
   for (const std::string& path : {relative, given})
-    if (const fs::path bare = folder / path.substr(path.find_last_of('/') + 1); !path.empty() && exists(bare))
-      return bare;
-  return folder / relative;
+    if (!path.empty() && exists(bare(path))) return bare(path);
+  return relative.find(':') == std::string::npos ? folder / relative : bare(relative);
 }
 
 /// The bytes that a video holds; of text files they are strings of base64.
 std::vector<std::uint8_t> embedded_bytes(const FbxRecord& video) {
   const FbxRecord* content = video.child("Content");
   if (content == nullptr) return {};
+  std::vector<std::uint8_t> bytes;
   std::string text;
+  // A string may go on with the one before, unless that one is padded.
+  const auto decode = [&]() {
+    const auto part = base64_decoded(text).value_or(std::vector<std::uint8_t>());
+    bytes.insert(bytes.end(), part.begin(), part.end());
+    text.clear();
+  };
   for (const FbxValue& value : content->values) {
     if (value.type == 'R') return {value.bytes.begin(), value.bytes.end()};
     if (value.type != 'S') continue;
     std::copy_if(value.bytes.begin(), value.bytes.end(), std::back_inserter(text),
                  [](char c) { return c != '\n' && c != '\r' && c != ' '; });
-    while (!text.empty() && text.back() == '=') text.pop_back();
+    if (text.ends_with('=')) decode();
   }
-  return base64_decoded(text).value_or(std::vector<std::uint8_t>());
+  decode();
+  return bytes;
 }
 
 std::string text_of(const FbxRecord& record, std::string_view child) {

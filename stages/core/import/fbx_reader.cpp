@@ -116,7 +116,8 @@ class FbxReader {
       skins_ += object.kind_within() == "Skin";
       blend_shapes_ += object.kind_within() == "BlendShape";
     }
-    animations_ += object.kind() == "AnimationStack" && !objects_.children(object.id).empty();
+    animations_ += object.kind() == "AnimationStack";
+    has_curves_ = has_curves_ || object.kind() == "AnimationCurve";
     curved_ += object.kind() == "Geometry" && object.kind_within() != "Mesh" && object.kind_within() != "Shape";
   }
 
@@ -244,7 +245,7 @@ class FbxReader {
     add(further_uv_sets_, "further set", " of texture coordinates, not used");
     add(skins_, "skin", ", taken at rest: vertices stand as the mesh itself has them");
     add(blend_shapes_, "blend shape", ", taken at rest: not used");
-    add(animations_, "animation", ", not used: models stand as the file has them");
+    add(has_curves_ ? animations_ : 0, "animation", ", not used: models stand as the file has them");
     add(uninherited_, "model", " that should not inherit a scaling wholly, and does");
   }
 
@@ -257,6 +258,7 @@ class FbxReader {
   std::map<std::int64_t, FbxGeometry> geometries_;
   std::size_t lines_ = 0, curved_ = 0, further_uv_sets_ = 0, skins_ = 0, blend_shapes_ = 0, animations_ = 0,
               uninherited_ = 0;
+  bool has_curves_ = false;  // of animations
 };
 
 }  // namespace
