@@ -89,4 +89,8 @@ int significant_digits(std::string_view word) {
   return digits;
 }
 
+std::string counted(std::uint64_t count, const std::string& what, const std::string& plural) {
+  return std::to_string(count) + " " + (count == 1 ? what : plural.empty() ? what + "s" : plural);
+}
+
 }  // namespace kiln

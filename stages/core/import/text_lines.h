@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace kiln {
@@ -46,5 +47,8 @@ std::optional<std::int64_t> parse_integer(std::string_view word);
 
 /// How many significant decimal digits a number is written with: 4 for "-0.01234" and for "1.234e5".
 int significant_digits(std::string_view word);
+
+/// A count and what is counted: "1 face", "12 faces". `plural` is needed where it is not the word with an s.
+std::string counted(std::uint64_t count, const std::string& what, const std::string& plural = "");
 
 }  // namespace kiln

@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "import/text_lines.h"
+
 namespace kiln {
 
 /// The words of a mesh file's text, one after another, over the ends of lines or line by line. Lines end with a line
@@ -55,8 +57,5 @@ std::string in_quotes(std::string_view word);
 
 /// Whether two words are the same but for capital letters, of ASCII.
 bool same_word(std::string_view a, std::string_view b);
-
-/// A count and what is counted: "1 face", "12 faces".
-std::string counted(std::uint64_t count, const std::string& one, const std::string& many);
 
 }  // namespace kiln

@@ -90,8 +90,4 @@ std::string shown(std::string_view text) {
   return "'" + result + (text.size() > longest ? "...'" : "'");
 }
 
-std::string counted(std::size_t count, const std::string& what, const std::string& plural) {
-  return std::to_string(count) + " " + (count == 1 ? what : plural.empty() ? what + "s" : plural);
-}
-
 }  // namespace kiln

@@ -51,7 +51,4 @@ std::string_view next_name(std::string_view& rest);
 /// "'TEXT'" for messages, shortened where it is long, with a question mark for each byte that cannot be shown.
 std::string shown(std::string_view text);
 
-/// "1 face", "2 faces", "2 vertices" where the plural is given.
-std::string counted(std::size_t count, const std::string& what, const std::string& plural = "");
-
 }  // namespace kiln
