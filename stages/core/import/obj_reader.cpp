@@ -106,7 +106,7 @@ class ObjReader {
     const std::size_t count = read_numbers(rest, numbers, "a coordinate", &ObjVertices::see_digits);
     if (count < 3) refuse_few(count, "a vertex", "x, y and z");
     if (mesh_.places.size() == SourceMesh::none) refuse("more than 4294967295 vertices", "fewer", "cut the mesh");
-    vertices_.add(std::span(numbers).first(count), mesh_);
+    vertices_.add(std::span(numbers).first(std::min(count, numbers.size())), mesh_);
   }
 
   void read_uv(std::string_view rest) {
