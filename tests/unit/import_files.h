@@ -26,6 +26,7 @@ class ImportFiles {
 
   std::filesystem::path write(const std::string& bytes) const {
     const std::filesystem::path file = scratch_.folder() / name_;
+    std::filesystem::remove(file);  // ext4 waits for the disk where a file is cut and written again
     std::ofstream(file, std::ios::binary) << bytes;
     return file;
   }

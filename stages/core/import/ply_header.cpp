@@ -39,22 +39,26 @@ class HeaderReader {
     check_first_line();
     std::string_view line;
     for (;;) {
-      if (!lines_.next(line))
-        throw BadInput(file_, "is truncated in its header, which has no line 'end_header'", "a whole PLY file", remedy);
+      if (!lines_.next(line)) throw truncated();
       std::string_view words = line;
       const std::string_view keyword = next_word(words);
       if (same_word(keyword, "end_header")) break;
       read_line(keyword, words);
     }
     if (!has_format_)
-      throw fail("the header has no line 'format'",
-                 "one such as 'format ascii 1.0' or 'format binary_little_endian 1.0'");
+      throw BadInput(file_, "the header has no line 'format'",
+                     "one such as 'format ascii 1.0' or 'format binary_little_endian 1.0'", remedy);
     find_data();
     return std::move(header_);
   }
 
  private:
+  BadInput truncated() const {
+    return BadInput(file_, "is truncated in its header, which has no line 'end_header'", "a whole PLY file", remedy);
+  }
+
   BadInput fail(const std::string& found, const std::string& expected) const {
+    if (lines_.rest().empty() && lines_.number() > 1) return truncated();
     return BadInput(file_ + ":" + std::to_string(lines_.number()), found, expected, remedy);
   }
 
