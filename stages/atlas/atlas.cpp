@@ -80,6 +80,7 @@ Packing pack(const std::vector<Chart>& charts, const AtlasSettings& settings, co
 /// The mesh with vertices split at seams, triangles in their old order.
 TriangleMesh assemble(const TriangleMesh& low, const std::vector<Chart>& charts, const Packing& packing) {
   TriangleMesh atlas;
+  atlas.frame = low.frame;
   atlas.triangles.assign(low.triangles.size(), Triangle{no_index, no_index, no_index});
   std::vector<std::uint32_t> some_copy(low.positions.size(), no_index);
   const Eigen::Vector2d size(packing.width, packing.height);

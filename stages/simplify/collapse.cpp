@@ -28,16 +28,15 @@ using Few = boost::container::small_vector<T, 32>;
 
 /// How far from the surface that it stands for a triangle may be, and how slender. The cost does not forbid a few
 /// needles that cut through the surface; refusing them makes the largest error half as large, at the same mean. Where
-/// the limits leave nothing to collapse, the next pass has wider ones.
+/// the limits leave nothing to collapse, the next pass has wider ones; past the last, what is left stays.
 struct Limits {
   double distance;     ///< from a triangle's middle to the input's surface, in edges of a triangle of mean area
   double slenderness;  ///< height over the longest edge; a triangle that was worse may stay as bad
-  double line;    ///< farthest that a vertex of the input's borders and creases may be from them, in the same edges
-  double facing;  ///< smallest cosine between a triangle's normal and that of the input where it is nearest
+  double line;         ///< farthest that a vertex of the input's feature edges may be from them, in the same edges
+  double facing;       ///< smallest cosine between a triangle's normal and that of the input where it is nearest
 };
-constexpr double unlimited = 1e30;
-constexpr Limits passes[] = {{0.15, 0.05, 0.05, 0.1}, {0.15, 0.05, 0.15, 0.1},      {0.3, 0.02, 0.3, 0.1},
-                             {0.6, 0, 0.6, 0},        {unlimited, 0, unlimited, 0}, {unlimited, 0, unlimited, -1}};
+constexpr Limits passes[] = {{0.15, 0.05, 0.05, 0.1}, {0.15, 0.05, 0.15, 0.1}, {0.3, 0.02, 0.3, 0.1}, {0.4, 0, 0.4, 0}};
+constexpr double close_distance = 0.15;  ///< of the passes that hurt nothing
 
 /// What triangles are compared with has no more than these, or those where the comparison begins: a hierarchy of a
 /// large input would take longer than the collapses.
@@ -81,7 +80,9 @@ class Collapser {
                       [&](std::size_t i) { update_plane(static_cast<std::uint32_t>(i)); });
     versions_.resize(vertices, 0);
     if (!lines.empty()) line_points_.resize(vertices);
+    points_.resize(vertices);
     hints_.resize(vertices, 0);
+    thinnest_ = thinnest_heights(sequence.start, frame_.diagonal);
   }
 
   void run() {
@@ -93,6 +94,7 @@ class Collapser {
         run_pass();
         if (before - mesh_.faces() <= before / 100) break;
       }
+      if (limits.distance <= close_distance) sequence_.close_count = sequence_.collapses.size();
     }
   }
 
@@ -225,14 +227,15 @@ class Collapser {
         before[k] = positions_[t[k]];
         after[k] = t[k] == moving ? position : before[k];
       }
-      kept = keeps_shape({before[0], before[1], before[2]}, {after[0], after[1], after[2]}, limits_.slenderness);
+      kept = keeps_shape({before[0], before[1], before[2]}, {after[0], after[1], after[2]},
+                         {limits_.slenderness, thinnest_[a]}, [&] { return normal_around(a, b); });
     });
     if (!kept) return false;
     const CollapsingMesh::Edge edge = mesh_.edge(a, b);
     if (!edge.keeps_topology) return false;
     if (edge.line && !keeps_line(a, b, position)) return false;
-    if (!surface_ || limits_.facing < 0) return true;
-    if (!is_close(position, a)) return false;
+    if (!surface_) return true;
+    if (!is_close(position, a) || !keeps_points(a, b, position)) return false;
     for_each_moved(a, b, [&](std::uint32_t, const Triangle& t, std::uint32_t moving) {
       if (!kept) return;
       std::array<Vector, 3> after;
@@ -240,6 +243,14 @@ class Collapser {
       kept = keeps_place(after, moving);
     });
     return kept;
+  }
+
+  /// Twice the sum of the triangles' areas, as a vector.
+  Vector normal_around(std::uint32_t a, std::uint32_t b) const {
+    Vector sum = Vector::Zero();
+    for (const std::uint32_t end : {a, b})
+      for (std::uint32_t triangle : mesh_.triangles_of(end)) sum += planes_[triangle].normal;
+    return sum;
   }
 
   /// Whether the vertices that the line once had stay close to it, from the edge before the one that is collapsed to
@@ -270,23 +281,82 @@ class Collapser {
     return true;
   }
 
+  /// Whether the places of the vertices that became these two stay as close to the surface as it does to the input.
+  /// What lies on the input may still leave much of it bare: the rim of a thin wall wears off at next to no cost.
+  bool keeps_points(std::uint32_t a, std::uint32_t b, const Vector& position) const {
+    Few<std::array<Vector, 3>> fan;
+    Few<std::uint32_t> ring;
+    for_each_moved(a, b, [&](std::uint32_t, const Triangle& t, std::uint32_t moving) {
+      std::array<Vector, 3>& corners = fan.emplace_back();
+      for (int k = 0; k < 3; ++k) {
+        corners[k] = t[k] == moving ? position : positions_[t[k]];
+        if (t[k] != moving) ring.push_back(t[k]);
+      }
+    });
+    const double limit = std::pow(limits_.distance * mean_edge(), 2);
+    const auto is_near = [&](const Vector& p, const Vector& q0, const Vector& q1, const Vector& q2) {
+      return (nearest_on_triangle(p, q0, q1, q2) - p).squaredNorm() <= limit;
+    };
+    const auto is_kept = [&](const Vector& point) {
+      for (const auto& [q0, q1, q2] : fan)
+        if (is_near(point, q0, q1, q2)) return true;
+      // By now it may be the neighbours' that are near.
+      for (std::uint32_t neighbour : ring)
+        for (std::uint32_t triangle : mesh_.triangles_of(neighbour)) {
+          const Triangle& t = mesh_.triangles()[triangle];
+          const bool moves = std::any_of(t.begin(), t.end(), [&](std::uint32_t v) { return v == a || v == b; });
+          if (!moves && is_near(point, positions_[t[0]], positions_[t[1]], positions_[t[2]])) return true;
+        }
+      return false;
+    };
+    for (std::uint32_t end : {a, b})
+      if (!is_kept(positions_[end]) || !std::all_of(points_[end].begin(), points_[end].end(), is_kept)) return false;
+    return true;
+  }
+
+  /// Notes the places of what becomes `kept`; of many, those that are farthest from where it goes.
+  void keep_points(std::uint32_t removed, std::uint32_t kept, const Vector& position) {
+    std::vector<Vector>&points = points_[kept], &more = points_[removed];
+    points.insert(points.end(), more.begin(), more.end());
+    points.push_back(positions_[kept]);
+    points.push_back(positions_[removed]);
+    more = {};
+    constexpr std::size_t most_points = 32;
+    if (points.size() <= 2 * most_points) return;
+    std::stable_sort(points.begin(), points.end(), [&](const Vector& l, const Vector& r) {
+      return (l - position).squaredNorm() > (r - position).squaredNorm();
+    });
+    points.resize(most_points);
+  }
+
+  /// Whether a triangle is close to a part of the input that faces as it does. On a thin wall the other side is as
+  /// close, or closer.
   bool keeps_place(const std::array<Vector, 3>& corners, std::uint32_t moving) {
-    const Vector middle = (corners[0] + corners[1] + corners[2]) / 3;
-    const NearestSurface::Hit hit = surface_->nearest(frame_.to_object(middle), hints_[moving]);
-    hints_[moving] = hit.hint;
     const Vector normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-    if (surface_->normal(hit).dot(normal) < smallest_facing() * normal.norm()) return false;
-    return is_close(hit);
+    const ShapeLimits thin{0, thinnest_[moving]};
+    if (is_thin({corners[0], corners[1], corners[2]}, thin)) return true;
+    const auto is_kept = [&](const Vector& point) {
+      const Vector at = frame_.to_object(point);
+      const NearestSurface::Hit hit = surface_->nearest(at, hints_[moving]);
+      hints_[moving] = hit.hint;
+      if (!is_close(hit)) return false;
+      if (surface_->normal(hit).dot(normal) >= smallest_facing() * normal.norm()) return true;
+      return surface_->nearest_facing(at, {normal, smallest_facing(), distance_limit()}, hit.hint).has_value();
+    };
+    if (!is_kept((corners[0] + corners[1] + corners[2]) / 3)) return false;
+    if (limits_.distance <= close_distance) return true;
+    // Where much is allowed, a middle says too little of a triangle.
+    for (int k = 0; k < 3; ++k)
+      if (!is_kept((corners[k] + corners[(k + 1) % 3]) / 2)) return false;
+    return true;
   }
   /// A surface that is simplified itself faces a little elsewhere than the input.
   double smallest_facing() const { return &compared_ == &sequence_.start ? limits_.facing : limits_.facing + 0.25; }
+  double distance_limit() const { return limits_.distance * mean_edge() * frame_.diagonal; }
   bool is_close(const Vector& position, std::uint32_t moving) {
     return is_close(surface_->nearest(frame_.to_object(position), hints_[moving]));
   }
-  bool is_close(const NearestSurface::Hit& hit) const {
-    const double limit = limits_.distance * mean_edge() * frame_.diagonal;
-    return hit.squared_distance <= limit * limit;
-  }
+  bool is_close(const NearestSurface::Hit& hit) const { return hit.squared_distance <= std::pow(distance_limit(), 2); }
 
   // Passes.
 
@@ -359,6 +429,7 @@ class Collapser {
       points.push_back(positions_[b]);
       more = {};
     }
+    keep_points(removed, kept, position);
     mesh_.collapse(removed, kept);
     positions_[kept] = position;
     ++versions_[kept];
@@ -387,8 +458,10 @@ class Collapser {
   std::vector<Vector> positions_;  ///< in the frame
   std::vector<TrianglePlane> planes_;
   std::vector<std::uint32_t> versions_;
+  std::vector<std::vector<Vector>> points_;       ///< by vertex: where those were that became it
   std::vector<std::vector<Vector>> line_points_;  ///< by vertex in a line: those that became it
   std::vector<std::uint32_t> hints_;
+  std::vector<float> thinnest_;  ///< by vertex (thinnest_heights)
   std::optional<NearestSurface> surface_;
   Limits limits_ = passes[0];
   int events_ = 0;
@@ -408,6 +481,7 @@ CollapseSequence collapse_edges_in_two_steps(TriangleMesh mesh, int quick_faces,
   std::vector<VertexPair> lines = find_feature_edges(first.start, settings.crease_degrees, settings.feature_edges);
   std::vector<VertexWeight> weights = to_vertex_weights(first.start, settings.vertex_weights);
   collapse_quickly(first, lines, weights, quick_faces, [&](double fraction) { progress(0.2 * fraction); });
+  first.close_count = first.collapses.size();
   if (first.collapses.empty()) {
     Collapser(first, lines, std::move(weights), settings, first.start, progress).run();
     return first;
@@ -429,9 +503,11 @@ CollapseSequence collapse_edges_in_two_steps(TriangleMesh mesh, int quick_faces,
     weights.resize(origins.size());
   }
   const bool compares = settings.compared_faces > 0;
+  const int compared_from = std::min(settings.compared_faces, second.faces_after(0));
   const TriangleMesh compared =
-      compares ? first.after(first.count_for(std::max(settings.compared_faces, most_compared_faces))) : TriangleMesh();
+      compares ? first.after(first.count_for(std::max(compared_from, most_compared_faces))) : TriangleMesh();
   Collapser(second, lines, std::move(weights), settings, compared, progress).run();
+  first.close_count = first.collapses.size() + second.close_count;
   for (Collapse collapse : second.collapses) {
     collapse.removed = origins[collapse.removed];
     collapse.kept = origins[collapse.kept];

@@ -23,6 +23,7 @@ struct Collapse {
 struct CollapseSequence {
   TriangleMesh start;
   std::vector<Collapse> collapses;
+  std::size_t close_count = 0;  ///< so many kept within the closest limits; the rest had wider ones
 
   /// Triangles after the first `count` collapses.
   int faces_after(std::size_t count) const;
@@ -53,11 +54,10 @@ struct CollapseSettings {
 };
 
 /// Collapses edges of an oriented manifold, cheapest first, until at most settings.faces triangles are left or no
-/// collapse is left that keeps the topology, folds nothing over and leaves no triangle too thin for a Draco file of 16
-/// bits. Feature edges (borders, creases and those given) are collapsed along their lines only; where these branch or
-/// end, the vertex stays.
-/// Lindstrom and Turk, "Fast and memory efficient polygonal simplification" (1998). Costs are computed when they are
-/// needed: an edge's is renewed when it is next in the queue.
+/// collapse is left that keeps the topology, folds nothing over, stays near the input and leaves no triangle too thin
+/// for the file. Feature edges (borders, creases and those given) are collapsed along their lines only; where these
+/// branch or end, the vertex stays. Lindstrom and Turk, "Fast and memory efficient polygonal simplification" (1998).
+/// Costs are computed when they are needed: an edge's is renewed when it is next in the queue.
 CollapseSequence collapse_edges(TriangleMesh mesh, const CollapseSettings& settings,
                                 const ProgressFunction& progress = no_progress);
 

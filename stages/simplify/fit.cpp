@@ -98,6 +98,16 @@ int sample_count(const TriangleMesh& low, const TriangleMesh& high, const FitSet
       std::clamp<std::size_t>(wanted, 5'000, std::max<std::size_t>(100'000, 10 * low.triangles.size())));
 }
 
+/// As long as twice the areas.
+std::vector<Vector> triangle_normals(const TriangleMesh& mesh) {
+  std::vector<Vector> normals;
+  for (const Triangle& t : mesh.triangles) {
+    const Vector a = mesh.positions[t[0]].cast<double>();
+    normals.push_back((mesh.positions[t[1]].cast<double>() - a).cross(mesh.positions[t[2]].cast<double>() - a));
+  }
+  return normals;
+}
+
 class Fit {
  public:
   Fit(const TriangleMesh& low, const TriangleMesh& high, std::span<const std::uint8_t> is_fixed,
@@ -107,23 +117,32 @@ class Fit {
         frame_(high),
         high_(in_frame(high, frame_)),
         surface_(high_),
-        is_fixed_(is_fixed) {
+        is_fixed_(is_fixed),
+        thinnest_(thinnest_heights(low, frame_.diagonal)) {
     for (const Eigen::Vector3f& p : low.positions) positions_.push_back(frame_.from_object(p));
     triangles_ = low.triangles;
     // The samples of the high mesh: points between its vertices, and these, or, of very many, some.
+    const std::vector<Vector> normals = triangle_normals(high_);
     for (const SurfacePoint& point : spread(high_, sample_count_)) {
+      sample_normals_.push_back(normals[point.triangle]);
       Vector p = Vector::Zero();
       for (int k = 0; k < 3; ++k)
         p += point.weights[k] * high_.positions[high_.triangles[point.triangle][k]].cast<double>();
       samples_.push_back(p);
     }
-    std::vector<bool> used(high_.positions.size());
-    for (const Triangle& t : high_.triangles)
-      for (std::uint32_t vertex : t) used[vertex] = true;
-    const std::size_t step = 1 + used.size() / (2 * static_cast<std::size_t>(sample_count_));
-    for (std::size_t i = 0; i < used.size(); i += step)
-      if (used[i]) samples_.push_back(high_.positions[i].cast<double>());
+    std::vector<Vector> vertex_normals(high_.positions.size(), Vector::Zero());
+    for (std::size_t i = 0; i < high_.triangles.size(); ++i)
+      for (std::uint32_t vertex : high_.triangles[i]) vertex_normals[vertex] += normals[i];
+    const std::size_t step = 1 + vertex_normals.size() / (2 * static_cast<std::size_t>(sample_count_));
+    for (std::size_t i = 0; i < vertex_normals.size(); i += step) {
+      if (!(vertex_normals[i].squaredNorm() > 0)) continue;
+      samples_.push_back(high_.positions[i].cast<double>());
+      sample_normals_.push_back(vertex_normals[i]);
+    }
     sample_hints_.resize(samples_.size(), 0);
+    const double mean_area =
+        surface_area(low) / (frame_.diagonal * frame_.diagonal) / static_cast<double>(triangles_.size());
+    reach_ = 0.5 * std::sqrt(mean_area * 4 / std::sqrt(3.0));
   }
 
   TriangleMesh run(const TriangleMesh& low, const ProgressFunction& progress) {
@@ -169,6 +188,15 @@ class Fit {
   }
   TriangleShape shape_of(const Triangle& t) const { return {positions_[t[0]], positions_[t[1]], positions_[t[2]]}; }
 
+  /// The nearest point that faces as `normal` does, or, where there is none within reach, the nearest. On a wall that
+  /// is thinner than the error, the nearest may be of the other side.
+  NearestSurface::Hit nearest(const NearestSurface& surface, const Vector& point, const Vector& normal,
+                              std::uint32_t hint) const {
+    const NearestSurface::Hit hit = surface.nearest(point, hint);
+    if (surface.normal(hit).dot(normal) >= 0) return hit;
+    return surface.nearest_facing(point, {normal, 0, std::sqrt(hit.squared_distance) + reach_}, hit.hint).value_or(hit);
+  }
+
   /// Each sample of either surface with the nearest point of the other.
   void pair_up() {
     const TriangleMesh low = low_mesh();
@@ -181,7 +209,7 @@ class Fit {
       });
     };
     in_chunks(samples_.size(), [&](std::size_t i) {
-      const NearestSurface::Hit hit = low_surface.nearest(samples_[i], sample_hints_[i]);
+      const NearestSurface::Hit hit = nearest(low_surface, samples_[i], sample_normals_[i], sample_hints_[i]);
       sample_hints_[i] = hit.hint;
       const Triangle& t = triangles_[hit.triangle];
       Pair& pair = from_high_[i];
@@ -204,13 +232,14 @@ class Fit {
           for (const double at : {0.25, 0.5, 0.75})
             low_samples_.push_back({i, (1 - at) * Vector::Unit(k) + at * Vector::Unit((k + 1) % 3)});
       }
+    const std::vector<Vector> normals = triangle_normals(low);
     from_low_.resize(low_samples_.size());
     low_hints_.resize(low_samples_.size(), 0);
     in_chunks(from_low_.size(), [&](std::size_t i) {
       Pair& pair = from_low_[i];
       pair.low = low_samples_[i];
       const Vector point = point_of(pair.low);
-      const NearestSurface::Hit hit = surface_.nearest(point, low_hints_[i]);
+      const NearestSurface::Hit hit = nearest(surface_, point, normals[pair.low.triangle], low_hints_[i]);
       low_hints_[i] = hit.hint;
       pair.high = hit.point;
       pair.distance = std::sqrt(hit.squared_distance);
@@ -322,13 +351,16 @@ class Fit {
 
   bool may_become(const TriangleShape& before, const Triangle& t) const {
     const TriangleShape after = shape_of(t);
-    if (!keeps_shape(before, after, smallest_slenderness)) return false;
-    return faces_outwards(t, after);
+    const ShapeLimits limits{smallest_slenderness, thinnest_[t[0]]};
+    if (!keeps_shape(before, after, limits, [&] { return before.normal; })) return false;
+    return is_thin(after, limits) || faces_outwards(t, after);
   }
   bool faces_outwards(const Triangle& t, const TriangleShape& shape) const {
     const Vector middle = (positions_[t[0]] + positions_[t[1]] + positions_[t[2]]) / 3;
     const NearestSurface::Hit hit = surface_.nearest(middle, low_hints_.empty() ? 0 : low_hints_[0]);
-    return surface_.normal(hit).dot(shape.normal) >= 0.1 * shape.normal.norm();
+    if (surface_.normal(hit).dot(shape.normal) >= smallest_facing * shape.normal.norm()) return true;
+    const double within = std::sqrt(hit.squared_distance) + 0.5 * reach_;
+    return surface_.nearest_facing(middle, {shape.normal, smallest_facing, within}, hit.hint).has_value();
   }
 
   void flip_edges(double exponent) {
@@ -385,7 +417,7 @@ class Fit {
     for (const TriangleShape& shape : after) {
       if (shape.normal.dot(normal) < 0.5 * shape.normal.norm() * normal.norm()) return false;
       if (shape.squared_slenderness() < std::min(worst, 0.1 * 0.1)) return false;
-      if (shape.squared_height < 4 * smallest_height * smallest_height) return false;
+      if (shape.squared_height < 4 * std::pow(thinnest_[first[0]], 2)) return false;
     }
     double error_before = 0, error_after = 0;
     for (const std::uint32_t triangle : {i, j})
@@ -419,7 +451,8 @@ class Fit {
   }
 
   static constexpr double smallest_slenderness = 0.02;
-  static constexpr double damping = 0.02;  ///< of a step, as a share of what the samples say of a vertex
+  static constexpr double smallest_facing = 0.1;  ///< cosine between a triangle and what it stands for
+  static constexpr double damping = 0.02;         ///< of a step, as a share of what the samples say of a vertex
 
   const FitSettings& settings_;
   int sample_count_;
@@ -429,7 +462,9 @@ class Fit {
   std::span<const std::uint8_t> is_fixed_;
   std::vector<Vector> positions_;
   std::vector<Triangle> triangles_;
-  std::vector<Vector> samples_;
+  std::vector<float> thinnest_;  ///< by vertex (thinnest_heights)
+  double reach_ = 0;             ///< how much farther than the nearest surface one that faces rightly may be
+  std::vector<Vector> samples_, sample_normals_;
   std::vector<std::uint32_t> sample_hints_, low_hints_;
   std::vector<Pair> from_high_, from_low_;
   std::vector<SurfacePoint> low_samples_;

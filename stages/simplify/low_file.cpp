@@ -1,21 +1,41 @@
 #include "simplify/low_file.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "mesh/draco_file.h"
 #include "mesh/hard_edges.h"
+#include "mesh/mesh_components.h"
 
 namespace kiln {
 
 namespace {
 
-/// Bits of position from 16 on that leave every triangle its area and winding when each corner moves by the rounding.
-int sufficient_position_bits(const TriangleMesh& mesh) {
-  constexpr int most_bits = 24;  // about what a float holds
+constexpr int most_bits = 24;  // about what a float holds
+constexpr double wanted_steps = 256, least_steps = 32;
+
+double longest_side(const TriangleMesh& mesh) {
   const BoundingBox box = bounding_box(mesh);
-  const double side = (box.highest - box.lowest).cast<double>().maxCoeff();
+  return (box.highest - box.lowest).cast<double>().maxCoeff();
+}
+
+double step(double side, int bits) { return side / (std::exp2(bits) - 1); }
+
+/// The diagonal of the smallest component's box that is not a point.
+double smallest_component(const TriangleMesh& mesh) {
+  double smallest = longest_side(mesh);
+  for (const BoundingBox& box : component_boxes(mesh, find_components(mesh)))
+    if (box.diagonal() > 0) smallest = std::min<double>(smallest, box.diagonal());
+  return smallest;
+}
+
+/// Bits of position from 16 on that leave every triangle its area and winding when each corner moves by the rounding,
+/// and every component its shape.
+int sufficient_position_bits(const TriangleMesh& mesh) {
+  const double side = longest_side(mesh);
   int bits = DracoQuantisation().position_bits;
   for (const Triangle& triangle : mesh.triangles) {
     const Eigen::Vector3d a = mesh.positions[triangle[0]].cast<double>();
@@ -24,8 +44,10 @@ int sufficient_position_bits(const TriangleMesh& mesh) {
     const double height = (b - a).cross(c - a).norm() / std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
     if (!(height > 0)) continue;  // nothing to keep
     // Each corner moves by sqrt(3)/2 steps at most, the height by that of its tip and of its foot.
-    while (bits < most_bits && height < std::sqrt(3.0) * side / (std::exp2(bits) - 1)) ++bits;
+    while (bits < most_bits && height < std::sqrt(3.0) * step(side, bits)) ++bits;
   }
+  const double smallest = smallest_component(mesh);
+  while (bits < most_bits && smallest < wanted_steps * step(side, bits)) ++bits;
   return bits;
 }
 
@@ -39,6 +61,8 @@ void LowFile::keep_colors(const TriangleMesh& high) {
 TriangleMesh LowFile::write(const TriangleMesh& mesh) {
   DracoQuantisation quantisation;
   quantisation.position_bits = position_bits_ = sufficient_position_bits(mesh);
+  const double steps = smallest_component(mesh) / step(longest_side(mesh), most_bits);
+  too_few_steps_ = steps < least_steps ? steps : 0;
   // The normals are those of the rounded positions.
   TriangleMesh low = split_at_hard_edges(mesh);
   low.normals.clear();

@@ -19,15 +19,19 @@ class LowFile {
   void keep_colors(const TriangleMesh& high);
 
   /// Writes positions, normals and colours, and returns what the file now holds. Positions have 16 bits, or more where
-  /// rounding to 16 bits takes the area or the winding of a triangle.
+  /// rounding to 16 bits takes the area or the winding of a triangle, or where a component's box has less than 256
+  /// steps along its diagonal; 24 at most.
   TriangleMesh write(const TriangleMesh& mesh);
 
   /// Of the latest write.
   int position_bits() const { return position_bits_; }
+  /// The steps of 24 bits along the box's diagonal of the smallest component, where they are less than 32; else 0.
+  double too_few_steps() const { return too_few_steps_; }
 
  private:
   std::filesystem::path file_;
   int position_bits_ = 0;
+  double too_few_steps_ = 0;
   const TriangleMesh* colored_ = nullptr;
   std::optional<NearestSurface> colored_surface_;
 };

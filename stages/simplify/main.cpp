@@ -35,6 +35,9 @@ int main(int argc, char** argv) {
     if (settings.colors) low.keep_colors(high);
     const SimplifyResult result = simplify(
         high, settings, [&](const TriangleMesh& mesh) { return low.write(mesh); }, command.progress("simplify"));
+    if (settings.strict && !result.shortfall.empty())
+      throw BadInput(high_file.string(), result.shortfall, "a mesh that can have so few",
+                     "give more --faces, or leave out --strict");
 
     // Save.
     Json metrics = result.to_json();
@@ -44,9 +47,14 @@ int main(int argc, char** argv) {
     metrics["repairs"] = repairs_to_json(repairs);
     metrics["origin"] = {high.frame.origin.x(), high.frame.origin.y(), high.frame.origin.z()};
     metrics["hard_edges"] = hard_edges_of_normals(high).size();
-    if (settings.max_error == 0 && result.mesh.triangles.size() > static_cast<std::size_t>(settings.faces))
-      command.say("stopped at " + std::to_string(result.mesh.triangles.size()) +
-                  " triangles: no further collapse keeps topology and shape");
+    std::vector<std::string> warnings;
+    if (result.dropped.components > 0) warnings.push_back(result.dropped.text());
+    if (!result.shortfall.empty()) warnings.push_back(result.shortfall);
+    if (low.too_few_steps() > 0)
+      warnings.push_back(
+          "parts are so far apart that the smallest is " + std::to_string(static_cast<long long>(low.too_few_steps())) +
+          " steps of 24 bits wide, the most that the file has; simplify it on its own to keep its shape");
+    command.warn(warnings);
     command.finish(outputs, command.result(result.seconds, metrics));
   });
 }

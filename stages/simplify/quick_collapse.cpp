@@ -44,6 +44,8 @@ struct Quadric {
     return {a[0] * v.x() + a[3] * v.y() + a[4] * v.z(), a[3] * v.x() + a[1] * v.y() + a[5] * v.z(),
             a[4] * v.x() + a[5] * v.y() + a[2] * v.z()};
   }
+  /// The mean of the squared distances.
+  double mean_square(double sum) const { return sum / std::max(a[0] + a[1] + a[2], 1e-300); }
   double operator()(const Vector& v) const { return v.dot(times(v)) + 2 * b.dot(v) + c; }
 
   /// Where it is smallest, if its planes are well apart.
@@ -79,7 +81,9 @@ class QuickCollapser {
         weights_(weights),
         frame_(sequence.start),
         triangles_(sequence.start.triangles),
-        faces_(static_cast<int>(triangles_.size())) {
+        faces_(static_cast<int>(triangles_.size())),
+        area_(surface_area(sequence.start) / (frame_.diagonal * frame_.diagonal)),
+        thinnest_(thinnest_heights(sequence.start, frame_.diagonal)) {
     const std::size_t vertices = sequence.start.positions.size();
     positions_.resize(vertices);
     tbb::parallel_for(std::size_t{0}, vertices,
@@ -154,6 +158,8 @@ class QuickCollapser {
   }
 
   void run_round(int target) {
+    const double squared_edge = area_ / faces_ * 4 / std::sqrt(3.0);
+    largest_mean_square_ = largest_distance * largest_distance * squared_edge;
     // Edges with their costs.
     candidates_.clear();
     for (const Triangle& t : triangles_)
@@ -205,6 +211,8 @@ class QuickCollapser {
   void try_collapse(std::uint32_t a, std::uint32_t b) {
     if (is_touched_[a] || is_touched_[b]) return;
     const Placement place = placement(a, b);
+    const Quadric both = quadrics_[a] + quadrics_[b];
+    if (both.mean_square(both(place.position)) > largest_mean_square_) return;
 
     // Nothing turns over.
     bool allowed = true;
@@ -221,7 +229,8 @@ class QuickCollapser {
         }
         const int k = t[0] == moving ? 0 : t[1] == moving ? 1 : 2;
         const Vector &first = positions_[t[(k + 1) % 3]], &second = positions_[t[(k + 2) % 3]];
-        allowed = keeps_shape({positions_[moving], first, second}, {place.position, first, second}, 0.02);
+        allowed = keeps_shape({positions_[moving], first, second}, {place.position, first, second},
+                              {smallest_slenderness, thinnest_[a]}, [&] { return normal_around(a, b); });
       });
     // The link condition; a vertex of three triangles may not lose one.
     if (!allowed || on_edge != 2) return;
@@ -254,11 +263,29 @@ class QuickCollapser {
     sequence_.collapses.push_back({removed, kept, faces_, frame_.to_object(place.position).cast<float>()});
   }
 
+  /// Twice the sum of the triangles' areas, as a vector.
+  Vector normal_around(std::uint32_t a, std::uint32_t b) const {
+    Vector sum = Vector::Zero();
+    for (const std::uint32_t end : {a, b})
+      for_each_around(end, [&](const Triangle& t) {
+        sum += (positions_[t[1]] - positions_[t[0]]).cross(positions_[t[2]] - positions_[t[0]]);
+      });
+    return sum;
+  }
+
+  static constexpr double smallest_slenderness = 0.02;
+  /// From the planes of the triangles that a vertex stands for, in edges of a triangle of mean area: what
+  /// collapse.cpp's first pass allows.
+  static constexpr double largest_distance = 0.15;
+
   CollapseSequence& sequence_;
   std::vector<VertexWeight>& weights_;
   UnitFrame frame_;
   std::vector<Triangle> triangles_;  ///< at the start of the round
   int faces_;
+  double area_;                  ///< of the start, in the frame
+  std::vector<float> thinnest_;  ///< by vertex (thinnest_heights)
+  double largest_mean_square_ = 0;
   std::vector<Vector> positions_;  ///< in the frame
   std::vector<Quadric> quadrics_;
   std::vector<std::uint8_t> is_fixed_, is_touched_;

@@ -36,11 +36,8 @@ class Reducer {
         given_(feature_edges.begin(), feature_edges.end()) {}
 
   Reduced to_faces(const ProgressFunction& progress) const {
-    const bool fits = settings_.quality == SimplifyQuality::best;
-    const CollapseSequence sequence =
-        collapse(settings_.quality, settings_.faces, false, part(progress, 0, fits ? 0.1 : 1));
-    const std::size_t count = sequence.collapses.size();
-    return fits ? fitted(sequence, count, part(progress, 0.1, 1)) : unfitted(sequence, count);
+    if (settings_.quality == SimplifyQuality::best) return best_to_faces(progress);
+    return unfitted_to_faces(settings_.quality, progress);
   }
 
   Reduced to_error(const ProgressFunction& progress) const {
@@ -57,6 +54,53 @@ class Reducer {
   }
 
  private:
+  Reduced unfitted_to_faces(SimplifyQuality quality, const ProgressFunction& progress) const {
+    const CollapseSequence sequence = collapse(quality, settings_.faces, false, progress);
+    return unfitted(sequence, careful_count(sequence));
+  }
+
+  /// All collapses where they get to settings.faces. Where they do not, those with wider limits spoil the shape for
+  /// nothing, unless they save a fifth of the triangles.
+  std::size_t careful_count(const CollapseSequence& sequence) const {
+    const std::size_t all = sequence.collapses.size(), close = sequence.close_count;
+    if (sequence.faces_after(all) <= settings_.faces) return all;
+    return 0.8 * sequence.faces_after(close) <= sequence.faces_after(all) ? close : all;
+  }
+
+  /// The fitted mesh; or, where a draft has a smaller Hausdorff distance, what has the least RMS of those that are no
+  /// worse than it: other meshes, fitted, and in the end itself. So best is never worse than draft.
+  Reduced best_to_faces(const ProgressFunction& progress) const {
+    const CollapseSequence sequence = collapse(SimplifyQuality::best, settings_.faces, false, part(progress, 0, 0.1));
+    const std::size_t count = careful_count(sequence);
+    Reduced result = fitted(sequence, count, part(progress, 0.1, 0.8));
+    const CollapseSequence draft_sequence =
+        collapse(SimplifyQuality::draft, settings_.faces, false, part(progress, 0.8, 0.85));
+    const std::size_t draft_count = careful_count(draft_sequence);
+    Reduced draft = unfitted(draft_sequence, draft_count);
+    const std::size_t most_faces = std::max(static_cast<std::size_t>(settings_.faces), result.mesh.triangles.size());
+    if (draft.mesh.triangles.size() > most_faces) return result;
+    const double bound = distance_(draft.mesh).hausdorff;
+    if (distance_(result.mesh).hausdorff <= bound) return result;
+
+    double least = std::numeric_limits<double>::infinity();
+    const auto consider = [&](Reduced candidate) {
+      if (candidate.mesh.triangles.size() > most_faces) return;
+      const MeshDistance distance = distance_(candidate.mesh);
+      if (distance.hausdorff > bound || !(distance.rms < least)) return;
+      least = distance.rms;
+      result = std::move(candidate);
+    };
+    const CollapseSequence standard_sequence =
+        collapse(SimplifyQuality::standard, settings_.faces, false, part(progress, 0.85, 0.87));
+    const std::size_t standard_count = careful_count(standard_sequence);
+    consider(unfitted(sequence, count));
+    consider(unfitted(standard_sequence, standard_count));
+    consider(fitted(standard_sequence, standard_count, part(progress, 0.87, 0.93)));
+    consider(fitted(draft_sequence, draft_count, part(progress, 0.93, 1)));
+    consider(std::move(draft));
+    return result;
+  }
+
   /// Collapses for a result of about `faces`, on to the last that is possible where `goes_on`.
   CollapseSequence collapse(SimplifyQuality quality, int faces, bool goes_on, const ProgressFunction& progress) const {
     CollapseSettings collapse;
@@ -66,7 +110,6 @@ class Reducer {
     collapse.vertex_weights = vertex_weights_;
     switch (quality) {
       case SimplifyQuality::draft:
-        collapse.compared_faces = 0;
         return collapse_edges_in_two_steps(manifold_, collapse.faces, collapse, progress);
       case SimplifyQuality::standard:
         collapse.compared_faces = times(compared_times, faces);

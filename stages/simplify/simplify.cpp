@@ -86,11 +86,19 @@ int count_degenerate(const TriangleMesh& mesh) {
   return count_facets(mesh, [](const Facet& facet) { return !(facet.area_normal.squaredNorm() > 0); });
 }
 
-int count_flipped(const TriangleMesh& mesh, const TriangleMesh& high) {
+int count_flipped(const TriangleMesh& mesh, const TriangleMesh& high, double reach) {
   const NearestSurface surface(high);
   return count_facets(mesh, [&](const Facet& facet) {
-    return facet.area_normal.dot(surface.normal(surface.nearest(facet.middle))) < 0;
+    const NearestSurface::Hit hit = surface.nearest(facet.middle);
+    if (facet.area_normal.dot(surface.normal(hit)) >= 0) return false;
+    const double within = std::sqrt(hit.squared_distance) + reach;
+    return !surface.nearest_facing(facet.middle, {facet.area_normal, 0, within}, hit.hint);
   });
+}
+
+double flipped_reach(const TriangleMesh& mesh, double hausdorff_distance) {
+  const double mean_area = surface_area(mesh) / static_cast<double>(std::max<std::size_t>(1, mesh.triangles.size()));
+  return std::max(2 * hausdorff_distance, 0.5 * std::sqrt(mean_area * 4 / std::sqrt(3.0)));
 }
 
 TriangleMesh with_normals(const TriangleMesh& mesh) {
@@ -116,13 +124,15 @@ SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settin
     features = feature_edges_of(high);
   else
     repair_mesh(manifold);
+  result.dropped = drop_small_components(manifold, settings);
+  const TriangleMesh& measured = result.dropped.components > 0 ? manifold : high;
   std::vector<double> weights;
   if (settings.aware == SimplifyAwareness::transfer) weights = transfer_weights(manifold);
   const Stopwatch reduce_stopwatch;
   const ProgressFunction reduce_progress = [&](double fraction) { progress(0.9 * fraction); };
   const CandidateDistance distance = [&](const TriangleMesh& candidate) {
     const TriangleMesh form = write(candidate);
-    return by_error ? distance_within(high, form, settings.max_error) : mesh_distance(high, form);
+    return by_error ? distance_within(measured, form, settings.max_error) : mesh_distance(measured, form);
   };
   const auto reduce = by_error ? reduce_to_error : reduce_to_faces;
   const Reduced low = reduce(manifold, settings, distance, weights, features, reduce_progress);
@@ -131,12 +141,16 @@ SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settin
 
   // Measure what was written.
   progress(0.9);
-  result.distance = mesh_distance(high, result.mesh);
-  result.hausdorff_distance = result.distance.hausdorff * bounding_box(high).diagonal() * high.frame.unit();
+  result.distance = mesh_distance(measured, result.mesh);
+  const double hausdorff_distance = result.distance.hausdorff * bounding_box(measured).diagonal();
+  result.hausdorff_distance = hausdorff_distance * high.frame.unit();
   result.manifold = is_manifold(result.mesh);
   result.closed = result.manifold && is_closed(features.empty() ? result.mesh : join_at_places(result.mesh));
   result.degenerate_triangles = count_degenerate(result.mesh);
-  result.flipped_triangles = count_flipped(result.mesh, high);
+  result.flipped_triangles = count_flipped(result.mesh, measured, flipped_reach(result.mesh, hausdorff_distance));
+  if (!by_error && result.mesh.triangles.size() > static_cast<std::size_t>(settings.faces))
+    result.shortfall = "stopped at " + std::to_string(result.mesh.triangles.size()) + " triangles of " +
+                       std::to_string(settings.faces) + ": " + why_no_fewer(result.mesh, settings.faces, manifold);
   progress(1);
   result.seconds = stopwatch.seconds() - write.seconds();
   return result;
@@ -146,6 +160,10 @@ Json SimplifyResult::to_json() const {
   return {{"triangles", mesh.triangles.size()},
           {"vertices", mesh.positions.size()},
           {"input_triangles", input_triangles},
+          {"dropped_components", dropped.components},
+          {"dropped_triangles", dropped.triangles},
+          {"dropped_area", dropped.area_share},
+          {"dropped_size", dropped.largest_size},
           {"hausdorff", distance.hausdorff},
           {"rms", distance.rms},
           {"hausdorff_distance", hausdorff_distance},

@@ -1,6 +1,21 @@
 #include "simplify/simplify_settings.h"
 
+#include <charconv>
+#include <system_error>
+
+#include "base/errors.h"
+
 namespace kiln {
+
+std::optional<double> SimplifySettings::drop_size() const {
+  if (drop_components == "auto") return {};
+  double size = -1;
+  const char* end = drop_components.data() + drop_components.size();
+  const auto [stop, error] = std::from_chars(drop_components.data(), end, size);
+  if (error != std::errc() || stop != end || !(size >= 0 && size <= 1))
+    throw WrongUsage("drop-components: found " + drop_components + ", expected auto or 0 to 1");
+  return size;
+}
 
 OptionSet simplify_options(SimplifySettings& settings) {
   OptionSet options;
@@ -19,6 +34,18 @@ OptionSet simplify_options(SimplifySettings& settings) {
       "transfer: more triangles where self-shadowing varies, at equal count, fewer elsewhere");
   options.number("crease", settings.crease, 0, 180,
                  "Edges whose dihedral angle exceeds this stay lines, degrees; 0 is none");
+  options.toggle(
+      "strict", settings.strict,
+      "Refuse an input that needs repair, or that --faces cannot be kept of, instead of doing what can be done");
+  options.checked_text(
+      "drop-components", settings.drop_components, "auto or 0 to 1",
+      "Leave out components whose box's diagonal is at most this fraction of the mesh's; 0 keeps all, auto drops "
+      "specks far smaller than the result's triangles where they would take more than a tenth of --faces",
+      [](const std::string& text) {
+        SimplifySettings checked;
+        checked.drop_components = text;
+        checked.drop_size();
+      });
   options.toggle("strict", settings.strict, "Refuse an input that needs repair instead of repairing it");
   add_import_options(options, settings.import);
   options.toggle("colors", settings.colors, "Keep the input's colours, as colours of vertices");

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "base/options.h"
 #include "import/import_settings.h"
 
@@ -26,7 +29,13 @@ struct SimplifySettings {
   double crease = 0;    ///< degrees; edges whose dihedral angle (0 in a plane) is larger stay lines; 0: none
   bool strict = false;  ///< an input that needs repair is refused
   ImportSettings import;
+  /// Components that are left out of the result: of a box's diagonal up to this fraction of the mesh's; 0 keeps all.
+  /// "auto": specks of no size beside the result's triangles, where they would take much of `faces`.
+  std::string drop_components = "auto";
   bool colors = false;  ///< the input's colours are kept at the vertices
+
+  /// The fraction that drop_components says, or nothing for "auto". Throws WrongUsage for what is neither.
+  std::optional<double> drop_size() const;
 };
 
 OptionSet simplify_options(SimplifySettings& settings);

@@ -10,7 +10,6 @@ namespace kiln {
 /// sqrt(3) / 2 of that in one direction. A triangle whose heights are this many steps keeps its winding whatever is
 /// rounded.
 constexpr double smallest_height_steps = 4;
-constexpr double smallest_height = smallest_height_steps / 65535;  // of the diagonal, which is longer than any side
 
 /// A step of simplification may turn a triangle by 78 degrees at most: far from folding it over, and what it takes to
 /// cut a corner.
@@ -30,16 +29,31 @@ struct TriangleShape {
   double squared_slenderness() const { return squared_edge > 0 ? squared_height / squared_edge : 0; }
 };
 
-/// Whether a triangle of a frame with diagonal 1 may change so: it does not turn over, nor become thinner than 16 bits
-/// can tell or than `slenderness` (height over longest edge). A scan's triangles may be thinner from the start; then it
-/// is enough not to get worse.
-inline bool keeps_shape(const TriangleShape& before, const TriangleShape& after, double slenderness) {
+/// What triangles may not go below.
+struct ShapeLimits {
+  double slenderness = 0;  ///< height over longest edge
+  double height = 0;       ///< below, a triangle is too thin to have a shape (thinnest_heights)
+};
+
+/// Whether `triangle` is too thin to say where it faces.
+inline bool is_thin(const TriangleShape& triangle, const ShapeLimits& limits) {
+  return triangle.squared_height < limits.height * limits.height;
+}
+
+/// Whether a triangle may change so: it does not turn over, nor become thin or more slender than the limits. One that
+/// was more slender from the start, as scans have them, may stay as bad. What was thin, such as the needles and caps
+/// that CSG leaves on edges, may change in any way, so that it can go, but when it becomes wide again, it faces as what
+/// is `around` it: a sum of normals, asked for only then.
+template <class Around>
+bool keeps_shape(const TriangleShape& before, const TriangleShape& after, const ShapeLimits& limits,
+                 const Around& around) {
+  if (is_thin(before, limits)) return is_thin(after, limits) || after.normal.dot(around()) > 0;
   const double cosine_part = before.normal.dot(after.normal);
   const double smallest =
       smallest_turn_cosine * smallest_turn_cosine * before.normal.squaredNorm() * after.normal.squaredNorm();
   if (!(cosine_part > 0) || cosine_part * cosine_part < smallest) return false;
-  if (after.squared_height < std::min(smallest_height * smallest_height, before.squared_height)) return false;
-  return after.squared_slenderness() >= std::min(slenderness * slenderness, before.squared_slenderness());
+  if (is_thin(after, limits)) return false;
+  return after.squared_slenderness() >= std::min(limits.slenderness * limits.slenderness, before.squared_slenderness());
 }
 
 }  // namespace kiln

@@ -37,7 +37,7 @@ CommandLine::CommandLine(std::string program, const std::string& purpose)
   app_.set_version_flag("--version", std::string(KILN_VERSION));
   app_.get_formatter()->column_width(38);
   app_.add_flag("--json", json_, "Print the result as one JSON object on stdout")->group("Common");
-  app_.add_flag("--quiet", quiet_, "Print errors only")->group("Common");
+  app_.add_flag("--quiet", quiet_, "Print warnings and errors only")->group("Common");
   app_.add_option("--threads", threads_, "Threads, 0 for all cores (default 0; 0 to 1024)")
       ->check(CLI::Range(0, 1024))
       ->group("Common");
@@ -159,7 +159,7 @@ void CommandLine::warn(const std::vector<std::string>& warnings, const std::vect
   for (const std::string& warning : warnings) {
     if (has(warnings_, warning)) continue;
     warnings_.push_back(warning);
-    if (!has(said, warning)) say("WARNING: " + warning);
+    if (!has(said, warning)) std::fprintf(stderr, "%s: WARNING: %s\n", program_.c_str(), warning.c_str());
   }
 }
 

@@ -160,17 +160,25 @@ void check_jpeg(const std::string& bytes, const std::string& name) {
 std::unique_ptr<OIIO::ImageInput> open_image(const std::string& name, const std::string& expected,
                                              const std::string& format_name, OIIO::Filesystem::IOProxy* memory) {
   keep_to_one_thread();
-  OIIO::ImageSpec configuration;
+  OIIO::ImageSpec configuration, spec;
   configuration.attribute("oiio:UnassociatedAlpha", 1);
-  std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(format_name, &configuration, memory);
-  if (!input) fail_reading(name, "cannot be understood (" + OIIO::geterror() + ")", expected);
-  const OIIO::ImageSpec& spec = input->spec();
-  if (spec.depth > 1 || spec.deep) fail_reading(name, "not a flat picture", expected);
+  std::unique_ptr<OIIO::ImageInput> input;
+  if (memory == nullptr) {
+    input = OIIO::ImageInput::open(name, &configuration);
+    if (!input) fail_reading(name, "cannot be understood (" + OIIO::geterror() + ")", expected);
+  } else {
+    input = OIIO::ImageInput::create(format_name);
+    if (!input) fail_reading(name, "cannot be understood (" + OIIO::geterror() + ")", expected);
+    configuration.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &memory);
+    if (!input->open(format_name, spec, configuration))
+      fail_reading(name, "cannot be understood (" + input->geterror() + ")", expected);
+  }
+  if (input->spec().depth > 1 || input->spec().deep) fail_reading(name, "not a flat picture", expected);
   return input;
 }
 
 std::unique_ptr<OIIO::ImageInput> open_image(const std::string& name, const std::string& expected) {
-  return open_image(name, expected, name, nullptr);
+  return open_image(name, expected, "", nullptr);
 }
 
 /// A file name of the format that the first bytes tell, whatever the file is called; empty: they tell none.

@@ -8,6 +8,7 @@
 #include "import/corner_attributes.h"
 #include "import/imported_normals.h"
 #include "import/readers.h"
+#include "import/text_lines.h"
 #include "import/triangulate.h"
 #include "import/weld.h"
 
@@ -55,16 +56,18 @@ void warn_of_precision(const SourceMesh& source, const Eigen::AlignedBox3d& box,
   warnings.emplace_back(text);
 }
 
-void warn_of_repairs(const MeshRepairs& repairs, int welded, std::vector<std::string>& warnings) {
-  const auto add = [&](int count, const std::string& text) {
-    if (count > 0) warnings.push_back(std::to_string(count) + " " + text);
+void warn_of_repairs(const MeshRepairs& repairs, std::vector<std::string>& warnings) {
+  const auto add = [&](int count, const std::string& what, const std::string& rest) {
+    if (count > 0) warnings.push_back(counted(static_cast<std::uint64_t>(count), what) + " " + rest);
   };
-  add(welded, "vertices on borders lay within the file's last digits of another and became one; --weld off keeps them");
-  add(repairs.dropped_backs,
-      "triangles are the backs of others and are dropped with their materials; --backs keep keeps both sides");
-  add(repairs.inside_out_components,
-      "closed components were inside out and are turned outwards; --orientation keep keeps them, as a room");
-  add(repairs.unorientable_edges, "edges are cut, as the surface has one side there, like a Moebius strip");
+  add(repairs.welded_vertices, "border corner",
+      "within the last digits of another, joined to it; --weld off keeps them apart");
+  add(repairs.dropped_backs, "triangle",
+      "with the same corners as another, its back, dropped with its material; "
+      "--backs keep keeps both sides");
+  add(repairs.inside_out_components, "closed component",
+      "inside out, turned outwards; --orientation keep leaves it so, as a room is meant to be");
+  add(repairs.unorientable_edges, "edge", "cut, as the surface has one side alone, like a Moebius strip");
 }
 
 /// Brings colours to 0 to 1; returns how many lay outside.
@@ -135,7 +138,7 @@ ImportedMesh import_mesh(const std::filesystem::path& file, const ImportSettings
   repairs.unused_vertices += static_cast<int>(source.places.size()) - used_vertices;
   if (source.is_unwelded) repairs.merged_vertices = 0;  // the format has each vertex once for every face
   repairs.welded_vertices = welded;
-  warn_of_repairs(repairs, welded, result.warnings);
+  warn_of_repairs(repairs, result.warnings);
 
   // Step 3: what corners have besides.
   const CornerAttributes attributes(source, triangles, mesh, origins);

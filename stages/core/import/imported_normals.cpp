@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/errors.h"
+#include "import/text_lines.h"
 #include "mesh/hard_edges.h"
 #include "mesh/mesh_components.h"
 #include "mesh/surface_point.h"
@@ -97,21 +98,16 @@ bool is_facetted(const TriangleMesh& mesh) {
 
 void take_file_normals(TriangleMesh& mesh, const CornerAttributes& attributes, std::vector<std::string>& warnings) {
   CornerNormals normals = attributes.normals();
+  const auto add = [&](int count, const std::string& what, const std::string& rest) {
+    if (count > 0) warnings.push_back(counted(static_cast<std::uint64_t>(count), what) + " " + rest);
+  };
   const Turned turned = agree(mesh, normals);
-  if (turned.triangles > 0)
-    warnings.push_back(std::to_string(turned.triangles) +
-                       " triangles of open parts wind against the file's normals and are turned to face them; "
-                       "--normals smooth keeps their winding");
-  if (turned.normals > 0)
-    warnings.push_back("the file's normals of " + std::to_string(turned.normals) +
-                       " triangles point into closed parts and are turned outwards");
+  add(turned.triangles, "triangle",
+      "of open parts wound against the file's normals, turned to face them; --normals smooth keeps the winding");
+  add(turned.normals, "triangle", "of closed parts with normals in the file that point inwards; these are turned");
   compute_vertex_normals(mesh);
-  const int replaced = replace_unbelievable(mesh, normals);
-  if (replaced > 0)
-    warnings.push_back(
-        std::to_string(replaced) +
-        " corners have no normal in the file, or one that faces away from their triangle: they have that "
-        "of the faces around");
+  add(replace_unbelievable(mesh, normals), "corner",
+      "without a normal in the file, or with one that faces away from its triangle; it has that of the faces around");
   mesh.corner_normals = std::move(normals);
   if (is_facetted(mesh))
     warnings.emplace_back(

@@ -69,7 +69,8 @@ std::unique_ptr<draco::Mesh> decode_draco(std::span<const std::uint8_t> bytes, c
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const auto type = draco::Decoder::GetEncodedGeometryType(&buffer);
-  if (type.ok() && type.value() == draco::POINT_CLOUD)
+  const bool has_version = bytes.size() > magic.size() && bytes[magic.size()] > 0;
+  if (type.ok() && type.value() == draco::POINT_CLOUD && has_version)
     throw BadInput(name, "holds points and no triangles", "a Draco mesh of triangles",
                    "make a surface of the points, and encode that");
   if (type.ok()) {

@@ -105,6 +105,17 @@ Components find_components(const TriangleMesh& mesh) {
   return components;
 }
 
+std::vector<BoundingBox> component_boxes(const TriangleMesh& mesh, const Components& components) {
+  std::vector<BoundingBox> boxes(components.count);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    for (const std::uint32_t vertex : mesh.triangles[i]) {
+      BoundingBox& box = boxes[components.of_triangle[i]];
+      box.lowest = box.lowest.cwiseMin(mesh.positions[vertex]);
+      box.highest = box.highest.cwiseMax(mesh.positions[vertex]);
+    }
+  return boxes;
+}
+
 int turn_inside_out_components(TriangleMesh& mesh, int& count) {
   const Components components = find_components(mesh);
   count = static_cast<int>(components.count);

@@ -31,6 +31,9 @@ struct Components {
 
 Components find_components(const TriangleMesh& mesh);
 
+/// The box of each component.
+std::vector<BoundingBox> component_boxes(const TriangleMesh& mesh, const Components& components);
+
 /// Turns the closed components of negative volume that lie in no other closed one; a cavity's wall faces inwards
 /// rightly. `mesh` is an oriented manifold. Returns how many were turned and sets how many components there are.
 int turn_inside_out_components(TriangleMesh& mesh, int& components);

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -15,8 +16,23 @@ namespace {
 struct Face {
   Eigen::Vector3d a, ab, ac;
   std::uint32_t index;
+  Eigen::Vector3f normal;  ///< unit
 
   Eigen::Vector3d middle() const { return a + (ab + ac) / 3; }
+  Eigen::Vector3d unit_normal() const { return ab.cross(ac).normalized(); }
+};
+
+/// Directions about an axis.
+struct Cone {
+  Eigen::Vector3f axis = Eigen::Vector3f::UnitZ();
+  float cosine = -1, sine = 0;  ///< of the largest angle to the axis; all directions from half a turn on
+
+  /// No direction of the cone has a larger cosine with the unit vector than this.
+  float largest_cosine(const Eigen::Vector3f& direction) const {
+    const float along = axis.dot(direction);
+    if (along >= cosine) return 1;
+    return along * cosine + std::sqrt(std::max(0.0f, 1 - along * along)) * sine;
+  }
 };
 
 struct Node {
@@ -24,11 +40,11 @@ struct Node {
   std::uint32_t begin = 0;  ///< of its faces
   std::uint32_t end = 0;
   std::uint32_t right = 0;  ///< the second child, the first is the next node; 0 for a leaf
+  Cone normals;             ///< of its faces
 };
 
 constexpr std::uint32_t leaf_faces = 4;
 
-/// Ericson, "Real-Time Collision Detection" (2005), section 5.1.5.
 Eigen::Vector3d closest_on(const Face& face, const Eigen::Vector3d& point) {
   const Eigen::Vector3d ap = point - face.a;
   const double d1 = face.ab.dot(ap), d2 = face.ac.dot(ap);
@@ -51,9 +67,25 @@ Eigen::Vector3d closest_on(const Face& face, const Eigen::Vector3d& point) {
 
 }  // namespace
 
+Eigen::Vector3d nearest_on_triangle(const Eigen::Vector3d& point, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                                    const Eigen::Vector3d& c) {
+  return closest_on(Face{a, b - a, c - a, 0, {}}, point);
+}
+
 struct NearestSurface::Hierarchy {
   std::vector<Face> faces;
   std::vector<Node> nodes;
+
+  Cone cone_of(std::uint32_t begin, std::uint32_t end) const {
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    for (std::uint32_t i = begin; i < end; ++i) sum += faces[i].normal;
+    if (!(sum.squaredNorm() > 0)) return {};
+    const Eigen::Vector3f axis = sum.normalized();
+    float smallest = 1;
+    for (std::uint32_t i = begin; i < end; ++i) smallest = std::min(smallest, axis.dot(faces[i].normal));
+    if (smallest <= -0.9f) return {};
+    return {axis, smallest, std::sqrt(std::max(0.0f, 1 - smallest * smallest))};
+  }
 
   /// Halves the faces along the widest direction of their middles.
   std::uint32_t add(std::uint32_t begin, std::uint32_t end) {
@@ -66,6 +98,7 @@ struct NearestSurface::Hierarchy {
       node.box.extend(faces[i].a).extend(faces[i].a + faces[i].ab).extend(faces[i].a + faces[i].ac);
       middles.extend(faces[i].middle());
     }
+    node.normals = cone_of(begin, end);
     nodes.push_back(node);
     if (end - begin <= leaf_faces) return index;
     Eigen::Index axis;
@@ -85,8 +118,10 @@ NearestSurface::NearestSurface(const TriangleMesh& mesh) : hierarchy_(std::make_
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
     std::array<Eigen::Vector3d, 3> corner;
     for (int k = 0; k < 3; ++k) corner[k] = mesh.positions[mesh.triangles[i][k]].cast<double>();
-    const Face face{corner[0], corner[1] - corner[0], corner[2] - corner[0], i};
-    if (face.ab.cross(face.ac).squaredNorm() > 0) hierarchy_->faces.push_back(face);
+    Face face{corner[0], corner[1] - corner[0], corner[2] - corner[0], i, {}};
+    if (!(face.ab.cross(face.ac).squaredNorm() > 0)) continue;
+    face.normal = face.unit_normal().cast<float>();
+    hierarchy_->faces.push_back(face);
   }
   if (hierarchy_->faces.empty()) throw std::invalid_argument("NearestSurface: the mesh has no area");
   hierarchy_->nodes.reserve(hierarchy_->faces.size());
@@ -97,15 +132,19 @@ NearestSurface::~NearestSurface() = default;
 NearestSurface::NearestSurface(NearestSurface&&) noexcept = default;
 NearestSurface& NearestSurface::operator=(NearestSurface&&) noexcept = default;
 
-NearestSurface::Hit NearestSurface::nearest(const Eigen::Vector3d& point, std::uint32_t hint) const {
+/// Finds the nearest of the faces that count(face) says count, nearer than `within`, into `hit`. `may_count` says of a
+/// node whether any of its faces may.
+template <class Counts, class MayCount>
+void NearestSurface::search(const Eigen::Vector3d& point, std::uint32_t hint, double within, Hit& hit,
+                            const Counts& counts, const MayCount& may_count) const {
   const auto& [faces, nodes] = *hierarchy_;
-  Hit hit;
-  const auto look_at = [&](std::uint32_t face, double to_beat) {
+  hit.squared_distance = within * within;
+  const auto look_at = [&](std::uint32_t face) {
     const Eigen::Vector3d closest = closest_on(faces[face], point);
     const double squared = (closest - point).squaredNorm();
-    if (squared < to_beat) hit = {closest, squared, faces[face].index, face};
+    if (squared < hit.squared_distance && counts(faces[face])) hit = {closest, squared, faces[face].index, face};
   };
-  look_at(hint, std::numeric_limits<double>::infinity());
+  look_at(hint);
 
   // The nearer child first; a stack of 64 is deep enough for halves of 2^32 faces.
   std::array<std::pair<double, std::uint32_t>, 64> stack;
@@ -115,8 +154,9 @@ NearestSurface::Hit NearestSurface::nearest(const Eigen::Vector3d& point, std::u
     const auto [squared, index] = stack[--depth];
     if (squared >= hit.squared_distance) continue;
     const Node& node = nodes[index];
+    if (!may_count(node)) continue;
     if (node.right == 0) {
-      for (std::uint32_t i = node.begin; i < node.end; ++i) look_at(i, hit.squared_distance);
+      for (std::uint32_t i = node.begin; i < node.end; ++i) look_at(i);
       continue;
     }
     std::pair<double, std::uint32_t> near{nodes[index + 1].box.squaredExteriorDistance(point), index + 1};
@@ -125,12 +165,30 @@ NearestSurface::Hit NearestSurface::nearest(const Eigen::Vector3d& point, std::u
     stack[depth++] = far;
     stack[depth++] = near;
   }
+}
+
+NearestSurface::Hit NearestSurface::nearest(const Eigen::Vector3d& point, std::uint32_t hint) const {
+  Hit hit;
+  const auto all = [](const auto&) { return true; };
+  search(point, hint, std::numeric_limits<double>::infinity(), hit, all, all);
   return hit;
 }
 
-Eigen::Vector3d NearestSurface::normal(const Hit& hit) const {
-  const Face& face = hierarchy_->faces[hit.hint];
-  return face.ab.cross(face.ac).normalized();
+std::optional<NearestSurface::Hit> NearestSurface::nearest_facing(const Eigen::Vector3d& point, const Facing& facing,
+                                                                  std::uint32_t hint) const {
+  const Eigen::Vector3f normal = facing.normal.normalized().cast<float>();
+  const float smallest = static_cast<float>(facing.smallest_cosine);
+  constexpr float rounding = 1e-4f;  // of cones
+  constexpr std::uint32_t none = ~0u;
+  Hit hit;
+  hit.hint = none;
+  search(
+      point, hint, facing.within, hit, [&](const Face& face) { return face.normal.dot(normal) >= smallest; },
+      [&](const Node& node) { return node.normals.largest_cosine(normal) >= smallest - rounding; });
+  if (hit.hint == none) return {};
+  return hit;
 }
+
+Eigen::Vector3d NearestSurface::normal(const Hit& hit) const { return hierarchy_->faces[hit.hint].unit_normal(); }
 
 }  // namespace kiln
