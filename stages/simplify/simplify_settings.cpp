@@ -46,7 +46,6 @@ OptionSet simplify_options(SimplifySettings& settings) {
         checked.drop_components = text;
         checked.drop_size();
       });
-  options.toggle("strict", settings.strict, "Refuse an input that needs repair instead of repairing it");
   add_import_options(options, settings.import);
   options.toggle("colors", settings.colors, "Keep the input's colours, as colours of vertices");
   return options;

@@ -13,8 +13,8 @@
 #include "atlas/atlas.h"
 #include "cost.h"
 #include "mesh/draco_file.h"
-#include "mesh/mesh_file.h"
-#include "mesh/uv_mesh_file.h"
+#include "import/import_mesh.h"
+#include "import/uv_mesh.h"
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include "cost.h"
 #include "image/gutter.h"
 #include "mesh/draco_file.h"
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
 #include "mesh/uv_raster.h"
 #include "raycast/ray_scene.h"
 #include "raycast/surface_transfer.h"

@@ -20,7 +20,7 @@
 #include "detail/seams.h"
 #include "image/image_file.h"
 #include "mesh/draco_file.h"
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
 #include "normals/map_error.h"
 #include "normals/normals.h"
 

@@ -21,7 +21,7 @@
 #include "cost.h"
 #include "detail/detail_maps.h"
 #include "mesh/draco_file.h"
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
 #include "mesh/triangle_mesh.h"
 #include "raycast/beam_transfer.h"
 #include "raycast/ray_scene.h"

@@ -29,7 +29,7 @@
 #include "bake/scene/occluders.h"
 #include "gpu/egl_context.h"
 #include "gpu/program.h"
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 

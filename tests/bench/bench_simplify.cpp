@@ -34,7 +34,7 @@
 
 #include "cost.h"
 #include "mesh/mesh_distance.h"
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
 #include "simplify/collapse.h"
 #include "simplify/reduce.h"
 

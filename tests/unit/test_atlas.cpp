@@ -13,7 +13,7 @@
 #include "atlas/drawing.h"
 #include "atlas/pack.h"
 #include "base/errors.h"
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
 #include "mesh/uv_raster.h"
 #include "shapes.h"
 #include "simplify/simplify.h"

@@ -11,7 +11,7 @@
 #include "bake/engines/beam_engine.h"
 #include "bake/engines/embree_engine.h"
 #include "bake/planes/coefficient_planes.h"
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 #include "shapes.h"

@@ -3,7 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include "bounce_stand.h"
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
 #include "path_tracer.h"
 #include "shapes.h"
 

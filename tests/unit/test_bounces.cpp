@@ -10,7 +10,7 @@
 #include "bake/egl/bundle_engine.h"
 #include "base/errors.h"
 #include "bounce_stand.h"
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
 #include "shapes.h"
 
 namespace kiln {

@@ -9,7 +9,7 @@
 #include "bake/engines/engines.h"
 #include "bake/integrate/error_driven.h"
 #include "base/errors.h"
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
 #include "shapes.h"
 
 namespace kiln {

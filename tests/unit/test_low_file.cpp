@@ -4,7 +4,7 @@
 #include <unistd.h>
 
 #include "base/outputs.h"
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
 #include "shapes.h"
 #include "simplify/low_file.h"
 

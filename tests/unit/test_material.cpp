@@ -11,10 +11,9 @@
 #include "base/errors.h"
 #include "image/image_file.h"
 #include "image/srgb.h"
-#include "material/face_match.h"
 #include "material/load_albedo.h"
 #include "mesh/draco_file.h"
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
 #include "scratch.h"
 #include "shapes.h"
 
@@ -45,8 +44,8 @@ class Material : public testing::Test {
   }
 
   static LoadedAlbedo load(const fs::path& file, const MaterialSettings& settings = {},
-                           const MeshRepairSettings& repair = {}) {
-    return load_albedo(file, load_mesh(file, nullptr, repair), settings);
+                           const ImportSettings& import = {}) {
+    return load_albedo(import_mesh(file, import), settings);
   }
 
  private:
@@ -121,7 +120,9 @@ TEST_F(Material, TextureLookupsAreBilinearInLinearLightAndRepeat) {
   write_png(path("two.png"), bytes);
   const float left = linear_from_srgb(188 / 255.f), right = linear_from_srgb(64 / 255.f);
   const ColorTexture texture(path("two.png"), ColorEncoding::srgb);
-  const auto red = [&](float u, bool clamp = false) { return texture.at({u, 0.3f}, clamp).x(); };
+  const auto red = [&](float u, bool clamp = false) { using Wrap = ColorTexture::Wrap;
+    return texture.at({u, 0.3f}, clamp ? Wrap::clamp : Wrap::repeat).x();
+  };
   EXPECT_NEAR(red(0.25f), left, rounding);
   EXPECT_NEAR(red(0.75f), right, rounding);
   EXPECT_NEAR(red(0.5f), (left + right) / 2, rounding) << "the mean of light, not of stored bytes";
@@ -185,7 +186,7 @@ TEST_F(Material, NothingKnownIsWhite) {
   const LoadedAlbedo loaded = load(write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
   EXPECT_EQ(loaded.albedo.source(), SurfaceAlbedo::Source::none);
   EXPECT_EQ(loaded.albedo.at(0, 0.3f, 0.3f), Eigen::Vector3f::Ones());
-  EXPECT_TRUE(loaded.files.empty() && loaded.warning().empty());
+  EXPECT_TRUE(loaded.files.empty() && loaded.warnings().empty());
 }
 
 TEST_F(Material, ColoursOutsideAreCountedAndThoseThatAreNoNumbersRefused) {
@@ -292,14 +293,15 @@ TEST_F(Material, MaterialsAndUvsFollowTrianglesThroughRepair) {
   const PaintedCube cube;
   write("the cube.mtl", cube.mtl);
   const fs::path file = write("cube.obj", cube.obj);
-  MeshRepairs repairs;
-  const TriangleMesh mesh = load_mesh(file, &repairs);
+  const ImportedMesh imported = import_mesh(file);
+  const TriangleMesh& mesh = imported.mesh;
+  const MeshRepairs& repairs = imported.repairs;
   ASSERT_EQ(mesh.triangles.size(), 12u);
   ASSERT_TRUE(is_closed(mesh));
   EXPECT_GT(repairs.reversed_triangles, 0);
   EXPECT_GT(repairs.degenerate_triangles + repairs.duplicate_triangles, 6);
 
-  const LoadedAlbedo loaded = load_albedo(file, mesh, {.encoding = ColorEncoding::linear});
+  const LoadedAlbedo loaded = load_albedo(imported, {.encoding = ColorEncoding::linear});
   EXPECT_EQ(loaded.albedo.source(), SurfaceAlbedo::Source::materials);
   EXPECT_EQ(loaded.files, (std::vector<fs::path>{path("the cube.mtl"), path("ramp.exr")}));
   for_points_of(mesh, [&](std::uint32_t t, float u, float v, const Eigen::Vector3f& p) {
@@ -310,7 +312,7 @@ TEST_F(Material, MaterialsAndUvsFollowTrianglesThroughRepair) {
   });
 
   // One texture for all in place of the materials.
-  const LoadedAlbedo ramp = load_albedo(file, mesh, {.texture = path("ramp.exr").string()});
+  const LoadedAlbedo ramp = load_albedo(imported, {.texture = path("ramp.exr").string()});
   EXPECT_EQ(ramp.albedo.source(), SurfaceAlbedo::Source::texture);
   const std::uint32_t t = 3;
   EXPECT_FLOAT_EQ(ramp.albedo.at(t, 0.2f, 0.3f).z(), 0.25f);
@@ -326,10 +328,11 @@ std::string vertex_and_uv(const Eigen::Vector3f& p) {
 
 TEST_F(Material, UvsFollowPolygonsFlatTrianglesAndFilledHoles) {
   const MaterialSettings settings{.texture = write_ramp("ramp.exr").string()};
-  const auto expect_places = [&](const fs::path& file, const MeshRepairSettings& repair, std::size_t triangles) {
-    const TriangleMesh mesh = load_mesh(file, nullptr, repair);
+  const auto expect_places = [&](const fs::path& file, const ImportSettings& import, std::size_t triangles) {
+    const ImportedMesh imported = import_mesh(file, import);
+    const TriangleMesh& mesh = imported.mesh;
     ASSERT_EQ(mesh.triangles.size(), triangles);
-    const LoadedAlbedo loaded = load_albedo(file, mesh, settings);
+    const LoadedAlbedo loaded = load_albedo(imported, settings);
     for_points_of(mesh, [&](std::uint32_t t, float u, float v, const Eigen::Vector3f& p) {
       const Eigen::Vector3f expected(p.x(), p.y(), 0.25f);
       EXPECT_COLOR(loaded.albedo.at(t, u, v), expected, rounding);
@@ -370,9 +373,10 @@ TEST_F(Material, UvsFollowPolygonsFlatTrianglesAndFilledHoles) {
   }
   const std::string text = vertices(ring) + faces.str();
   const fs::path file = write("ring.obj", text);
-  const TriangleMesh mesh = load_mesh(file, nullptr, {.fill_hole_edges = 8});
+  const ImportedMesh imported = import_mesh(file, {.fill_hole_edges = 8});
+  const TriangleMesh& mesh = imported.mesh;
   ASSERT_EQ(mesh.triangles.size(), 16u + 6u);
-  const LoadedAlbedo loaded = load_albedo(file, mesh, settings);
+  const LoadedAlbedo loaded = load_albedo(imported, settings);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     // A filling triangle spans the hole; each corner that its face lacks has that of the face's nearest point, which
     // lies at most the hole's width of 0.4 away.
@@ -388,9 +392,9 @@ TEST_F(Material, DracoFilesWithUvsTakeATexture) {
   TriangleMesh sheet = shapes::plane(4);
   save_draco(path("sheet.drc"), sheet);
   const fs::path ramp = write_ramp("ramp.exr");
-  const TriangleMesh mesh = load_mesh(path("sheet.drc"));
-  const LoadedAlbedo loaded = load_albedo(path("sheet.drc"), mesh, {.texture = ramp.string()});
-  for_points_of(mesh, [&](std::uint32_t t, float u, float v, const Eigen::Vector3f& p) {
+  const ImportedMesh imported = import_mesh(path("sheet.drc"));
+  const LoadedAlbedo loaded = load_albedo(imported, {.texture = ramp.string()});
+  for_points_of(imported.mesh, [&](std::uint32_t t, float u, float v, const Eigen::Vector3f& p) {
     // shapes::plane's chart; uvs have 16 bits.
     const Eigen::Vector3f expected(0.1f + 0.8f * (p.x() + 0.5f), 0.1f + 0.8f * (0.5f - p.z()), 0.25f);
     EXPECT_COLOR(loaded.albedo.at(t, u, v), expected, 1e-4f);
@@ -425,8 +429,6 @@ TEST_F(Material, BadFilesAreNamed) {
   EXPECT_TRUE(says(message(), {"none.png", "truncated"}));
   write("a.mtl", "newmtl m\nKd 1 red 1\n");
   EXPECT_TRUE(says(message(), {"a.mtl:2", "Kd '1 red 1'"}));
-  write("a.mtl", "newmtl m\nmap_Kd -mm 0.1 2 a.png\n");
-  EXPECT_TRUE(says(message(), {"a.mtl:2", "-mm"}));
   EXPECT_EQ(message({.albedo = "0.5"}), "no error") << "a number needs none of these";
   EXPECT_TRUE(says(message({.texture = path("nothing.png").string()}), {"nothing.png", "does not exist"}));
   EXPECT_THROW(load(file, {.albedo = "0.5", .texture = "a.png"}), WrongUsage);
@@ -436,10 +438,10 @@ TEST_F(Material, BadFilesAreNamed) {
   write("a.obj", "mtllib a.mtl\n" + triangle + "usemtl m\nf 1 2 3\n");
   EXPECT_TRUE(says(message(), {"a.obj:9", "without texture coordinates", "'m'"}));
   EXPECT_TRUE(says(message({.texture = path("ramp.exr").string()}), {"a.obj:9", "without texture coordinates"}));
-  write("a.stl", "");
-  EXPECT_TRUE(
-      says(message_of([&] { load_albedo(path("a.stl"), shapes::plane(1), {.texture = path("ramp.exr").string()}); }),
-           {"a.stl", "no texture coordinates"}));
+  const fs::path stl = write("a.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+                                      "endloop\nendfacet\nendsolid\n");
+  EXPECT_TRUE(says(message_of([&] { load(stl, {.texture = path("ramp.exr").string()}); }),
+                   {"a.stl", "no texture coordinates"}));
   // Materials that no face uses are nobody's business.
   write("a.obj", "mtllib missing.mtl\n" + triangle + "f 1 2 3\n");
   EXPECT_EQ(message(), "no error");

@@ -14,7 +14,7 @@
 #include "detail/detail_maps.h"
 #include "detail/texel_way.h"
 #include "image/image_file.h"
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
 #include "normals/normals.h"
 #include "raycast/ray_scene.h"
 #include "shapes.h"

@@ -5,7 +5,7 @@
 #include <tbb/global_control.h>
 #include <vector>
 
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
 #include "raycast/beam_transfer.h"
 #include "raycast/ray_transfer.h"
 #include "sh/basis.h"

@@ -14,7 +14,7 @@
 #include "base/errors.h"
 #include "base/outputs.h"
 #include "mesh/mesh_distance.h"
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
 #include "mesh/mesh_repair.h"
 #include "shapes.h"
 #include "simplify/collapse.h"

@@ -12,7 +12,7 @@
 #include "hard_shapes.h"
 #include "mesh/mesh_components.h"
 #include "mesh/mesh_distance.h"
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
 #include "scratch.h"
 #include "simplify/low_file.h"
 #include "simplify/simplify.h"

@@ -61,7 +61,7 @@ TEST_F(SurroundingsTest, NeighboursAreReadFieldByField) {
   EXPECT_EQ(full.material.albedo, "0.5,0.25,0");
   EXPECT_EQ(full.material.texture, "t.png");
   EXPECT_EQ(full.material.encoding, ColorEncoding::linear);
-  EXPECT_EQ(full.repair.fill_hole_edges, 8);
+  EXPECT_EQ(full.import.fill_hole_edges, 8);
   for (const char* text : {"", ";place=0,0,0", "a.obj;place=1,2", "a.obj;place=0,0,0,0,0", "a.obj;albedo=2",
                            "a.obj;colour=1", "a.obj;albedo", "a.obj;fill-holes=-1"})
     EXPECT_THROW(parse_neighbour(text), WrongUsage) << text;

@@ -4,7 +4,7 @@
 
 #include "bake/integrate/unoccluded.h"
 #include "bake/scene/occluders.h"
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
 #include "raycast/ray_scene.h"
 #include "sh/directions.h"
 #include "shapes.h"

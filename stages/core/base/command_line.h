@@ -61,7 +61,7 @@ class CommandLine {
   /// A line on stderr, unless --quiet.
   void say(const std::string& line) const;
 
-  /// Notes warnings, whole sentences without a full stop, for the result, each once; says on stderr, unless --quiet,
+  /// Notes warnings, whole sentences without a full stop, for the result, each once; says on stderr, even with --quiet,
   /// those that are not among `said`, by an earlier stage.
   void warn(const std::vector<std::string>& warnings, const std::vector<std::string>& said = {});
 

@@ -155,10 +155,9 @@ void check_jpeg(const std::string& bytes, const std::string& name) {
   fail_reading(name, "a truncated JPEG", expected);
 }
 
-/// `name` is for messages; OpenImageIO reads `memory`, of the format that `format_name` ends in, or, without it, the
-/// file of that name.
+/// `name` is for messages; OpenImageIO reads `memory`, which is of that format, or, without it, the file of that name.
 std::unique_ptr<OIIO::ImageInput> open_image(const std::string& name, const std::string& expected,
-                                             const std::string& format_name, OIIO::Filesystem::IOProxy* memory) {
+                                             const std::string& format, OIIO::Filesystem::IOProxy* memory) {
   keep_to_one_thread();
   OIIO::ImageSpec configuration, spec;
   configuration.attribute("oiio:UnassociatedAlpha", 1);
@@ -167,10 +166,10 @@ std::unique_ptr<OIIO::ImageInput> open_image(const std::string& name, const std:
     input = OIIO::ImageInput::open(name, &configuration);
     if (!input) fail_reading(name, "cannot be understood (" + OIIO::geterror() + ")", expected);
   } else {
-    input = OIIO::ImageInput::create(format_name);
+    input = OIIO::ImageInput::create(format);
     if (!input) fail_reading(name, "cannot be understood (" + OIIO::geterror() + ")", expected);
     configuration.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &memory);
-    if (!input->open(format_name, spec, configuration))
+    if (!input->open(format, spec, configuration))
       fail_reading(name, "cannot be understood (" + input->geterror() + ")", expected);
   }
   if (input->spec().depth > 1 || input->spec().deep) fail_reading(name, "not a flat picture", expected);
@@ -181,14 +180,14 @@ std::unique_ptr<OIIO::ImageInput> open_image(const std::string& name, const std:
   return open_image(name, expected, "", nullptr);
 }
 
-/// A file name of the format that the first bytes tell, whatever the file is called; empty: they tell none.
-std::string format_name_of(std::string_view bytes) {
+/// OpenImageIO's name of the format that the first bytes tell, whatever the file is called; empty: they tell none.
+std::string format_of(std::string_view bytes) {
   const std::pair<std::string_view, const char*> signatures[] = {
-      {png_signature, "picture.png"}, {jpeg_signature, "picture.jpg"}, {"\x76\x2f\x31\x01", "picture.exr"},
-      {"#?RADIANCE", "picture.hdr"},  {"#?RGBE", "picture.hdr"},       {"BM", "picture.bmp"},
-      {"GIF8", "picture.gif"},        {"II*", "picture.tif"},          {"MM", "picture.tif"}};
-  for (const auto& [signature, format_name] : signatures)
-    if (bytes.starts_with(signature)) return format_name;
+      {png_signature, "png"}, {jpeg_signature, "jpeg"}, {"\x76\x2f\x31\x01", "openexr"},
+      {"#?RADIANCE", "hdr"},  {"#?RGBE", "hdr"},        {"BM", "bmp"},
+      {"GIF8", "gif"},        {"II*", "tiff"},          {"MM", "tiff"}};
+  for (const auto& [signature, format] : signatures)
+    if (bytes.starts_with(signature)) return format;
   return "";
 }
 
@@ -287,12 +286,12 @@ ColorPicture color_picture_of(const std::string& name, OIIO::ImageInput& input) 
 
 /// Nothing where the bytes do not tell their format.
 std::optional<ColorPicture> color_picture_of_bytes(const std::string& bytes, const std::string& name) {
-  const std::string format_name = format_name_of(bytes);
-  if (format_name.empty()) return std::nullopt;
-  if (format_name.ends_with("png")) check_png(bytes, name);
-  if (format_name.ends_with("jpg")) check_jpeg(bytes, name);
+  const std::string format = format_of(bytes);
+  if (format.empty()) return std::nullopt;
+  if (format == "png") check_png(bytes, name);
+  if (format == "jpeg") check_jpeg(bytes, name);
   OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size());
-  return color_picture_of(name, *open_image(name, expected_picture, format_name, &memory));
+  return color_picture_of(name, *open_image(name, expected_picture, format, &memory));
 }
 
 }  // namespace

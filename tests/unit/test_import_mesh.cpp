@@ -15,7 +15,7 @@
 #include "base/errors.h"
 #include "base/outputs.h"
 #include "mesh/draco_file.h"
-#include "mesh/mesh_file.h"
+#include "import/import_mesh.h"
 #include "shapes.h"
 
 namespace kiln {
