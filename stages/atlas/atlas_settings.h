@@ -16,7 +16,7 @@ struct AtlasSettings {
   double texels_per_unit = 0;  ///< of the mesh's length; 0: as many as fit into `size`, which otherwise has no say
   AtlasDensity density = AtlasDensity::transfer;
   bool keep_uv = false;         ///< the mesh's own uvs are the atlas, if they are one
-  ImportSettings import;        ///< of the mesh, and of the high mesh
+  ImportSettings import = {};   ///< of the mesh, and of the high mesh
   int gutter = 4;               ///< least number of free texels between two charts, and at the atlas's border
   double max_stretch = 1.005;   ///< L2 stretch that a chart may have; 1 is none
   double max_stretch_linf = 2;  ///< L-infinity stretch that a chart may have

@@ -50,12 +50,12 @@ struct BakeSettings {
   Sampling sampling = Sampling::fibonacci;
   int bits = 8;  ///< of a stored coefficient
   SeamChoice seams = SeamChoice::equalise;
-  std::string bounces = "0";  ///< how often light bounces: a number, or auto
-  bool bake_albedo = false;   ///< whether the stored transfer has the receivers' albedo in it
-  Surroundings surroundings;  ///< of the asset in its scene
-  ImportSettings import;      ///< of the occluders, and of a mesh whose vertices are baked
-  MaterialSettings material;  ///< of the occluders, and of receivers where no detail folder has it
-  double bounce_edge = 0.01;  ///< longest edge of what it bounces off, fraction of the occluders' diagonal
+  std::string bounces = "0";   ///< how often light bounces: a number, or auto
+  bool bake_albedo = false;    ///< whether the stored transfer has the receivers' albedo in it
+  Surroundings surroundings;   ///< of the asset in its scene
+  ImportSettings import = {};  ///< of the occluders, and of a mesh whose vertices are baked
+  MaterialSettings material;   ///< of the occluders, and of receivers where no detail folder has it
+  double bounce_edge = 0.01;   ///< longest edge of what it bounces off, fraction of the occluders' diagonal
   BakeBackend backend = BakeBackend::automatic;
   BakeReceiver receiver = BakeReceiver::high;
   bool per_vertex = false;  ///< vertices receive light, not texels

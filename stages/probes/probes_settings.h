@@ -20,7 +20,7 @@ struct ProbesSettings {
   Sampling sampling = Sampling::fibonacci;
   std::string bounces = "0";  ///< how often light bounces off the meshes before it reaches a point: a number, or auto
   double bounce_edge = 0.01;  ///< longest edge of what it bounces off, fraction of the meshes' diagonal
-  ImportSettings import;
+  ImportSettings import = {};
   MaterialSettings material;
 };
 

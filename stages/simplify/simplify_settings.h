@@ -28,7 +28,7 @@ struct SimplifySettings {
   SimplifyAwareness aware = SimplifyAwareness::none;
   double crease = 0;    ///< degrees; edges whose dihedral angle (0 in a plane) is larger stay lines; 0: none
   bool strict = false;  ///< an input that needs repair is refused
-  ImportSettings import;
+  ImportSettings import = {};
   /// Components that are left out of the result: of a box's diagonal up to this fraction of the mesh's; 0 keeps all.
   /// "auto": specks of no size beside the result's triangles, where they would take much of `faces`.
   std::string drop_components = "auto";

@@ -2,11 +2,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <gtest/gtest.h>
+#include <random>
 #include <sstream>
 #include <string>
 #include <unistd.h>
@@ -14,8 +16,10 @@
 
 #include "base/errors.h"
 #include "base/outputs.h"
-#include "mesh/draco_file.h"
 #include "import/import_mesh.h"
+#include "mesh/draco_file.h"
+#include "mesh/hard_edges.h"
+#include "mesh/surface_point.h"
 #include "shapes.h"
 
 namespace kiln {
@@ -335,6 +339,254 @@ TEST_F(MeshFile, BadInputIsRefused) {
   }
   EXPECT_THROW(load_mesh(path("missing.obj")), BadInput);
   EXPECT_THROW(load_atlas(path("whole.drc")), BadInput) << "it has no uvs";
+}
+
+// ---- Frames.
+
+std::string to_obj_at(const TriangleMesh& mesh, const Eigen::Vector3d& offset, double scale) {
+  std::ostringstream text;
+  text.precision(17);
+  for (const Eigen::Vector3f& p : mesh.positions)
+    text << "v " << (scale * p.cast<double>() + offset).transpose() << "\n";
+  for (const Triangle& t : mesh.triangles) text << "f " << t[0] + 1 << ' ' << t[1] + 1 << ' ' << t[2] + 1 << "\n";
+  return text.str();
+}
+
+TEST_F(MeshFile, MeshesFarAwayAreMovedAndLoseNothing) {
+  const TriangleMesh ball = shapes::icosphere(4);
+  const Eigen::Vector3d far(448262.25, 120, -5411932.5);
+  const ImportedMesh near = import_mesh(write("near.obj", to_obj_at(ball, {1, 2, 3}, 1)));
+  EXPECT_EQ(near.mesh.frame, MeshFrame()) << "what floats hold stays where it is";
+  const ImportedMesh moved = import_mesh(write("far.obj", to_obj_at(ball, far, 1)));
+  EXPECT_LT((moved.mesh.frame.origin - far).norm(), 8) << "a round number near the mesh";
+  ASSERT_EQ(moved.mesh.triangles, near.mesh.triangles);
+  EXPECT_TRUE(moved.repairs.none()) << moved.repairs.text();
+  for (std::size_t v = 0; v < ball.positions.size(); ++v) {
+    const Eigen::Vector3d truth = ball.positions[v].cast<double>() + far;
+    // Half a step of a float that is no larger than 2, and of a double of that size.
+    EXPECT_LT((moved.mesh.frame.to_file(moved.mesh.positions[v].cast<double>()) - truth).cwiseAbs().maxCoeff(), 2e-7);
+  }
+  // The frame goes through a Draco file, and a mesh is read into the frame of another.
+  save_draco(path("far.drc"), moved.mesh);
+  EXPECT_EQ(load_draco(path("far.drc")).frame, moved.mesh.frame);
+  const ImportedMesh again = import_mesh(path("far.drc"), {}, moved.mesh.frame);
+  EXPECT_EQ(again.mesh.frame, moved.mesh.frame);
+  EXPECT_LT((bounding_box(again.mesh).lowest - bounding_box(moved.mesh).lowest).norm(), 1e-4f);
+}
+
+TEST_F(MeshFile, EverySizeGivesTheSameMesh) {
+  const TriangleMesh ball = shapes::icosphere(2);
+  const ImportedMesh plain = import_mesh(write("plain.obj", to_obj_at(ball, {0, 0, 0}, 1)));
+  for (const int exponent : {-100, -60, -21, 21, 60, 83}) {  // 8e-31 to 1e25
+    SCOPED_TRACE(exponent);
+    const ImportedMesh sized = import_mesh(write("sized.obj", to_obj_at(ball, {0, 0, 0}, std::ldexp(1.0, exponent))));
+    EXPECT_EQ(sized.mesh.triangles, plain.mesh.triangles);
+    // Powers of two round nothing; the ball is 2 across, so that its frame's unit is a power of two besides.
+    const float unit = std::ldexp(1.f, sized.mesh.frame.exponent - exponent);
+    for (std::size_t v = 0; v < ball.positions.size(); ++v)
+      EXPECT_EQ(unit * sized.mesh.positions[v], plain.mesh.positions[v]);
+    EXPECT_EQ(sized.mesh.normals, plain.mesh.normals);
+    save_draco(path("sized.drc"), sized.mesh);
+    const TriangleMesh written = load_draco(path("sized.drc"));
+    EXPECT_EQ(written.frame.exponent, sized.mesh.frame.exponent);
+    EXPECT_NEAR(bounding_box(written).diagonal(), bounding_box(sized.mesh).diagonal(), 1e-4f);
+  }
+}
+
+TEST_F(MeshFile, AxesAndUnitsBecomeOurs) {
+  const fs::path file = write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  const auto top = [&](const ImportSettings& settings, float height) {  // the corner at the end of the axis that is up
+    const TriangleMesh mesh = load_mesh(file, nullptr, settings);
+    EXPECT_TRUE(is_closed(mesh));
+    double volume = 0;
+    for (const Triangle& t : mesh.triangles)
+      volume += mesh.positions[t[0]].cast<double>().dot(
+                    mesh.positions[t[1]].cast<double>().cross(mesh.positions[t[2]].cast<double>())) /
+                6;
+    EXPECT_GT(volume, 0) << "turned, not mirrored";
+    float nearest = 1e9f;
+    for (const Eigen::Vector3f& p : mesh.positions)
+      nearest = std::min(nearest, (p - Eigen::Vector3f(0, height, 0)).norm());
+    return nearest;
+  };
+  EXPECT_LT(top({.up = UpAxis::plus_y}, 2), 1e-6f);
+  EXPECT_LT(top({.up = UpAxis::minus_y}, -2), 1e-6f);
+  EXPECT_LT(top({.up = UpAxis::plus_x}, 1), 1e-6f);
+  EXPECT_LT(top({.up = UpAxis::minus_x}, -1), 1e-6f);
+  EXPECT_LT(top({.up = UpAxis::plus_z}, 3), 1e-6f);
+  EXPECT_LT(top({.up = UpAxis::minus_z}, -3), 1e-6f);
+  EXPECT_LT(top({.up = UpAxis::plus_z, .unit = LengthUnit::centimetres}, 0.03f), 1e-6f);
+  EXPECT_LT(top({.unit = LengthUnit::inches, .scale = 10}, 0.508f), 1e-6f);
+}
+
+// ---- Normals.
+
+/// A cube of -1 to 1, of quads; each corner has the normal `of_side` gives it.
+std::string cube_with_normals(const std::function<Eigen::Vector3d(int side)>& of_side,
+                              const std::string& between = "") {
+  std::string text = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
+  const char* faces[] = {"1 4 3 2", "5 6 7 8", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8"};
+  for (int side = 0; side < 6; ++side) {
+    std::ostringstream normal;
+    normal << of_side(side).transpose();
+    text += "vn " + normal.str() + "\n" + between;
+    std::istringstream corners(faces[side]);
+    text += "f";
+    for (std::string corner; corners >> corner;) text += " " + corner + "//" + std::to_string(side + 1);
+    text += "\n";
+  }
+  return text;
+}
+
+const Eigen::Vector3d side_normals[] = {{0, 0, -1}, {0, 0, 1}, {0, -1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}};
+
+float largest_corner_deviation(const TriangleMesh& mesh) {
+  float largest = 0;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      largest = std::max(largest, (corner_normal(mesh, t, k) - face_normal(mesh, t)).norm());
+  return largest;
+}
+
+TEST_F(MeshFile, HardNormalsOfTheFileStayHard) {
+  const fs::path file = write("hard.obj", cube_with_normals([](int side) { return side_normals[side]; }));
+  const TriangleMesh hard = load_mesh(file);
+  ASSERT_EQ(hard.positions.size(), 8u) << "one vertex a place";
+  EXPECT_TRUE(is_closed(hard));
+  ASSERT_EQ(hard.corner_normals.size(), 12u);
+  EXPECT_LT(largest_corner_deviation(hard), 1e-6f);
+  EXPECT_EQ(hard_edges_of_normals(hard).size(), 12u) << "no diagonal";
+
+  const TriangleMesh split = split_at_hard_edges(hard);
+  EXPECT_EQ(split.positions.size(), 24u);
+  save_draco(path("hard.drc"), split);
+  const TriangleMesh again = load_mesh(path("hard.drc"));
+  EXPECT_EQ(again.positions.size(), 8u);
+  EXPECT_EQ(hard_edges_of_normals(again).size(), 12u);
+
+  const TriangleMesh smooth = load_mesh(file, nullptr, {.normals = parse_normal_choice("smooth")});
+  EXPECT_TRUE(smooth.corner_normals.empty());
+  EXPECT_GT(largest_corner_deviation(smooth), 0.5f);
+  const fs::path plain = write("plain.obj", to_obj(shapes::cube(3)));
+  EXPECT_LT(largest_corner_deviation(load_mesh(plain, nullptr, {.normals = parse_normal_choice("angle:40")})), 1e-6f);
+  EXPECT_TRUE(load_mesh(plain, nullptr, {.normals = parse_normal_choice("angle:91")}).corner_normals.empty());
+  EXPECT_THROW(load_mesh(plain, nullptr, {.normals = parse_normal_choice("file")}), BadInput);
+  EXPECT_THROW(parse_normal_choice("angle:0"), WrongUsage);
+  EXPECT_THROW(parse_normal_choice("flat"), WrongUsage);
+}
+
+TEST_F(MeshFile, NormalsThatFaceAwayAreTurnedOrReplacedAndSaid) {
+  const ImportedMesh inwards =
+      import_mesh(write("in.obj", cube_with_normals([](int side) { return Eigen::Vector3d(-side_normals[side]); })));
+  EXPECT_LT(largest_corner_deviation(inwards.mesh), 1e-6f);
+  ASSERT_EQ(inwards.warnings.size(), 1u);
+  EXPECT_NE(inwards.warnings[0].find("12 triangles of closed parts"), std::string::npos) << inwards.warnings[0];
+
+  const ImportedMesh one_bad =
+      import_mesh(write("bad.obj", cube_with_normals([](int side) {
+                          return Eigen::Vector3d(side == 2 ? 0.0 * side_normals[2] : side_normals[side]);
+                        })));
+  ASSERT_EQ(one_bad.warnings.size(), 1u);
+  EXPECT_NE(one_bad.warnings[0].find("6 corner"), std::string::npos) << one_bad.warnings[0];
+  for (const auto& corners : one_bad.mesh.corner_normals)
+    for (const Eigen::Vector3f& normal : corners) EXPECT_NEAR(normal.norm(), 1, 1e-5f);
+
+  // An open sheet that winds against its normals is turned.
+  const ImportedMesh sheet =
+      import_mesh(write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 -1\nf 1//1 2//1 3//1\n"));
+  EXPECT_LT((face_normal(sheet.mesh, 0) - Eigen::Vector3f(0, 0, -1)).norm(), 1e-6f);
+  EXPECT_EQ(sheet.warnings.size(), 1u);
+}
+
+TEST_F(MeshFile, SmoothingGroupsPartNormals) {
+  // A ridge of four quads: the two left ones are one group, the two right ones another; each pair bends within itself.
+  const std::string strip =
+      "v 0 0 0\nv 1 1 0\nv 2 1.5 0\nv 3 1 0\nv 4 0 0\nv 0 0 1\nv 1 1 1\nv 2 1.5 1\nv 3 1 1\nv 4 0 1\n";
+  const auto hard_edges = [&](const std::string& left, const std::string& right) {
+    return hard_edges_of_normals(
+        load_mesh(write("strip.obj", strip + left + "f 1 6 7 2\nf 2 7 8 3\n" + right + "f 3 8 9 4\nf 4 9 10 5\n")));
+  };
+  EXPECT_TRUE(hard_edges("s off\n", "").empty()) << "said of every face, it says nothing";
+  EXPECT_TRUE(hard_edges("s 1\n", "").empty());
+  EXPECT_EQ(hard_edges("s 1\n", "s 2\n").size(), 1u) << "between the groups";
+  // Each quad's own diagonal lies in a plane, and is no edge to the eye.
+  EXPECT_EQ(hard_edges("s 1\n", "s off\n").size(), 2u) << "and within the right";
+}
+
+// ---- Shapes that need a word.
+
+TEST_F(MeshFile, CornersThatDifferInTheLastDigitAreOne) {
+  // A ball as a soup of triangles whose corners are written with six decimals, the last of which is noise.
+  const TriangleMesh ball = shapes::icosphere(3);
+  std::mt19937 random(1);
+  std::uniform_int_distribution<int> last(-1, 1);
+  std::string text;
+  char line[100];
+  for (const Triangle& t : ball.triangles) {
+    for (const std::uint32_t vertex : t) {
+      const Eigen::Vector3d p = (ball.positions[vertex].cast<double>() * 1e6).array().round();
+      std::snprintf(line, sizeof line, "v %.6f %.6f %.6f\n", (p.x() + last(random)) * 1e-6,
+                    (p.y() + last(random)) * 1e-6, (p.z() + last(random)) * 1e-6);
+      text += line;
+    }
+    text += "f -3 -2 -1\n";
+  }
+  const fs::path file = write("soup.obj", text);
+  const ImportedMesh welded = import_mesh(file, {.weld = parse_weld_choice("4e-6")});
+  EXPECT_EQ(welded.repairs.components, 1);
+  EXPECT_TRUE(is_closed(welded.mesh));
+  EXPECT_EQ(welded.mesh.positions.size(), ball.positions.size());
+  EXPECT_GT(welded.repairs.welded_vertices, 1000);
+  EXPECT_FALSE(welded.warnings.empty());
+  EXPECT_GT(import_mesh(file, {.weld = parse_weld_choice("off")}).repairs.components, 300);
+  EXPECT_THROW(parse_weld_choice("-1"), WrongUsage);
+
+  // Small gaps that are meant stay: two squares 1e-3 apart, whose other edges are as short.
+  const std::string gap =
+      "v 0 0 0\nv 1e-3 0 0\nv 1e-3 1e-3 0\nv 0 1e-3 0\nv 2e-3 0 0\nv 3e-3 0 0\nv 3e-3 1e-3 0\nv 2e-3 1e-3 0\n"
+      "f 1 2 3 4\nf 5 6 7 8\n";
+  EXPECT_EQ(import_mesh(write("gap.obj", gap), {.weld = parse_weld_choice("0.01")}).repairs.components, 2);
+}
+
+TEST_F(MeshFile, BacksAndRoomsAreSaidAndMayBeKept) {
+  const fs::path sheet = write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 4 3 2 1\n");
+  const ImportedMesh dropped = import_mesh(sheet);
+  EXPECT_EQ(dropped.mesh.triangles.size(), 2u) << "a quad and its back are cut alike";
+  EXPECT_EQ(dropped.repairs.dropped_backs, 2);
+  ASSERT_EQ(dropped.warnings.size(), 1u);
+  EXPECT_NE(dropped.warnings[0].find("--backs keep"), std::string::npos);
+  const ImportedMesh kept = import_mesh(sheet, {.keeps_backs = true});
+  EXPECT_EQ(kept.mesh.triangles.size(), 4u);
+  EXPECT_TRUE(is_manifold(kept.mesh));
+  EXPECT_TRUE(kept.warnings.empty());
+
+  TriangleMesh inside_out = shapes::cube(2);
+  for (Triangle& t : inside_out.triangles) std::swap(t[1], t[2]);
+  const fs::path room = write("room.obj", to_obj(inside_out));
+  EXPECT_EQ(import_mesh(room).warnings.size(), 1u);
+  const ImportedMesh as_it_is = import_mesh(room, {.keeps_orientation = true});
+  EXPECT_TRUE(as_it_is.warnings.empty());
+  EXPECT_EQ(geometry(as_it_is.mesh), geometry(inside_out));
+}
+
+TEST_F(MeshFile, CoarseNumbersAreSaid) {
+  // A ball of 2 m whose file counts from the corner of a continent, in centimetres.
+  std::ostringstream text;
+  text.setf(std::ios::fixed);
+  text.precision(2);
+  const TriangleMesh ball = shapes::icosphere(2);
+  for (const Eigen::Vector3f& p : ball.positions)
+    text << "v " << (p.cast<double>() + Eigen::Vector3d(448262, 120, 5411932)).transpose() << "\n";
+  for (const Triangle& t : ball.triangles) text << "f " << t[0] + 1 << ' ' << t[1] + 1 << ' ' << t[2] + 1 << "\n";
+  const ImportedMesh coarse = import_mesh(write("coarse.obj", text.str()));
+  ASSERT_FALSE(coarse.warnings.empty());
+  EXPECT_NE(coarse.warnings[0].find("0.01"), std::string::npos) << coarse.warnings[0];
+}
+
+TEST_F(MeshFile, TrianglesOnALineAreNoMesh) {
+  // Far apart in one direction and all but nothing in the others.
+  EXPECT_THROW(load_mesh(write("line.obj", "v 0 0 0\nv 1 0 0\nv 2 1e-20 0\nv 3 0 1e-20\nf 1 2 3\nf 2 3 4\n")),
+               BadInput);
 }
 
 }  // namespace

@@ -12,9 +12,9 @@ namespace kiln {
 struct AssetHints {
   int width = 0;  ///< atlas.json: texels that the atlas was packed for
   int height = 0;
-  double hausdorff_distance = 0;      ///< simplify.json: from the high to the low mesh, object units
-  ImportSettings import;              ///< simplify.json: how the high mesh was read, which later stages do alike
-  std::vector<std::string> warnings;  ///< simplify.json: what was said of the high mesh
+  double hausdorff_distance = 0;           ///< simplify.json: from the high to the low mesh, object units
+  ImportSettings import = {};              ///< simplify.json: how the high mesh was read, which later stages do alike
+  std::vector<std::string> warnings = {};  ///< simplify.json: what was said of the high mesh
 };
 
 /// Reads atlas.json and simplify.json of `folder`, where there are any. Throws BadInput for a file that is no JSON

@@ -42,8 +42,8 @@ struct ImportSettings {
   UpAxis up = UpAxis::plus_y;
   LengthUnit unit = LengthUnit::none;
   double scale = 1;
-  NormalChoice normals;
-  WeldChoice weld;
+  NormalChoice normals = {};
+  WeldChoice weld = {};
   bool keeps_orientation = false;  ///< closed components that are inside out stay so
   bool keeps_backs = false;        ///< the back of a two-sided sheet stays
   int fill_hole_edges = 0;         ///< holes of at most so many edges are closed; 0 leaves all open

@@ -84,7 +84,8 @@ double ObjVertices::precision(const std::vector<Eigen::Vector3d>& places, const 
   for (std::size_t k = 0; k < places.size(); ++k)
     if (is_used[k]) largest = std::max(largest, places[k].cwiseAbs().maxCoeff());
   if (largest == 0 || !has_fractions_) return 0;
-  return std::pow(10., std::floor(std::log10(largest)) + 1 - most_digits_);
+  constexpr int fewest_digits = 4;  // numbers of fewer are chosen, not rounded
+  return std::pow(10., std::floor(std::log10(largest)) + 1 - std::max(most_digits_, fewest_digits));
 }
 
 }  // namespace kiln

@@ -3,6 +3,8 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 
 namespace kiln {
 
@@ -41,8 +43,18 @@ class Cutter {
       const Eigen::Vector3d diagonal = place(i + 2) - place(i);
       return (place(i + 1) - place(i)).cross(diagonal).dot(diagonal.cross(place(i + 3) - place(i))) < 0;
     };
-    const bool second_shorter = (place(1) - place(3)).squaredNorm() < (place(0) - place(2)).squaredNorm();
-    return folds(0) != folds(1) ? folds(0) : second_shorter;
+    if (folds(0) != folds(1)) return folds(0);
+    const double first = (place(0) - place(2)).norm(), second = (place(1) - place(3)).norm();
+    // Of equal ones that from the least corner, whatever the quad begins with: a quad and its back are cut alike.
+    if (std::abs(first - second) <= 1e-6 * first) return least_of(corners) % 2;
+    return second < first;
+  }
+
+  std::size_t least_of(const Corners& corners) const {
+    const auto is_less = [&](std::uint32_t a, std::uint32_t b) {
+      return std::lexicographical_compare(at(a).begin(), at(a).end(), at(b).begin(), at(b).end());
+    };
+    return static_cast<std::size_t>(std::min_element(corners.begin(), corners.end(), is_less) - corners.begin());
   }
 
   bool cut_polygon(const Corners& corners) {
