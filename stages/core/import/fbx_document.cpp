@@ -304,9 +304,11 @@ std::vector<std::int64_t> FbxDocument::wholes(const FbxRecord& record) const {
 }
 
 bool FbxDocument::holds_floats(const FbxRecord& record, const std::vector<double>& numbers) const {
-  if (record.values.front().type != 'd') return true;
-  return std::all_of(numbers.begin(), numbers.end(), [](double number) {
-    return std::abs(number) <= 3e38 && static_cast<double>(static_cast<float>(number)) == number;
+  // Text files have 15 digits.
+  const double tolerance = record.values.front().type == 'a' ? 1e-14 : 0;
+  return std::all_of(numbers.begin(), numbers.end(), [tolerance](double number) {
+    const auto rounded = std::abs(number) <= 3e38 ? static_cast<double>(static_cast<float>(number)) : number;
+    return std::abs(rounded - number) <= tolerance * std::abs(number);
   });
 }
 

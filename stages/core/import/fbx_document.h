@@ -46,6 +46,7 @@ class FbxDocument {
   explicit FbxDocument(const std::filesystem::path& file);
 
   const std::filesystem::path& file() const { return file_; }
+  std::size_t file_size() const { return bytes_.size(); }
   const FbxRecord& root() const { return root_; }
 
   [[noreturn]] void fail(const std::string& found, const std::string& expected,
@@ -58,7 +59,7 @@ class FbxDocument {
   std::vector<double> numbers(const FbxRecord& record) const;
   std::vector<std::int64_t> wholes(const FbxRecord& record) const;
 
-  /// Whether an array holds floats: numbers of a binary file that are of four bytes, or all of which fit in them.
+  /// Whether an array holds what once were floats: all numbers fit in them, as far as they are written.
   bool holds_floats(const FbxRecord& record, const std::vector<double>& numbers) const;
 
  private:

@@ -176,9 +176,10 @@ class FbxReader {
   void add(const FbxGeometry& geometry, const std::vector<std::int32_t>& materials, const MeshTransform& transform,
            const Object& model) {
     // Copies of a geometry are few, except in files that ask for all the memory there is.
-    constexpr std::size_t most_corners = 1'000'000'000;
-    if (geometry.corners.size() + mesh_.corners.size() > most_corners)
-      document_.fail("places its geometries too often", "at most 10^9 corners", "split the file");
+    const std::size_t most = 12'000'000 + 24 * document_.file_size() + geometry.corners.size();
+    if (geometry.corners.size() + mesh_.corners.size() > most || geometry.vertices.size() + mesh_.places.size() > most)
+      document_.fail("places copies of its geometries out of all proportion to its size",
+                     "at most " + std::to_string(most) + " corners", "split the file, or place fewer copies");
     const auto first_place = static_cast<std::uint32_t>(mesh_.places.size());
     const auto first_normal = static_cast<std::uint32_t>(mesh_.normals.size());
     const auto first_uv = static_cast<std::uint32_t>(mesh_.uvs.size());

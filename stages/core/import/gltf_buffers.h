@@ -79,7 +79,7 @@ class GltfBuffers {
 
   /// How many triangles they can mean in earnest, copies counted: a file that names one mesh again and again, to no end
   /// but to take all the memory, has more.
-  std::size_t most_triangles() const { return std::min<std::size_t>((1u << 20) + 64 * total_bytes(), 100'000'000); }
+  std::size_t most_triangles() const { return std::min<std::size_t>(4'000'000 + 8 * total_bytes(), 100'000'000); }
 
  private:
   std::span<const std::uint8_t> buffer(std::size_t index, const std::string& user);

@@ -33,6 +33,7 @@ class PrimitiveReader {
     if (!is_drawn(attributes, passed_by)) return std::nullopt;
     read_material();
     draco_ = decode_gltf_draco(document_, buffers_, primitive_, result_.place);
+    accessors_["POSITION"] = attribute(*attributes, "POSITION");
     for (const auto& [name, index] : attributes->items())
       if (is_wanted(name)) accessors_[name] = attribute(*attributes, name);
     require_shape("POSITION", 3, 3);
@@ -71,8 +72,8 @@ class PrimitiveReader {
   }
 
   bool is_wanted(const std::string& name) const {
-    return name == "POSITION" || name == "NORMAL" || name == "COLOR_0" || name == uv_name() ||
-           name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_");
+    return name == "NORMAL" || name == "COLOR_0" || name == uv_name() || name.starts_with("JOINTS_") ||
+           name.starts_with("WEIGHTS_");
   }
 
   GltfAccessor attribute(const Json& attributes, const std::string& name) {

@@ -26,10 +26,22 @@ class SceneAssembler {
     mesh_.linear_colors = true;
   }
 
+  /// To be called before copies of a mesh are added. Throws BadInput where they are more than the file can mean.
+  void expect(const std::vector<GltfPrimitive>& primitives, std::size_t copies) {
+    std::size_t triangles = 0;
+    for (const GltfPrimitive& primitive : primitives) triangles += primitive.triangles.size();
+    const std::size_t most = buffers_.most_triangles();  // never fewer than before
+    if (triangles > 0 && copies > (most - expected_triangles_) / triangles)
+      document_.fail("places " + std::to_string(copies) + " copies of a mesh of " + std::to_string(triangles) +
+                         " triangles, out of all proportion to the file's size",
+                     "at most " + std::to_string(most) + " triangles in all", "split the file, or place fewer copies");
+    expected_triangles_ += copies * triangles;
+  }
+
+  std::size_t expected_triangles() const { return expected_triangles_; }
+
+  /// Adds one copy.
   void add(const GltfPrimitive& primitive, const GltfPlacement& placement) {
-    if (primitive.triangles.size() + mesh_.faces.size() > buffers_.most_triangles())
-      document_.fail("places triangles out of all proportion to its size",
-                     "at most " + std::to_string(buffers_.most_triangles()), "split the file, or place fewer copies");
     const bool is_skinned = placement.joints != nullptr && primitive.influences > 0;
     const MeshTransform world(placement.world);
     first_place_ = static_cast<std::uint32_t>(mesh_.places.size());
@@ -97,6 +109,7 @@ class SceneAssembler {
   const GltfDocument& document_;
   const GltfBuffers& buffers_;
   SourceMesh& mesh_;
+  std::size_t expected_triangles_ = 0;
   std::uint32_t first_place_ = 0, first_normal_ = 0;
 };
 
@@ -140,11 +153,13 @@ SourceMesh read_gltf(const std::filesystem::path& file) {
   for (const GltfPlacement& placement : placements) {
     const Key key{placement.mesh, placement.morph_weights};
     auto found = meshes.find(key);
-    if (found == meshes.end())
+    if (found == meshes.end()) {
       found = meshes
                   .emplace(key, read_gltf_mesh(document, buffers, placement.mesh, placement.morph_weights, materials,
-                                               mesh.faces.size(), passed_by))
+                                               assembler.expected_triangles(), passed_by))
                   .first;
+      assembler.expect(found->second, uses[key]);
+    }
     for (const GltfPrimitive& primitive : found->second) assembler.add(primitive, placement);
     if (--uses[key] == 0) meshes.erase(found);
   }
