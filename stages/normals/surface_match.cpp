@@ -73,6 +73,10 @@ SurfaceMatch match_surface(const TriangleMesh& high, const RayScene& scene, cons
   if (agreeing.found()) return {agreeing, MatchWay::nearest_point, true};
   SurfaceMatch nearest{scene.closest_point(low_point, std::numeric_limits<float>::infinity()), MatchWay::nearest_point,
                        false};
+  // At a hard edge the sides are equally near.
+  const SurfacePoint side =
+      scene.closest_facing_point(low_point, low_normal, 1.001f * nearest.point.distance + limits.surface_tolerance);
+  if (side.found()) return {side, MatchWay::nearest_point, true};
   nearest.agrees = face_normal(high, nearest.point.triangle).dot(low_normal) > 0;
   return nearest;
 }

@@ -191,9 +191,10 @@ TEST_F(Material, NothingKnownIsWhite) {
 
 TEST_F(Material, ColoursOutsideAreCountedAndThoseThatAreNoNumbersRefused) {
   const std::string rest = "v 1 0 0 0 0 0\nv 0 1 0 1 1 1\nf 1 2 3\n";
-  MeshRepairs repairs;
-  const TriangleMesh mesh = load_mesh(write("a.obj", "v 0 0 0 2 -1 0.5\n" + rest), &repairs);
-  EXPECT_EQ(repairs.clamped_colors, 1);
+  const ImportedMesh imported = import_mesh(write("a.obj", "v 0 0 0 2 -1 0.5\n" + rest));
+  const TriangleMesh& mesh = imported.mesh;
+  ASSERT_EQ(imported.warnings.size(), 1u);
+  EXPECT_NE(imported.warnings[0].find("1 vertex"), std::string::npos) << imported.warnings[0];
   EXPECT_EQ(mesh.colors[0], Eigen::Vector3f(1, 0, 0.5f));
   // A stream does not read "nan"; a binary file can hold one.
   TriangleMesh holed = mesh;
@@ -210,7 +211,7 @@ TEST_F(Material, ColoursOutsideAreCountedAndThoseThatAreNoNumbersRefused) {
   const std::int32_t corners[3] = {0, 1, 2};
   ply.put(3).write(reinterpret_cast<const char*>(corners), sizeof corners);
   ply.close();
-  EXPECT_NE(message_of([&] { load_mesh(path("nan.ply")); }).find("colour of a vertex that is not a finite number"),
+  EXPECT_NE(message_of([&] { load_mesh(path("nan.ply")); }).find("has a colour that is not a finite number"),
             std::string::npos);
 
   Image<float> texels(2, 2, 3, 0.5f);

@@ -16,6 +16,10 @@ namespace kiln {
 
 namespace {
 
+/// A triangle faces a direction where the cosine is above this: one that lies along it does not, whatever rounding
+/// says.
+constexpr float least_facing_cosine = 1e-3f;
+
 constexpr std::size_t stream_rays = 256;
 
 /// Where in the segment from a to b, 0 to 1, the closest point to p lies.
@@ -127,7 +131,10 @@ SurfacePoint RayScene::Implementation::closest(const Eigen::Vector3f& point, con
         const Triangle& t = own.scene->triangles[arguments->primID];
         const Eigen::Vector3f &a = own.scene->positions[t[0]], &b = own.scene->positions[t[1]],
                               &c = own.scene->positions[t[2]];
-        if (own.facing != nullptr && !((b - a).cross(c - a).dot(*own.facing) > 0)) return false;
+        if (own.facing != nullptr) {
+          const Eigen::Vector3f normal = (b - a).cross(c - a);
+          if (!(normal.dot(*own.facing) > least_facing_cosine * normal.norm() * own.facing->norm())) return false;
+        }
         const Eigen::Vector3d p = own.point.cast<double>(), first = a.cast<double>();
         const Eigen::Vector2d weights = closest_weights(p, first, b.cast<double>(), c.cast<double>());
         const Eigen::Vector3d at =

@@ -39,7 +39,8 @@ class RayScene {
   /// The surface point closest to `point`, at most `farthest` away.
   SurfacePoint closest_point(const Eigen::Vector3f& point, float farthest) const;
 
-  /// closest_point among the triangles that face `facing`: whose normal by winding has a positive dot product with it.
+  /// closest_point among the triangles that face `facing`: whose normal by winding is less than a right angle from it,
+  /// by more than rounding.
   SurfacePoint closest_facing_point(const Eigen::Vector3f& point, const Eigen::Vector3f& facing, float farthest) const;
 
   /// Casts one ray from each origin along the one unit vector `direction`, from `nearest` to infinity, as one stream of
