@@ -38,8 +38,7 @@ struct GltfPassedBy {
 };
 
 /// The primitives of a mesh that hold triangles, at the weights of their morph targets (none: 0 for all). Throws
-/// BadInput that names mesh, primitive and number. The triangles that others
-/// hold already are `triangles_so_far`.
+/// BadInput that names mesh, primitive and number. `triangles_so_far` are those of other meshes.
 std::vector<GltfPrimitive> read_gltf_mesh(const GltfDocument& document, GltfBuffers& buffers, std::size_t mesh,
                                           const std::vector<double>& morph_weights,
                                           const std::vector<GltfMaterial>& materials, std::size_t triangles_so_far,
