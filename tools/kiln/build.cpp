@@ -103,16 +103,49 @@ std::vector<PlanNeighbour> neighbours_of(const Pipeline& pipeline, const Asset& 
   return neighbours;
 }
 
+/// What the record of an earlier run says of the files it read: their hashes by name.
+std::map<std::string, std::string> recorded_hashes(const Pipeline& pipeline, const StageRun& run) {
+  std::error_code error;
+  const fs::path record = pipeline.folder / run.outputs.front();
+  if (record.extension() != ".json" || !fs::is_regular_file(record, error)) return {};
+  const Json json = Json::parse(read_text(record), nullptr, false);
+  if (!json.is_object() || !json.contains("inputs") || !json["inputs"].is_object()) return {};
+  std::map<std::string, std::string> hashes;
+  for (const auto& [file, hash] : json["inputs"].items())
+    if (hash.is_string()) hashes[file] = hash.get<std::string>();
+  return hashes;
+}
+
+/// Arguments that have make take those files for new that no stage makes and that are not what the records say: one
+/// that was replaced by an older file is another input, which times do not tell.
+std::vector<std::string> changed_sources(const Pipeline& pipeline, const std::vector<MakeRule>& rules) {
+  std::set<fs::path> made;
+  for (const MakeRule& rule : rules) made.insert(rule.run.outputs.begin(), rule.run.outputs.end());
+  std::map<fs::path, std::string> hash_of;
+  std::set<fs::path> changed;
+  std::error_code error;
+  for (const MakeRule& rule : rules) {
+    const std::map<std::string, std::string> recorded = recorded_hashes(pipeline, rule.run);
+    for (const fs::path& input : rule.run.inputs) {
+      const auto found = recorded.find(input.string());
+      if (made.contains(input) || found == recorded.end() || !fs::is_regular_file(pipeline.folder / input, error))
+        continue;
+      std::string& hash = hash_of[input];
+      if (hash.empty()) hash = hash_file(pipeline.folder / input);
+      if (hash != found->second) changed.insert(input);
+    }
+  }
+  std::vector<std::string> arguments;
+  for (const fs::path& file : changed) arguments.insert(arguments.end(), {"--what-if", file.string()});
+  return arguments;
+}
+
 /// Files that an earlier run of a stage read besides those that its command names, such as textures of a material: its
 /// record has them.
 std::vector<fs::path> recorded_inputs(const Pipeline& pipeline, const StageRun& run) {
   std::error_code error;
-  const fs::path record = pipeline.folder / run.outputs.front();
-  if (!fs::is_regular_file(record, error)) return {};
-  const Json json = Json::parse(read_text(record), nullptr, false);
-  if (!json.is_object() || !json.contains("inputs") || !json["inputs"].is_object()) return {};
   std::vector<fs::path> files;
-  for (const auto& [file, hash] : json["inputs"].items())
+  for (const auto& [file, hash] : recorded_hashes(pipeline, run))
     if (std::find(run.inputs.begin(), run.inputs.end(), fs::path(file)) == run.inputs.end() &&
         fs::is_regular_file(pipeline.folder / file, error))
       files.emplace_back(file);
@@ -203,7 +236,7 @@ int say_what_would_run(const Pipeline& pipeline, const std::vector<const Asset*>
   // make itself decides, on stamps as they would be: those that would change are new files elsewhere.
   for (MakeRule& rule : rules) {
     std::erase_if(rule.run.inputs, as_its_stage_left_it);
-    const std::string text = stamp_text(rule, pipeline.folder, programs);
+    const std::string text = stamp_text(rule.run, programs);
     if (holds(pipeline.folder / rule.stamp, text)) continue;
     rule.stamp = temporary.path() / fmt::format("{}.command", ++count);
     write_if_changed(rule.stamp, text);
@@ -211,6 +244,8 @@ int say_what_would_run(const Pipeline& pipeline, const std::vector<const Asset*>
   const fs::path makefile = temporary.path() / "Makefile";
   write_if_changed(makefile, makefile_text(rules, programs));
   std::vector<std::string> arguments = {"--dry-run", "STEP=", "PROGRAMS=."};
+  const std::vector<std::string> changed = changed_sources(pipeline, rules);
+  arguments.insert(arguments.end(), changed.begin(), changed.end());
   for (const std::string& name : names_of(assets)) arguments.push_back(name);
   const MakeEnd make = run_make(pipeline, makefile, arguments, {});
   if (!make.end.succeeded()) fail_as_make(make);
@@ -275,19 +310,13 @@ std::vector<MakeRule> make_rules(const Pipeline& pipeline) {
     }
     for (StageRun& run : runs) {
       const fs::path stamp = pipeline.output / ".kiln" / asset.name / (run.name + ".command");
-      rules.push_back({asset.name, std::move(run), stamp, {}});
+      rules.push_back({asset.name, std::move(run), stamp});
     }
   }
-  std::set<fs::path> made;
-  for (const MakeRule& rule : rules) made.insert(rule.run.outputs.begin(), rule.run.outputs.end());
-  for (MakeRule& rule : rules)
-    std::copy_if(rule.run.inputs.begin(), rule.run.inputs.end(), std::back_inserter(rule.sources),
-                 [&](const fs::path& input) { return !made.contains(input); });
   return rules;
 }
 
-std::string stamp_text(const MakeRule& rule, const fs::path& folder, const fs::path& programs) {
-  const StageRun& run = rule.run;
+std::string stamp_text(const StageRun& run, const fs::path& programs) {
   std::string text;
   for (const std::string& word : run.command) text += (text.empty() ? "" : " ") + shell_quoted(word);
   text += fmt::format("\nversion {}\n", KILN_VERSION);
@@ -299,11 +328,6 @@ std::string stamp_text(const MakeRule& rule, const fs::path& folder, const fs::p
       throw MachineLacks(fmt::format("{} is not beside kiln in {}; build it: make build", name, programs.string()));
     text += fmt::format("{} {}\n", name, hash_file(programs / name));
   }
-  // A file that was replaced by an older one is another input, which times alone do not tell.
-  std::error_code error;
-  for (const fs::path& source : rule.sources)
-    if (fs::is_regular_file(folder / source, error))
-      text += fmt::format("{} {}\n", source.string(), hash_file(folder / source));
   return text;
 }
 
@@ -342,8 +366,7 @@ int build(const Pipeline& pipeline, const std::vector<const Asset*>& assets, con
   // The Makefile and the stamps it depends on.
   const fs::path programs = program_folder();
   std::map<std::string, std::string> stamps;
-  for (const MakeRule& rule : rules)
-    write_if_changed(pipeline.folder / rule.stamp, stamp_text(rule, pipeline.folder, programs));
+  for (const MakeRule& rule : rules) write_if_changed(pipeline.folder / rule.stamp, stamp_text(rule.run, programs));
   const fs::path makefile = pipeline.output / "Makefile";
   write_if_changed(pipeline.folder / makefile, makefile_text(rules, programs));
 
@@ -357,6 +380,8 @@ int build(const Pipeline& pipeline, const std::vector<const Asset*>& assets, con
   std::vector<std::string> arguments = {fmt::format("-j{}", jobs),
                                         fmt::format("THREADS={}", std::max(1, cores / side_by_side))};
   if (settings.keep_going) arguments.push_back("--keep-going");
+  const std::vector<std::string> changed = changed_sources(pipeline, rules);
+  arguments.insert(arguments.end(), changed.begin(), changed.end());
   for (const std::string& name : names_of(buildable)) arguments.push_back(name);
   const MakeEnd make = run_make(pipeline, makefile, arguments,
                                 {{step_environment::events, events_file.string()},

@@ -27,9 +27,7 @@ int gravest_status(const std::vector<int>& statuses);
 std::vector<MakeRule> make_rules(const Pipeline& pipeline);
 
 /// What a rule's stamp holds: everything that makes the command give another result. It names the programs without
-/// their folder, but by content, so that a moved build does not make all anew and a changed one does; and so the
-/// sources, whose paths start from `folder`.
-std::string stamp_text(const MakeRule& rule, const std::filesystem::path& folder,
-                       const std::filesystem::path& programs);
+/// their folder, but by content, so that a moved build does not make all anew and a changed one does.
+std::string stamp_text(const StageRun& run, const std::filesystem::path& programs);
 
 }  // namespace kiln

@@ -13,7 +13,6 @@ struct MakeRule {
   std::string asset;
   StageRun run;
   std::filesystem::path stamp;
-  std::vector<std::filesystem::path> sources;  ///< those of run.inputs that no rule makes
 };
 
 /// The Makefile that runs `rules`: one rule per stage of an asset, that makes the stage's record (and with it all its
