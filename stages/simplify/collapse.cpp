@@ -218,7 +218,16 @@ class Collapser {
 
   // Whether a collapse may be.
 
-  bool is_allowed(std::uint32_t a, std::uint32_t b, const Vector& position) {
+  /// Whether a collapse moves the surface by next to nothing, a thousandth of a mean edge over a mean triangle: needles
+  /// do no harm in a plane, and without them hard surfaces lose their chamfers first.
+  bool is_flat(double cost) const {
+    const double volume = 1e-3 * mean_edge() * area_ / mesh_.faces() / 3;
+    return cost <= 0.5 * volume * volume;
+  }
+
+  bool is_allowed(std::uint32_t a, std::uint32_t b, const Evaluation& to) {
+    const Vector& position = to.position;
+    const ShapeLimits limits{is_flat(to.cost) ? 0 : limits_.slenderness, thinnest_[a]};
     bool kept = true;
     for_each_moved(a, b, [&](std::uint32_t, const Triangle& t, std::uint32_t moving) {
       if (!kept) return;
@@ -227,15 +236,15 @@ class Collapser {
         before[k] = positions_[t[k]];
         after[k] = t[k] == moving ? position : before[k];
       }
-      kept = keeps_shape({before[0], before[1], before[2]}, {after[0], after[1], after[2]},
-                         {limits_.slenderness, thinnest_[a]}, [&] { return normal_around(a, b); });
+      kept = keeps_shape({before[0], before[1], before[2]}, {after[0], after[1], after[2]}, limits,
+                         [&] { return normal_around(a, b); });
     });
     if (!kept) return false;
     const CollapsingMesh::Edge edge = mesh_.edge(a, b);
     if (!edge.keeps_topology) return false;
     if (edge.line && !keeps_line(a, b, position)) return false;
     if (!surface_) return true;
-    if (!is_close(position, a) || !keeps_points(a, b, position)) return false;
+    if (!is_close(position, a) || (is_folded(a, b) && !keeps_points(a, b, position))) return false;
     for_each_moved(a, b, [&](std::uint32_t, const Triangle& t, std::uint32_t moving) {
       if (!kept) return;
       std::array<Vector, 3> after;
@@ -279,6 +288,18 @@ class Collapser {
       if (!is_kept(positions_[vertex]) || !std::all_of(points.begin(), points.end(), is_kept)) return false;
     }
     return true;
+  }
+
+  /// Whether the surface around an edge goes about a rim or a tip, which may wear off.
+  bool is_folded(std::uint32_t a, std::uint32_t b) const {
+    const Vector around = normal_around(a, b);
+    const auto faces_elsewhere = [&](std::uint32_t triangle) {
+      const Vector& normal = planes_[triangle].normal;
+      return normal.dot(around) <= smallest_turn_cosine * normal.norm() * around.norm();
+    };
+    const auto at_a = mesh_.triangles_of(a), at_b = mesh_.triangles_of(b);
+    return std::any_of(at_a.begin(), at_a.end(), faces_elsewhere) ||
+           std::any_of(at_b.begin(), at_b.end(), faces_elsewhere);
   }
 
   /// Whether the places of the vertices that became these two stay as close to the surface as it does to the input.
@@ -400,7 +421,7 @@ class Collapser {
         continue;
       }
       compare_from_here();
-      if (!is_allowed(next.a, next.b, now.position)) continue;
+      if (!is_allowed(next.a, next.b, now)) continue;
       const std::uint32_t kept = collapse(next.a, next.b, now.position);
       neighbours.clear();
       for (std::uint32_t triangle : mesh_.triangles_of(kept))
@@ -429,7 +450,7 @@ class Collapser {
       points.push_back(positions_[b]);
       more = {};
     }
-    keep_points(removed, kept, position);
+    if (is_folded(removed, kept)) keep_points(removed, kept, position);
     mesh_.collapse(removed, kept);
     positions_[kept] = position;
     ++versions_[kept];
@@ -458,7 +479,7 @@ class Collapser {
   std::vector<Vector> positions_;  ///< in the frame
   std::vector<TrianglePlane> planes_;
   std::vector<std::uint32_t> versions_;
-  std::vector<std::vector<Vector>> points_;       ///< by vertex: where those were that became it
+  std::vector<std::vector<Vector>> points_;       ///< by vertex of a fold: where those were that became it
   std::vector<std::vector<Vector>> line_points_;  ///< by vertex in a line: those that became it
   std::vector<std::uint32_t> hints_;
   std::vector<float> thinnest_;  ///< by vertex (thinnest_heights)

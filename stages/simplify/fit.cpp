@@ -81,8 +81,9 @@ Vector barycentric(const Vector& p, const Vector& a, const Vector& b, const Vect
 struct Pair {
   SurfacePoint low;
   Vector high;
-  Vector direction;  ///< unit
-  double distance = 0;
+  Vector direction;     ///< unit
+  double distance = 0;  ///< between them
+  double nearest = 0;   ///< to the other surface, whichever way that faces
 };
 
 /// How far apart surfaces are.
@@ -142,7 +143,7 @@ class Fit {
     sample_hints_.resize(samples_.size(), 0);
     const double mean_area =
         surface_area(low) / (frame_.diagonal * frame_.diagonal) / static_cast<double>(triangles_.size());
-    reach_ = 0.5 * std::sqrt(mean_area * 4 / std::sqrt(3.0));
+    reach_ = 0.25 * std::sqrt(mean_area * 4 / std::sqrt(3.0));
   }
 
   TriangleMesh run(const TriangleMesh& low, const ProgressFunction& progress) {
@@ -190,9 +191,8 @@ class Fit {
 
   /// The nearest point that faces as `normal` does, or, where there is none within reach, the nearest. On a wall that
   /// is thinner than the error, the nearest may be of the other side.
-  NearestSurface::Hit nearest(const NearestSurface& surface, const Vector& point, const Vector& normal,
-                              std::uint32_t hint) const {
-    const NearestSurface::Hit hit = surface.nearest(point, hint);
+  NearestSurface::Hit facing(const NearestSurface& surface, const Vector& point, const Vector& normal,
+                             const NearestSurface::Hit& hit) const {
     if (surface.normal(hit).dot(normal) >= 0) return hit;
     return surface.nearest_facing(point, {normal, 0, std::sqrt(hit.squared_distance) + reach_}, hit.hint).value_or(hit);
   }
@@ -209,13 +209,15 @@ class Fit {
       });
     };
     in_chunks(samples_.size(), [&](std::size_t i) {
-      const NearestSurface::Hit hit = nearest(low_surface, samples_[i], sample_normals_[i], sample_hints_[i]);
+      const NearestSurface::Hit nearest = low_surface.nearest(samples_[i], sample_hints_[i]);
+      const NearestSurface::Hit hit = facing(low_surface, samples_[i], sample_normals_[i], nearest);
       sample_hints_[i] = hit.hint;
       const Triangle& t = triangles_[hit.triangle];
       Pair& pair = from_high_[i];
       pair.low = {hit.triangle, barycentric(hit.point, positions_[t[0]], positions_[t[1]], positions_[t[2]])};
       pair.high = samples_[i];
       pair.distance = std::sqrt(hit.squared_distance);
+      pair.nearest = std::sqrt(nearest.squared_distance);
       pair.direction =
           pair.distance > 1e-7 ? ((samples_[i] - hit.point) / pair.distance).eval() : low_surface.normal(hit);
     });
@@ -239,10 +241,12 @@ class Fit {
       Pair& pair = from_low_[i];
       pair.low = low_samples_[i];
       const Vector point = point_of(pair.low);
-      const NearestSurface::Hit hit = nearest(surface_, point, normals[pair.low.triangle], low_hints_[i]);
+      const NearestSurface::Hit nearest = surface_.nearest(point, low_hints_[i]);
+      const NearestSurface::Hit hit = facing(surface_, point, normals[pair.low.triangle], nearest);
       low_hints_[i] = hit.hint;
       pair.high = hit.point;
       pair.distance = std::sqrt(hit.squared_distance);
+      pair.nearest = std::sqrt(nearest.squared_distance);
       pair.direction = pair.distance > 1e-7 ? ((point - hit.point) / pair.distance).eval() : surface_.normal(hit);
     });
   }
@@ -253,7 +257,7 @@ class Fit {
                                                 std::pair(&from_low_, static_cast<std::size_t>(sample_count_))}) {
       double sum = 0;
       for (std::size_t i = 0; i < pairs->size(); ++i) {
-        const double distance = (*pairs)[i].distance;
+        const double distance = (*pairs)[i].nearest;
         if (i < spread_samples) sum += distance * distance;
         error.largest = std::max(error.largest, distance);
       }
@@ -359,7 +363,7 @@ class Fit {
     const Vector middle = (positions_[t[0]] + positions_[t[1]] + positions_[t[2]]) / 3;
     const NearestSurface::Hit hit = surface_.nearest(middle, low_hints_.empty() ? 0 : low_hints_[0]);
     if (surface_.normal(hit).dot(shape.normal) >= smallest_facing * shape.normal.norm()) return true;
-    const double within = std::sqrt(hit.squared_distance) + 0.5 * reach_;
+    const double within = std::sqrt(hit.squared_distance) + reach_;
     return surface_.nearest_facing(middle, {shape.normal, smallest_facing, within}, hit.hint).has_value();
   }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <boost/container/small_vector.hpp>
 #include <cmath>
 #include <limits>
 #include <tbb/parallel_for.h>
@@ -95,16 +96,8 @@ class QuickCollapser {
     mark_.resize(vertices, 0);
     list_triangles_around();
     quadrics_.resize(vertices);
-    tbb::parallel_for(std::size_t{0}, vertices, [&](std::size_t i) {
-      for (std::uint32_t triangle : around(static_cast<std::uint32_t>(i))) {
-        const Triangle& t = triangles_[triangle];
-        Vector normal = (positions_[t[1]] - positions_[t[0]]).cross(positions_[t[2]] - positions_[t[0]]);
-        const double length = normal.norm();
-        if (!(length > 0)) continue;
-        normal /= length;
-        quadrics_[i].add_plane(normal, normal.dot(positions_[t[0]]), length / 2);
-      }
-    });
+    tbb::parallel_for(std::size_t{0}, vertices,
+                      [&](std::size_t i) { quadrics_[i] = quadric_of(static_cast<std::uint32_t>(i)); });
   }
 
   void run(int target, const ProgressFunction& progress) {
@@ -117,6 +110,49 @@ class QuickCollapser {
   }
 
  private:
+  TriangleShape shape_of(const Triangle& t) const { return {positions_[t[0]], positions_[t[1]], positions_[t[2]]}; }
+
+  Quadric quadric_of(std::uint32_t vertex) const {
+    Quadric quadric;
+    boost::container::small_vector<Vector, 16> normals;
+    Vector sum = Vector::Zero();
+    for (std::uint32_t triangle : around(vertex)) {
+      const Triangle& t = triangles_[triangle];
+      Vector normal = (positions_[t[1]] - positions_[t[0]]).cross(positions_[t[2]] - positions_[t[0]]);
+      const double length = normal.norm();
+      if (length > 0) normal /= length;
+      if (length > 0) quadric.add_plane(normal, normal.dot(positions_[t[0]]), length / 2);
+      // A needle's or a cap's is noise.
+      if (is_thin(shape_of(t), {0, thinnest_[vertex]})) normal = Vector::Zero();
+      normals.push_back(normal);
+      sum += normal;
+    }
+    // Where all face much the same way, no edge is sharp.
+    const double sharpest = 0.9 * sum.norm();
+    if (std::any_of(normals.begin(), normals.end(), [&](const Vector& n) { return n.dot(sum) < sharpest; }))
+      add_sharp_edges(vertex, {normals.data(), normals.size()}, quadric);
+    return quadric;
+  }
+
+  /// Adds planes through the sharp edges at a vertex, upright on either triangle: the rim of a thin wall is so little
+  /// surface that its own planes would let it wear off. At a right angle they are those of the triangles themselves.
+  void add_sharp_edges(std::uint32_t vertex, std::span<const Vector> normals, Quadric& quadric) const {
+    constexpr double sharp_cosine = 0.5, weight = 0.1;
+    const std::span<const std::uint32_t> triangles = around(vertex);
+    for (std::size_t i = 0; i < triangles.size(); ++i)
+      for (std::size_t j = 0; j < triangles.size(); ++j) {
+        if (i == j || normals[i].isZero() || normals[j].isZero()) continue;
+        if (normals[i].dot(normals[j]) > sharp_cosine) continue;
+        for (const std::uint32_t other : triangles_[triangles[i]]) {
+          const Triangle& t = triangles_[triangles[j]];
+          if (other == vertex || (t[0] != other && t[1] != other && t[2] != other)) continue;
+          const Vector edge = positions_[other] - positions_[vertex];
+          const Vector upright = edge.cross(normals[i]).normalized();
+          quadric.add_plane(upright, upright.dot(positions_[vertex]), weight * edge.squaredNorm());
+        }
+      }
+  }
+
   std::span<const std::uint32_t> around(std::uint32_t vertex) const {
     return {around_.data() + around_begin_[vertex], around_begin_[vertex + 1] - around_begin_[vertex]};
   }

@@ -67,8 +67,8 @@ class Reducer {
     return 0.8 * sequence.faces_after(close) <= sequence.faces_after(all) ? close : all;
   }
 
-  /// The fitted mesh; or, where a draft has a smaller Hausdorff distance, what has the least RMS of those that are no
-  /// worse than it: other meshes, fitted, and in the end itself. So best is never worse than draft.
+  /// The fitted mesh; or, where a draft has a smaller distance, what has the least RMS of those whose Hausdorff
+  /// distance is no larger than its: other meshes, fitted, and in the end itself. So best is never worse than draft.
   Reduced best_to_faces(const ProgressFunction& progress) const {
     const CollapseSequence sequence = collapse(SimplifyQuality::best, settings_.faces, false, part(progress, 0, 0.1));
     const std::size_t count = careful_count(sequence);
@@ -79,14 +79,14 @@ class Reducer {
     Reduced draft = unfitted(draft_sequence, draft_count);
     const std::size_t most_faces = std::max(static_cast<std::size_t>(settings_.faces), result.mesh.triangles.size());
     if (draft.mesh.triangles.size() > most_faces) return result;
-    const double bound = distance_(draft.mesh).hausdorff;
-    if (distance_(result.mesh).hausdorff <= bound) return result;
+    const MeshDistance bound = distance_(draft.mesh), found = distance_(result.mesh);
+    if (found.hausdorff <= bound.hausdorff && found.rms <= bound.rms) return result;
 
-    double least = std::numeric_limits<double>::infinity();
+    double least = found.hausdorff <= bound.hausdorff ? found.rms : std::numeric_limits<double>::infinity();
     const auto consider = [&](Reduced candidate) {
       if (candidate.mesh.triangles.size() > most_faces) return;
       const MeshDistance distance = distance_(candidate.mesh);
-      if (distance.hausdorff > bound || !(distance.rms < least)) return;
+      if (distance.hausdorff > bound.hausdorff || !(distance.rms < least)) return;
       least = distance.rms;
       result = std::move(candidate);
     };

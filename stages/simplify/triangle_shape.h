@@ -41,9 +41,9 @@ inline bool is_thin(const TriangleShape& triangle, const ShapeLimits& limits) {
 }
 
 /// Whether a triangle may change so: it does not turn over, nor become thin or more slender than the limits. One that
-/// was more slender from the start, as scans have them, may stay as bad. What was thin, such as the needles and caps
-/// that CSG leaves on edges, may change in any way, so that it can go, but when it becomes wide again, it faces as what
-/// is `around` it: a sum of normals, asked for only then.
+/// was more slender from the start, as the rims of thin walls are, may get longer, but not lower. What was thin, such
+/// as the needles and caps that CSG leaves on edges, may change in any way, so that it can go, but when it becomes wide
+/// again, it faces as what is `around` it: a sum of normals, asked for only then.
 template <class Around>
 bool keeps_shape(const TriangleShape& before, const TriangleShape& after, const ShapeLimits& limits,
                  const Around& around) {
@@ -53,7 +53,9 @@ bool keeps_shape(const TriangleShape& before, const TriangleShape& after, const 
       smallest_turn_cosine * smallest_turn_cosine * before.normal.squaredNorm() * after.normal.squaredNorm();
   if (!(cosine_part > 0) || cosine_part * cosine_part < smallest) return false;
   if (is_thin(after, limits)) return false;
-  return after.squared_slenderness() >= std::min(limits.slenderness * limits.slenderness, before.squared_slenderness());
+  const double squared_limit = limits.slenderness * limits.slenderness;
+  if (after.squared_slenderness() >= std::min(squared_limit, before.squared_slenderness())) return true;
+  return before.squared_slenderness() < 4 * squared_limit && after.squared_height >= 0.8 * before.squared_height;
 }
 
 }  // namespace kiln
