@@ -352,9 +352,9 @@ TEST(Normals, AThinEarKeepsItsSides) {
   }
 }
 
-/// The simplified bunny, each triangle in a square of its own of 32 * 32.
+/// The bunny of so few triangles that its ears reach into each other, each triangle in a square of its own of 32 * 32.
 TriangleMesh bunny_of_single_charts(const TriangleMesh& high) {
-  const TriangleMesh low = simplify(high, {.faces = 1000}).mesh;
+  const TriangleMesh low = simplify(high, {.faces = 300}).mesh;
   TriangleMesh charts;
   for (std::size_t t = 0; t < low.triangles.size(); ++t) {
     const Eigen::Vector2f corner(static_cast<float>(t % 32), static_cast<float>(t / 32));
@@ -395,7 +395,7 @@ TEST(Normals, TheBunnysEarsKeepTheirSides) {
       nearest_on_the_other_side +=
           (high.positions[t[1]] - a).cross(high.positions[t[2]] - a).dot(low_normal) < 0 ? 1 : 0;
     });
-    EXPECT_GT(on_ears, 5000);
+    EXPECT_GT(on_ears, 2500);
     // What the test is about: the nearest point often is the other side's.
     EXPECT_GT(nearest_on_the_other_side, 0);
     EXPECT_EQ(result.disagreeing, 0);
