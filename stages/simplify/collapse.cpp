@@ -35,7 +35,7 @@ struct Limits {
   double line;         ///< farthest that a vertex of the input's feature edges may be from them, in the same edges
   double facing;       ///< smallest cosine between a triangle's normal and that of the input where it is nearest
 };
-constexpr Limits passes[] = {{0.15, 0.05, 0.05, 0.1}, {0.15, 0.05, 0.15, 0.1}, {0.3, 0.02, 0.3, 0.1}, {0.4, 0, 0.4, 0}};
+constexpr Limits passes[] = {{0.15, 0.05, 0.05, 0.1}, {0.15, 0.05, 0.15, 0.1}, {0.3, 0.02, 0.3, 0.1}, {0.6, 0, 0.6, 0}};
 constexpr double close_distance = 0.15;  ///< of the passes that hurt nothing
 
 /// What triangles are compared with has no more than these, or those where the comparison begins: a hierarchy of a

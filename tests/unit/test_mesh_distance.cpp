@@ -93,6 +93,45 @@ TEST(NearestSurface, FindsFacesEdgesAndCorners) {
   expect_nearest({4, 2, 1}, {3, 1, 0});
 }
 
+TEST(NearestSurface, FindsTheSideThatFacesAWay) {
+  // Two squares back to back, 0.01 apart, and a point just above the upper one.
+  TriangleMesh lower = shapes::plane(4, 1, 0);
+  for (Triangle& t : lower.triangles) std::swap(t[1], t[2]);
+  const NearestSurface wall(shapes::joined(lower, shapes::plane(4, 1, 0.01f), Eigen::Vector3f::Zero()));
+  const Eigen::Vector3d point(0.1, 0.012, 0.2), up = Eigen::Vector3d::UnitY();
+  EXPECT_NEAR(wall.nearest_facing(point, {up})->point.y(), 0.01, 1e-6);
+  EXPECT_NEAR(wall.nearest_facing(point, {-up})->point.y(), 0, 1e-6);
+  EXPECT_FALSE(wall.nearest_facing(point, {-up, 0, 0.005}));
+  EXPECT_TRUE(wall.nearest_facing(point, {-up, 0, 0.013}));
+  EXPECT_FALSE(wall.nearest_facing(point, {Eigen::Vector3d::UnitX(), 0.1}));
+}
+
+TEST(NearestSurface, FacingAgreesWithEveryTriangleOnItsOwn) {
+  const TriangleMesh torus = shapes::torus(12);
+  const NearestSurface surface(torus);
+  std::uint32_t hint = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Eigen::Vector3d point(std::sin(7.0 * i), 0.5 * std::sin(13.0 * i), std::sin(3.0 * i + 1));
+    const Eigen::Vector3d normal(std::cos(5.0 * i), std::sin(11.0 * i), std::cos(2.0 * i + 1));
+    const double smallest_cosine = 0.9 * std::sin(1.7 * i);
+    double expected = HUGE_VAL;
+    for (const auto& [a, b, c] : torus.triangles) {
+      const Eigen::Vector3d pa = torus.positions[a].cast<double>(), pb = torus.positions[b].cast<double>(),
+                            pc = torus.positions[c].cast<double>();
+      const Eigen::Vector3d face = (pb - pa).cross(pc - pa).normalized();
+      // Floats decide which side of the bound a triangle is on; none of these is that near to it.
+      if (face.dot(normal.normalized()) >= smallest_cosine)
+        expected = std::min(expected, (nearest_on_triangle(point, pa, pb, pc) - point).squaredNorm());
+    }
+    const auto hit = surface.nearest_facing(point, {normal, smallest_cosine}, hint);
+    ASSERT_EQ(hit.has_value(), expected < HUGE_VAL);
+    if (!hit) continue;
+    EXPECT_EQ(hit->squared_distance, expected);
+    EXPECT_GE(surface.normal(*hit).dot(normal.normalized()), smallest_cosine);
+    hint = hit->hint;
+  }
+}
+
 TEST(NearestSurface, AgreesWithEveryTriangleOnItsOwn) {
   const TriangleMesh sheet = shapes::wavy_sheet(8);
   const NearestSurface surface(sheet);
