@@ -95,7 +95,9 @@ TEST(StlReader, BrokenTextsAreRefused) {
   files.expect_refused(replaced(plain, " endfacet\n", ""), {"a.stl:8", "a facet within a facet"});
   files.expect_refused(plain.substr(0, plain.find("0.5")), {"is truncated"});
   files.expect_refused(plain.substr(0, plain.find("0.5") + 5), {"is truncated"});
-  files.expect_refused(plain.substr(0, plain.rfind("endfacet")), {"is truncated", "facet 4"});
+  files.expect_refused(plain.substr(0, plain.rfind("endfacet")), {"is truncated", "facet 3"});
+  files.expect_refused(plain.substr(0, plain.rfind("endfacet") + 4), {"is truncated", "facet 3"});
+  files.expect_refused(replaced(plain, "endfacet", "end"), {"a.stl:8", "'end'"});
   files.expect_refused("solid x\nendsolid x\n", {"has no facets"});
   files.expect_refused("<!DOCTYPE html>\n" + std::string(200, 'x'), {"begins with '<!DOCTYPE html>'"});
 }

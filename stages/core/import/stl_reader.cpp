@@ -44,9 +44,7 @@ class StlText {
   SourceMesh read() {
     pass_comments();
     while (words_.to_word()) read_word(words_.next_on_line());
-    if (in_facet_ || !corners_.empty())
-      throw BadInput(file_, "is truncated: it ends within facet " + std::to_string(mesh_.faces.size() + 1),
-                     "a whole STL file", remedy);
+    if (in_facet_) throw truncated();
     if (in_solid_) mesh_.warnings.push_back("the last solid has no 'endsolid'; the file may have been cut short");
     check_places();
     return std::move(mesh_);
@@ -71,8 +69,12 @@ class StlText {
     if (is("endloop")) return end_loop();
     if (is("endfacet")) return end_facet();
     if (is("solid") || is("endsolid")) return read_solid(is("solid"));
-    if (is("end")) return read_word("end" + std::string(words_.next_on_line()));
+    if (is("end")) {  // "end solid", "end facet"
+      if (const std::string_view next = words_.next_on_line(); !next.empty())
+        return read_word("end" + std::string(next));
+    }
     if (word.front() == '#' || word.front() == ';' || word.starts_with("//")) return words_.skip_line();
+    if (words_.rest().empty()) throw truncated();
     throw BadInput(words_.where(), "the unknown word " + in_quotes(word),
                    "solid, facet normal, outer loop, vertex, endloop, endfacet or endsolid", remedy);
   }
@@ -87,6 +89,12 @@ class StlText {
       if (word.empty() || (same_word(word, "facet") && same_word(ahead.next_on_line(), "normal"))) return;
       words_.next_on_line();
     }
+  }
+
+  BadInput truncated() const {
+    return BadInput(file_,
+                    "is truncated: it ends within facet " + std::to_string(mesh_.faces.size() + (has_loop_ ? 0 : 1)),
+                    "a whole STL file", remedy);
   }
 
   BadInput odd(const std::string& found) const {
@@ -111,8 +119,7 @@ class StlText {
     const std::string where = words_.where();
     for (double& value : place) {
       const std::string_view word = words_.next_on_line();
-      if (word.empty() && words_.rest().empty())
-        throw BadInput(file_, "is truncated: it ends within a vertex", "a whole STL file", remedy);
+      if (word.empty() && words_.rest().empty()) throw truncated();
       if (word.empty()) throw BadInput(where, "a vertex of fewer than three numbers", "three numbers", remedy);
       value = words_.number(word);
       precision_.add(word);

@@ -12,10 +12,10 @@ namespace kiln {
 /// feed, a carriage return or both; blanks are spaces, tabs, form feeds and vertical tabs.
 class TextWords {
  public:
-  /// `file` is for messages. The text begins in line `first_line`. What follows the character `comment` on a line is
-  /// passed by; 0: there is no such character.
-  TextWords(std::string file, std::string_view text, std::uint32_t first_line = 1, char comment = '\0')
-      : file_(std::move(file)), rest_(text), line_(first_line), comment_(comment) {}
+  /// `file` is for messages; it and the text are not copied. The text begins in line `first_line`. What follows the
+  /// character `comment` on a line is passed by; 0: there is no such character.
+  TextWords(std::string_view file, std::string_view text, std::uint32_t first_line = 1, char comment = '\0')
+      : file_(file), rest_(text), line_(first_line), comment_(comment) {}
 
   /// Moves to the next word, on this line or a later one. False where there is none.
   bool to_word();
@@ -33,7 +33,7 @@ class TextWords {
   std::string_view rest() const { return rest_; }
 
   /// "scan.ply:12", of this line.
-  std::string where() const { return file_ + ":" + std::to_string(line_); }
+  std::string where() const { return std::string(file_) + ":" + std::to_string(line_); }
 
   /// The number that a word of this line stands for; NaN and infinities are numbers here. Throws BadInput, with the
   /// line and the word, for other words, such as "0,5".
@@ -43,8 +43,7 @@ class TextWords {
   double whole_number(std::string_view word) const;
 
  private:
-  std::string file_;
-  std::string_view rest_;
+  std::string_view file_, rest_;
   std::uint32_t line_;
   char comment_;
 };
