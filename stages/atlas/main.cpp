@@ -38,12 +38,14 @@ int main(int argc, char** argv) {
       high = std::move(imported.mesh);
     }
     command.warn(warnings, hints.warnings);
+    AtlasSettings in_frame = settings;
+    in_frame.texels_per_unit *= low.frame.unit();
     OutputSet outputs(folder_of(atlas_file));
 
     // Run.
     const AtlasResult result = settings.keep_uv
-                                   ? keep_uvs(low, settings, low_file.string())
-                                   : make_atlas(low, settings, low_file.string(), command.progress("atlas"),
+                                   ? keep_uvs(low, in_frame, low_file.string())
+                                   : make_atlas(low, in_frame, low_file.string(), command.progress("atlas"),
                                                 high_file.empty() ? nullptr : &high);
 
     // Save, and measure what was saved.

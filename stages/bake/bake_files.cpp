@@ -40,6 +40,9 @@ std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSetti
     if (is_draco_file(paths.atlas)) how = {};  // it is in our axes and units already
   }
   const MeshFrame& frame = settings.per_vertex ? scene.vertex_mesh.frame : scene.atlas.frame;
+  if (settings.subsurface.wanted() && frame.exponent != 0)
+    throw BadInput(paths.atlas.string(), "is a million times larger or smaller than one unit",
+                   "a size that light scatters beneath, in millimetres", "make the asset anew with --scale or --unit");
   std::vector<ImportedMesh> imported;
   for (const fs::path& file : files) {
     imported.push_back(import_mesh(file, how, frame));

@@ -1,3 +1,5 @@
+#include <optional>
+
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "material/load_albedo.h"
@@ -31,6 +33,11 @@ int main(int argc, char** argv) {
       const ImportedMesh imported = import_mesh(file, settings.import, frame);
       command.warn(imported.warnings);
       frame = imported.mesh.frame;
+      if (*frame != MeshFrame())
+        throw BadInput(file.string(),
+                       "lies many times its size from the origin, or is a million times larger or smaller "
+                       "than one unit",
+                       "a mesh whose probes can be told as floats", "move it, or give --scale");
       if (settings.bounces == "0") {
         scene.add(imported.mesh);
         continue;

@@ -45,7 +45,7 @@ class Cutter {
     };
     if (folds(0) != folds(1)) return folds(0);
     const double first = (place(0) - place(2)).norm(), second = (place(1) - place(3)).norm();
-    // Of equal ones that from the least corner, whatever the quad begins with: a quad and its back are cut alike.
+    // Equal ones: from the least corner, whatever the quad begins with, so that a quad and its back are cut alike.
     if (std::abs(first - second) <= 1e-6 * first) return least_of(corners) % 2;
     return second < first;
   }

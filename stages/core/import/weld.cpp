@@ -53,7 +53,7 @@ bool any_border(const std::vector<double>& shortest) {
   return std::any_of(shortest.begin(), shortest.end(), [](double length) { return std::isfinite(length); });
 }
 
-/// Of each place on a border, by its number, the squared length of the shortest edge there; infinity elsewhere.
+/// The squared length of the shortest edge at each place on a border, by its number; infinity elsewhere.
 std::vector<double> shortest_border_edges(const SourceMesh& source, const std::vector<CutTriangle>& triangles,
                                           const std::vector<std::uint32_t>& number) {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> edges;

@@ -49,7 +49,7 @@ Triangle triangle_of(const SurfaceMesh& surface, Face face) {
   return {surface.source(first), surface.target(first), surface.target(surface.next(first))};
 }
 
-/// Of the faces beside `face` the first that is older than a patch, else `otherwise`.
+/// The first face beside `face` that is older than a patch, else `otherwise`.
 Face neighbour_of(const SurfaceMesh& surface, Face face, std::uint32_t old_faces, Face otherwise) {
   for (const Halfedge edge : surface.halfedges_around_face(surface.halfedge(face))) {
     const Face beside = surface.face(surface.opposite(edge));
