@@ -33,8 +33,9 @@ struct UnitFrame {
   Eigen::Vector3d from_object(const Eigen::Vector3f& p) const { return (p.cast<double>() - centre) / diagonal; }
 };
 
-/// Of each vertex: the height below which its triangles are too thin, in a frame where `diagonal` is 1. A component has
-/// what 16 bits can tell in its own box, but not less than what 24 bits, the most that a file has, can in the mesh's.
+/// Finds for each vertex the height below which its triangles are too thin, in a frame where `diagonal` is 1. A
+/// component has what 16 bits can tell in its own box, but not less than what 24 bits, the most that a file has, can in
+/// the mesh's.
 std::vector<float> thinnest_heights(const TriangleMesh& mesh, double diagonal);
 
 /// The triangles around each vertex of an oriented manifold whose edges are collapsed one by one. Positions are up to

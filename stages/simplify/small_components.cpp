@@ -41,7 +41,7 @@ int least_triangles(const Component& component) { return std::min(component.tria
 /// The edge of an equilateral triangle where `faces` of them have this area.
 double mean_edge(double area, int faces) { return std::sqrt(area / faces * 4 / std::sqrt(3.0)); }
 
-/// Of those that `may_go` and have less than a hundredth of `area`, the smallest first, as many as have no more than
+/// Lists those that `may_go` and have less than a hundredth of `area`, the smallest first, as many as have no more than
 /// `largest_share` of it together.
 template <class MayGo>
 std::vector<std::uint32_t> specks(const std::vector<Component>& components, double area, double largest_share,

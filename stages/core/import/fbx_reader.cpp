@@ -25,7 +25,8 @@ using Vector = Eigen::Vector3d;
 
 Eigen::Affine3d moved(const Vector& by) { return Eigen::Affine3d(Eigen::Translation3d(by)); }
 
-/// Of angles in degrees about x, y and z, in one of the SDK's orders: 0 turns about x first, then y, then z.
+/// The rotation by angles in degrees about x, y and z, in one of the SDK's orders: 0 turns about x first, then y, then
+/// z.
 Eigen::Affine3d turned(const Vector& degrees, int order) {
   constexpr std::array<std::array<int, 3>, 7> orders = {
       {{0, 1, 2}, {0, 2, 1}, {1, 2, 0}, {1, 0, 2}, {2, 0, 1}, {2, 1, 0}, {0, 1, 2}}};

@@ -17,7 +17,7 @@ using Json = GltfDocument::Json;
 constexpr std::size_t none = ~std::size_t{0};
 constexpr std::size_t most_weights = 4096;  // every node may have its own
 
-/// Of translation, rotation (a quaternion x, y, z, w of any length) and scale; absent ones are empty.
+/// The transform of translation, rotation (a quaternion x, y, z, w of any length) and scale; absent ones are empty.
 Eigen::Matrix4d composed(const std::vector<double>& translation, const std::vector<double>& rotation,
                          const std::vector<double>& scale) {
   Eigen::Affine3d result = Eigen::Affine3d::Identity();

@@ -14,7 +14,7 @@ struct GltfPlacement {
   std::size_t mesh = 0;
   Eigen::Matrix4d world = Eigen::Matrix4d::Identity();
   std::vector<double> morph_weights;
-  /// Of a skinned mesh, for each joint of the skin: from the mesh's space to the world's, at rest. Else null.
+  /// The transform of each joint of a skinned mesh: from the mesh's space to the world's, at rest. Else null.
   std::shared_ptr<const std::vector<Eigen::Matrix4d>> joints;
 };
 
