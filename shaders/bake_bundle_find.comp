@@ -23,6 +23,7 @@ layout(std430, binding = 9) readonly buffer Corners {
 uniform int batch_directions;
 uniform int first_row;               // of the batch among the block's hits
 uniform float depth_bias;            // in map depths, 0 to 1
+uniform float position_bias;         // the same, in object units
 uniform float angle_bias_texels;     // of the map
 uniform float normal_offset_texels;  // of the map
 uniform float depth_rounding;        // in map depths
@@ -41,7 +42,7 @@ uint nearest_before(int layer, vec3 position, vec3 normal, float cosine) {
   float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
   float tangent = min(sine / cosine, STEEPEST_SLOPE);
   float texel_slope = texel_size * tangent / extent.z;  // depth over one texel of the receiver's plane
-  float limit = at.z - depth_bias - angle_bias_texels * texel_slope - depth_rounding;
+  float limit = at.z - depth_bias - position_bias / extent.z - angle_bias_texels * texel_slope - depth_rounding;
   vec2 place = at.xy * float(size) - 0.5;  // whole at texel centres
   vec2 tap = floor(place + 0.5);
 #if RECEIVER_PLANE == 1

@@ -45,7 +45,7 @@ uint tile_class(Tile tile, int layer) {
   float least_cosine = cosine * sqrt(max(1.0 - tile.cone.w * tile.cone.w, 0.0)) - sine * tile.cone.w - 1e-4;
   float tangent = STEEPEST_SLOPE;
   if (least_cosine > 0.0) tangent = min(tangent, sqrt(1.0 - least_cosine * least_cosine) / least_cosine);
-  float slack = depth_bias + (angle_bias_texels + error_band_texels + tap_reach) * tangent * texel_size / extent.z + 4.0 * depth_rounding + 1e-6;
+  float slack = depth_bias + position_bias / extent.z + (angle_bias_texels + error_band_texels + tap_reach) * tangent * texel_size / extent.z + 4.0 * depth_rounding + 1e-6;
   if (at.z + reach / extent.z + slack < least) return CLASS_LIT;
 #if TRIANGLE_IDS == 0
   if (min(at.z - reach / extent.z - slack, 1.0) > greatest) return CLASS_SHADOWED;  // nothing lies behind depth 1

@@ -30,6 +30,7 @@ layout(binding = 1) uniform sampler2DArray back_depth_maps;
 uniform int batch_directions;
 uniform int first_row;               // of the batch among the block's weights
 uniform float depth_bias;            // in map depths, 0 to 1
+uniform float position_bias;         // the same, in object units
 uniform float angle_bias_texels;     // of the depth map
 uniform float normal_offset_texels;  // of the depth map
 uniform float error_band_texels;     // of the depth map
@@ -82,7 +83,7 @@ float visibility(int layer, int r, vec3 position, vec3 normal, float cosine) {
   float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
   float tangent = min(sine / cosine, STEEPEST_SLOPE);
   float texel_slope = texel_size * tangent / extent.z;  // depth over one texel of the receiver's plane
-  float limit = at.z - depth_bias - angle_bias_texels * texel_slope - depth_rounding;
+  float limit = at.z - depth_bias - position_bias / extent.z - angle_bias_texels * texel_slope - depth_rounding;
 
   ivec2 size = textureSize(depth_maps, 0).xy;
   vec2 place = at.xy * vec2(size) - 0.5;  // whole at texel centres

@@ -10,8 +10,8 @@
 #include "atlas/choose.h"
 #include "atlas/density.h"
 #include "atlas/pack.h"
-#include "base/command_line.h"
 #include "base/errors.h"
+#include "base/stopwatch.h"
 #include "mesh/draco_file.h"
 #include "raycast/surface_transfer.h"
 

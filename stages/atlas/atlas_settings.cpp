@@ -1,5 +1,7 @@
 #include "atlas/atlas_settings.h"
 
+#include "base/errors.h"
+
 namespace kiln {
 
 OptionSet atlas_options(AtlasSettings& settings) {
@@ -24,6 +26,13 @@ OptionSet atlas_options(AtlasSettings& settings) {
                             "Time for cutting and packing: seconds, or what it takes to make the most of the atlas");
   add_import_options(options, settings.import);
   return options;
+}
+
+void check_size_settings(const AtlasSettings& settings, bool size_given) {
+  if (settings.texels_per_unit > 0 && size_given)
+    throw WrongUsage("texels-per-unit: found --size as well; expected one of them");
+  if (settings.texels_per_unit > 0 && settings.keep_uv)
+    throw WrongUsage("texels-per-unit: found --keep-uv; expected --size, which those uvs are checked at");
 }
 
 }  // namespace kiln

@@ -28,4 +28,7 @@ struct AtlasSettings {
 
 OptionSet atlas_options(AtlasSettings& settings);
 
+/// Throws WrongUsage where settings of size do not go together; `size_given`: somebody set `size`.
+void check_size_settings(const AtlasSettings& settings, bool size_given);
+
 }  // namespace kiln

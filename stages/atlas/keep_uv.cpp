@@ -8,8 +8,8 @@
 
 #include "atlas/chart.h"
 #include "atlas/measure.h"
-#include "base/command_line.h"
 #include "base/errors.h"
+#include "base/stopwatch.h"
 #include "mesh/uv_raster.h"
 
 namespace kiln {

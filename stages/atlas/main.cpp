@@ -22,10 +22,7 @@ int main(int argc, char** argv) {
     command.parse(argc, argv);
     settings.seed = command.seed();
 
-    if (settings.texels_per_unit > 0 && command.app().count("--size") > 0)
-      throw WrongUsage("texels-per-unit: found --size as well; expected one of them");
-    if (settings.texels_per_unit > 0 && settings.keep_uv)
-      throw WrongUsage("texels-per-unit: found --keep-uv; expected --size, which those uvs are checked at");
+    check_size_settings(settings, command.given("size"));
 
     // Load.
     const AssetHints hints = read_asset_hints(folder_of(low_file));

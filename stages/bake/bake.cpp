@@ -8,7 +8,7 @@
 
 #include "bake/bounce/bounced_light.h"
 #include "bake/engines/engines.h"
-#include "base/command_line.h"
+#include "base/stopwatch.h"
 #include "base/errors.h"
 #include "sh/basis.h"
 

@@ -3,6 +3,7 @@
 #include <optional>
 #include <utility>
 
+#include "bake/engines/engines.h"
 #include "bake/planes/coefficient_planes.h"
 #include "bake/planes/vertex_planes.h"
 #include "bake/scene/vertex_receivers.h"
@@ -82,6 +83,21 @@ std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSetti
   return meshes;
 }
 
+/// Sets aside receivers that are buried in the occluders, if they stand on them: points of the low mesh lie here and
+/// there inside the high one, and are not buried.
+void set_aside_buried(const BakePaths& paths, const BakeSettings& settings, BakeScene& scene) {
+  const bool on_high = settings.receiver == BakeReceiver::high, high_shadows = !paths.occluders.empty();
+  if (settings.buried == BuriedChoice::keep || settings.subsurface.wanted() || on_high != high_shadows) return;
+  const float ray_offset = ray_offset_of(settings, scene.occluders.hull);
+  scene.buried = settings.per_vertex
+                     ? set_aside_buried_vertices(scene.receivers, scene.vertex_mesh, scene.occluders, ray_offset)
+                     : set_aside_buried(scene.receivers, scene.atlas, scene.occluders, ray_offset);
+  if (scene.buried.everything)
+    scene.add_warnings(
+        {"all of the surface stands inside another part of the occluders, where no light comes: it is baked "
+         "as it is"});
+}
+
 /// Whether the transfer has it: then it must not be multiplied again, as if the surface were white.
 bool has_albedo_within(const BakeSettings& settings) { return settings.bake_albedo || settings.subsurface.wanted(); }
 
@@ -103,10 +119,11 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
   VertexReceivers vertices = on_high ? receivers_on_high_of_vertices(scene.vertex_mesh, occluders.front())
                                      : receivers_on_vertices(scene.vertex_mesh);
   scene.receivers = std::move(vertices.receivers);
-  if (settings.bake_albedo) take_albedos(scene.receivers, scene.occluders);
   if (on_high) scene.high_area = surface_area(occluders.front());
   for (std::size_t r = 0; r < scene.receivers.texels.size(); ++r)
     scene.vertex_mesh.normals[scene.receivers.texels[r]] = scene.receivers.normals[r];
+  set_aside_buried(paths, settings, scene);
+  if (settings.bake_albedo) take_albedos(scene.receivers, scene.occluders);
   scene.vertex_metrics = {{"receiver_distance_largest", vertices.largest_distance},
                           {"vertices_facing_away", vertices.facing_away}};
   if (has_albedo_within(settings)) scene.albedo = Json{1, 1, 1};
@@ -151,7 +168,7 @@ Json describe_subsurface(const SubsurfaceReport& report) {
           {"seconds", report.seconds}};
 }
 
-/// Gives what came of the seams, for bake.json.
+/// Gives what came of storing and of the seams, for bake.json.
 Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeResult& result,
                     const BakeSettings& settings) {
   AssetFiles files{"atlas.drc", "", scene.albedo, scene.normal_space};
@@ -167,15 +184,17 @@ Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene&
   else
     outputs.remove_stale(albedo_name);
   const Seams seams(scene.atlas, scene.receivers.width, scene.receivers.height);
-  const PlaneSeams done =
+  const WrittenPlanes done =
       write_planes(outputs, result.channels, scene.receivers, settings.bits, files, seams, settings.seams);
   outputs.remove_stale(vertex_mesh_name);
-  return {{"edges", seams.edges().size()},
-          {"seam_mismatch_mean_before", done.before.mean},
-          {"seam_mismatch_max_before", done.before.largest},
-          {"seam_mismatch_mean", done.after.mean},
-          {"seam_mismatch_max", done.after.largest},
-          {"change", done.change}};
+  return {{"quantisation_error", done.quantisation_error},
+          {"seams",
+           {{"edges", seams.edges().size()},
+            {"seam_mismatch_mean_before", done.before.mean},
+            {"seam_mismatch_max_before", done.before.largest},
+            {"seam_mismatch_mean", done.after.mean},
+            {"seam_mismatch_max", done.after.largest},
+            {"change", done.change}}}};
 }
 
 }  // namespace
@@ -217,6 +236,7 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
   const std::vector<TriangleMesh> occluders = load_occluders(paths, settings, scene);
   if (settings.receiver == BakeReceiver::high && !paths.occluders.empty())
     scene.high_area = surface_area(occluders.front());
+  set_aside_buried(paths, settings, scene);
   if (settings.bake_albedo && detail && !settings.material.constant())
     take_albedos(scene.receivers, *detail);
   else if (settings.bake_albedo)
@@ -230,7 +250,9 @@ Json describe_bake(const BakeScene& scene, const BakeResult& result) {
   Json metrics = {{"backend", backend_name(result.backend)},
                   {"renderer", result.renderer},
                   {"software_renderer", result.software_renderer},
-                  {"texels", scene.receivers.texels.size()},
+                  {"texels", scene.receivers.texels.size() + scene.buried.buried},
+                  {"buried_texels", scene.buried.buried},
+                  {"moved_texels", scene.buried.moved},
                   {"directions", result.directions},
                   {"texel_directions_per_second", texel_directions / integration_seconds},
                   {"coefficients", result.channels.front().coefficients},
@@ -278,16 +300,15 @@ Json save_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scen
     const std::vector<std::uint32_t> sources =
         write_vertex_planes(outputs, result.channels, scene.receivers, scene.vertex_mesh, settings.bits, scene.albedo);
     stored = read_vertex_planes(outputs.staging(), scene.receivers, sources);
-    places = {{"vertices", sources.size()}};
+    places = {{"vertices", sources.size()}, {"quantisation_error", relative_l2(stored, result.channels)}};
     places.update(scene.vertex_metrics);
   } else {
-    const Json seams = write_textured(outputs, paths, scene, result, settings);
+    places = write_textured(outputs, paths, scene, result, settings);
     stored = read_planes(outputs.staging(), scene.receivers);
-    places = {{"width", scene.receivers.width}, {"height", scene.receivers.height}, {"seams", seams}};
+    places.update({{"width", scene.receivers.width}, {"height", scene.receivers.height}});
   }
 
   Json metrics = describe_bake(scene, result);
-  metrics["quantisation_error"] = relative_l2(stored, result.channels);
   metrics.update(places);
   if (settings.verify_directions > 0) {
     const BakeVerification v = verify(result, stored, scene.receivers, scene.occluders, settings, command.seed(),

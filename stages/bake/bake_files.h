@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bake/bake.h"
+#include "bake/scene/buried_receivers.h"
 #include "base/command_line.h"
 
 namespace kiln {
@@ -27,6 +28,7 @@ struct BakeScene {
 
   NormalSpace normal_space = NormalSpace::object;  ///< of the normal map
   Json albedo;           ///< of the receivers, as ranges.json has it (AssetFiles); null: unknown
+  BuriedReport buried;   ///< what is not among the receivers
   double high_area = 0;  ///< of the mesh that receivers on the high mesh stand on, square object units; else 0
 
   // Of a bake per vertex alone.

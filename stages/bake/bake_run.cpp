@@ -1,5 +1,7 @@
 #include "bake/bake_run.h"
 
+#include <CLI/CLI.hpp>
+
 #include "base/errors.h"
 
 namespace kiln {

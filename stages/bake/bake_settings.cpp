@@ -44,8 +44,9 @@ void add_shadow_options(OptionSet& options, BakeSettings& settings) {
               "Depth comparisons per receiver and direction (egl)")
       .choice("shadow-compare", shadows.receiver_plane, {{"plane", true}, {"point", false}},
               "Depth that a texel is compared with: of the receiver's tangent plane there, or the receiver's own (egl)")
-      .number("shadow-bias", shadows.depth_bias, 0, 1,
-              "Constant depth bias as a fraction of the occluders' depth (egl)")
+      .number_or_auto("shadow-bias", shadows.depth_bias, 0, 1,
+                      "Constant depth bias as a fraction of the occluders' depth (egl); auto: as much as the precision "
+                      "of their positions asks for")
       .number("shadow-angle-bias", shadows.angle_bias_texels, 0, 16,
               "Depth bias in depth map texels times the tangent of the angle between normal and direction (egl)")
       .number("normal-offset", shadows.normal_offset_texels, 0, 16,
@@ -111,6 +112,10 @@ OptionSet bake_options(BakeSettings& settings) {
           "of the first --occluder), or the low mesh's")
       .toggle("per-vertex", settings.per_vertex, "Bake into the vertices of any mesh: no atlas, no --detail, no --size")
       .integer("bits", settings.bits, 8, 16, "Bits of a stored coefficient, 8 or 16")
+      .choice(
+          "buried", settings.buried, {{"fill", BuriedChoice::fill}, {"keep", BuriedChoice::keep}},
+          "Fills texels that stand inside another part of the occluders from those beside them, or bakes them, black "
+          "as they are; subsurface always keeps them")
       .choice("seams", settings.seams, {{"equalise", SeamChoice::equalise}, {"keep", SeamChoice::keep}},
               "Changes texels near the atlas' seams so that lookups on both sides agree, or keeps them")
       .extent("size", settings.size, 0, 16384,
@@ -121,8 +126,10 @@ OptionSet bake_options(BakeSettings& settings) {
   add_subsurface_options(options, settings.subsurface);
   add_shadow_options(options, settings);
   options
-      .number("ray-offset", settings.ray_offset, 0, 1,
-              "Start of a ray off the surface as a fraction of the occluders' diagonal (rays)")
+      .number_or_auto(
+          "ray-offset", settings.ray_offset, 0, 1,
+          "Start of a ray off the surface as a fraction of the occluders' diagonal (rays); auto: as much as "
+          "the precision of their positions asks for")
       .integer("verify-directions", settings.verify_directions, 0, 100'000'000,
                "Also measure the error against that many rays per texel, and against the other backend; 0 for no")
       .integer("verify-texels", settings.verify_texels, 1, 100'000'000,

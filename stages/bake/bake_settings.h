@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "bake/egl/shadow_settings.h"
@@ -27,6 +28,12 @@ std::string backend_name(BakeBackend backend);
 /// mesh.
 enum class BakeReceiver { high, low };
 
+/// What is done about receivers that stand inside another part of the occluders, where no one sees them.
+enum class BuriedChoice {
+  fill,  ///< not baked: filled from those beside them, so that nothing black bleeds into what is seen
+  keep   ///< baked as they are
+};
+
 /// How often light bounces.
 struct BounceTarget {
   bool automatic = false;  ///< until the next bounce adds less than what storing costs
@@ -49,6 +56,7 @@ struct BakeSettings {
   double adaptive = 0;             ///< relative L2 that interpolating texels may cost; 0: every texel is baked
   Sampling sampling = Sampling::fibonacci;
   int bits = 8;  ///< of a stored coefficient
+  BuriedChoice buried = BuriedChoice::fill;
   SeamChoice seams = SeamChoice::equalise;
   std::string bounces = "0";   ///< how often light bounces: a number, or auto
   bool bake_albedo = false;    ///< whether the stored transfer has the receivers' albedo in it
@@ -61,9 +69,9 @@ struct BakeSettings {
   bool per_vertex = false;  ///< vertices receive light, not texels
   Extent size;              ///< texels, where there is no detail folder to say so; 0: what the atlas was packed for
   std::string gl_device = "auto";
-  int shadow_size = 1024;     ///< texels; 0: the smallest whose error is under that of storing
-  ShadowMapSettings shadows;  ///< but for the size
-  double ray_offset = 1e-4;   ///< fraction of the occluders' bounding box diagonal
+  int shadow_size = 1024;            ///< texels; 0: the smallest whose error is under that of storing
+  ShadowMapSettings shadows;         ///< but for the size
+  std::optional<double> ray_offset;  ///< fraction of the occluders' bounding box diagonal; none: rounding_offset
   SubsurfaceSettings subsurface;
   int verify_directions = 0;  ///< 0: no verification
   int verify_texels = 8192;

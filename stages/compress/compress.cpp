@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "base/command_line.h"
+#include "base/stopwatch.h"
 #include "base/errors.h"
 #include "compress/compress_files.h"
 

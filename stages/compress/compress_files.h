@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/command_line.h"
+#include "base/outputs.h"
 #include "compress/compress.h"
 #include "compress/small_png.h"
 #include "compress/stored_pca.h"

@@ -9,13 +9,15 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "base/command_line.h"
+#include "base/stopwatch.h"
 #include "base/errors.h"
 #include "image/gutter.h"
 #include "image/srgb.h"
 #include "mesh/uv_raster.h"
 #include "normals/texel_match.h"
+#include "raycast/buried_test.h"
 #include "raycast/ray_scene.h"
+#include "sh/ray_offset.h"
 
 namespace kiln {
 
@@ -113,6 +115,23 @@ void measure_deviation(const Image<float>& shown_object, const TriangleMesh& atl
   result.normal_deviation_degrees_mean = sum / static_cast<double>(raster.covered_texels);
 }
 
+/// Marks the covered texels whose points are buried, and counts them.
+std::size_t mark_buried(const BuriedTest& is_buried, const UvRaster& raster, const TexelMatches& matches,
+                        Image<std::uint8_t>& ways) {
+  std::vector<std::uint32_t> texels;
+  std::vector<Eigen::Vector3f> positions, normals;
+  for (std::uint32_t texel = 0; texel < raster.texels.size(); ++texel) {
+    if (!raster.texels[texel].covered()) continue;
+    texels.push_back(texel);
+    positions.emplace_back(ConstPixel(matches.position.values().data() + 3 * std::size_t{texel}));
+    normals.emplace_back(ConstPixel(matches.normal_object.values().data() + 3 * std::size_t{texel}).normalized());
+  }
+  const std::vector<std::uint8_t> buried = is_buried({positions, normals});
+  for (std::size_t k = 0; k < texels.size(); ++k)
+    if (buried[k] != 0) ways.values()[texels[k]] = static_cast<std::uint8_t>(TexelWay::buried);
+  return static_cast<std::size_t>(std::count(buried.begin(), buried.end(), 1));
+}
+
 Image<std::uint8_t> picture_of(const Image<std::uint8_t>& ways) {
   Image<std::uint8_t> picture(ways.width(), ways.height(), 3);
   for (int j = 0; j < ways.height(); ++j)
@@ -142,6 +161,7 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   // How far to look.
   NormalsResult result;
   const RayScene scene(high);
+  const BuriedTest is_buried(high.positions, high.triangles, rounding_offset(high.positions));
   const double diagonal = bounding_box(high).diagonal();
   double distance = settings.cage * diagonal;
   result.cage_source = "option";
@@ -155,10 +175,12 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   const MatchLimits limits{static_cast<float>(distance), static_cast<float>(surface_tolerance * diagonal)};
 
   // A high point and normal for each texel.
-  TexelMatches matches = match_texels({high, scene, albedo}, atlas, raster, limits, settings.samples, settings.fit,
-                                      [&](double fraction) { progress(0.9 * fraction); });
+  TexelMatches matches = match_texels({high, scene, albedo, is_buried}, atlas, raster, limits, settings.samples,
+                                      settings.fit, [&](double fraction) { progress(0.9 * fraction); });
   const std::vector<std::uint8_t> covered = coverage_of(raster);
   result.position = matches.position;
+  Image<std::uint8_t> ways = matches.way;
+  result.buried_texels = mark_buried(is_buried, raster, matches, ways);
   fill_gutters(result.position, covered);
   if (high.frame.exponent != 0)
     for (float& value : result.position.values()) value = static_cast<float>(value * high.frame.unit());
@@ -173,7 +195,7 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   result.coverage = Image<std::uint8_t>(size.width, size.height, 1);
   std::transform(covered.begin(), covered.end(), result.coverage.values().begin(),
                  [](std::uint8_t c) { return static_cast<std::uint8_t>(c != 0 ? 255 : 0); });
-  result.match = picture_of(matches.way);
+  result.match = picture_of(ways);
   result.albedo = albedo;
   if (!albedo.is_constant())
     result.albedo_map =
@@ -226,6 +248,7 @@ Json NormalsResult::to_json() const {
           {"found_by_ray_inwards", found_by_ray_inwards},
           {"found_by_nearest_point", found_by_nearest_point},
           {"disagreeing", disagreeing},
+          {"buried_texels", buried_texels},
           {"cage_distance", cage_distance},
           {"cage_source", cage_source},
           {"mean_distance", mean_distance},

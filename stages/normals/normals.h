@@ -22,7 +22,7 @@ struct NormalsResult {
   Image<std::uint16_t> normal;   ///< as normal.png holds it: 3 channels, n * 0.5 + 0.5, gutters filled
   Image<float> position;         ///< object-space point of the high mesh, 3 channels, gutters filled
   Image<std::uint8_t> coverage;  ///< 255 where covered, else 0
-  Image<std::uint8_t> match;     ///< 3 channels: how each texel's point was found, a colour of texel_way_colours
+  Image<std::uint8_t> match;     ///< 3 channels: a colour of texel_way_colours for each texel
 
   SurfaceAlbedo albedo;                 ///< of the high mesh
   std::optional<AlbedoMap> albedo_map;  ///< where that is not constant
@@ -35,7 +35,8 @@ struct NormalsResult {
   double disagreeing = 0;    ///< share of texels whose high point faces the other side; part of found_by_nearest_point
   double cage_distance = 0;  ///< object units
   std::string cage_source;   ///< "option", "simplify.json" or "measured"
-  double mean_distance = 0;  ///< low to high points, fractions of the high mesh's diagonal
+  std::size_t buried_texels = 0;  ///< covered texels whose centre's point is inside another part of the high mesh
+  double mean_distance = 0;       ///< low to high points, fractions of the high mesh's diagonal
   double largest_distance = 0;
   double normal_deviation_degrees_mean = 0;  ///< between the low mesh's normal and the map's
   double normal_deviation_degrees_largest = 0;

@@ -67,6 +67,29 @@ RowSums match_centres(int j, const HighSurface& high, const TriangleMesh& atlas,
   return sums;
 }
 
+/// Gives the texels beside the charts their points, but for those that are buried.
+void match_ring(const HighSurface& high, const TriangleMesh& atlas, const UvRaster& raster, const MatchLimits& limits,
+                TexelMatches& matches) {
+  const std::vector<RingTexel> ring = ring_of_charts(atlas, raster);
+  std::vector<SurfacePoint> points(ring.size());
+  std::vector<Eigen::Vector3f> positions(ring.size()), normals(ring.size());
+  tbb::parallel_for(std::size_t{0}, ring.size(), [&](std::size_t k) {
+    const Eigen::Vector3f low_normal = interpolate(atlas, atlas.normals, ring[k].nearest).normalized();
+    points[k] = match_surface(high.mesh, high.scene, ring[k].low_point, low_normal, limits).point;
+    positions[k] = position_at(high.mesh, points[k]);
+    normals[k] = normal_at(high.mesh, points[k]);
+  });
+  const std::vector<std::uint8_t> buried = high.is_buried({positions, normals});
+  for (std::size_t k = 0; k < ring.size(); ++k) {
+    if (buried[k] != 0) continue;
+    matches.known.texels[ring[k].texel] = ring[k].nearest;
+    ++matches.known.covered_texels;
+    const std::size_t first = 3 * static_cast<std::size_t>(ring[k].texel);
+    Pixel(matches.normal_object.values().data() + first) = normals[k];
+    if (!high.albedo.is_constant()) Pixel(matches.albedo.values().data() + first) = albedo_at(high.albedo, points[k]);
+  }
+}
+
 /// From the normals at texels' centres those whose bilinear lookups are nearest to what lies between them: the best
 /// linear spline for f at steps of h has the coefficients f - h^2 / 12 f'' + O(h^4), and f'' is a difference of
 /// neighbours, axis by axis. What BilinearFit solves for with many samples, to second order, from one.
@@ -214,18 +237,7 @@ TexelMatches match_texels(const HighSurface& high, const TriangleMesh& atlas, co
   }
   matches.mean_distance /= static_cast<double>(std::max<std::int64_t>(1, raster.covered_texels));
 
-  // Beside the charts.
-  const std::vector<RingTexel> ring = ring_of_charts(atlas, raster);
-  tbb::parallel_for(std::size_t{0}, ring.size(), [&](std::size_t k) {
-    const RingTexel& texel = ring[k];
-    matches.known.texels[texel.texel] = texel.nearest;
-    const Eigen::Vector3f low_normal = interpolate(atlas, atlas.normals, texel.nearest).normalized();
-    const SurfacePoint point = match_surface(high.mesh, high.scene, texel.low_point, low_normal, limits).point;
-    const std::size_t first = 3 * static_cast<std::size_t>(texel.texel);
-    Pixel(matches.normal_object.values().data() + first) = normal_at(high.mesh, point);
-    if (!high.albedo.is_constant()) Pixel(matches.albedo.values().data() + first) = albedo_at(high.albedo, point);
-  });
-  matches.known.covered_texels += static_cast<std::int64_t>(ring.size());
+  match_ring(high, atlas, raster, limits, matches);
   if (samples <= 1) {
     if (fit_one) sharpen(matches.normal_object, raster, matches.known);
     return matches;

@@ -10,15 +10,17 @@
 #include "mesh/triangle_mesh.h"
 #include "mesh/uv_raster.h"
 #include "normals/surface_match.h"
+#include "raycast/buried_test.h"
 #include "raycast/ray_scene.h"
 
 namespace kiln {
 
-/// The high mesh, with normals, its rays, and what it reflects.
+/// The high mesh, with normals, its rays, what it reflects, and which of its points are inside it.
 struct HighSurface {
   const TriangleMesh& mesh;
   const RayScene& scene;
   const SurfaceAlbedo& albedo;
+  const BuriedTest& is_buried;
 };
 
 /// What match_texels found out; rows from the bottom.
@@ -33,7 +35,8 @@ struct TexelMatches {
 };
 
 /// The high mesh's points for all texels of `raster`, that of `atlas`; texels beside a chart, which lookups at its edge
-/// see, have the normal of the high mesh where the low mesh's triangle continues beyond the edge. With `fit_one` and
+/// see, have the normal of the high mesh where the low mesh's triangle continues beyond the edge, unless that place is
+/// buried in another part of the high mesh. With `fit_one` and
 /// one sample texels hold what makes bilinear lookups fit, a little sharper than the normals at their centres. With
 /// `samples` of 4, 16 or 64, that many points of a regular grid in each texel are matched, those outside all charts
 /// left out, and normals are those whose bilinear lookups fit the points' best (BilinearFit); albedo the same, kept

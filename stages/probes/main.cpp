@@ -1,8 +1,7 @@
-#include <optional>
-
 #include "base/command_line.h"
 #include "base/errors.h"
-#include "material/load_albedo.h"
+#include "base/stopwatch.h"
+#include "probes/probe_files.h"
 #include "probes/probe_points.h"
 #include "probes/probes.h"
 
@@ -21,35 +20,13 @@ int main(int argc, char** argv) {
     command.output(output, "Folder for matrices.json and matrices.png");
     command.options("Probes", probes_options(settings));
     command.parse(argc, argv);
-    if (!points_file.empty() && (command.app().count("--grid") > 0 || command.app().count("--box") > 0))
+    if (!points_file.empty() && (command.given("grid") || command.given("box")))
       throw WrongUsage("--points and a grid are two ways to say where probes stand; give one of them");
 
     // Load.
     std::vector<Eigen::Vector3f> points;
     if (!points_file.empty()) points = read_points(points_file);
-    ProbeScene scene;
-    std::optional<MeshFrame> frame;  // that of the first mesh
-    for (const std::filesystem::path& file : high_files) {
-      const ImportedMesh imported = import_mesh(file, settings.import, frame);
-      command.warn(imported.warnings);
-      frame = imported.mesh.frame;
-      if (*frame != MeshFrame())
-        throw BadInput(file.string(),
-                       "lies many times its size from the origin, or is a million times larger or smaller "
-                       "than one unit",
-                       "a mesh whose probes can be told as floats", "move it, or give --scale");
-      if (settings.bounces == "0") {
-        scene.add(imported.mesh);
-        continue;
-      }
-      const LoadedAlbedo loaded = load_albedo(imported, settings.material);
-      if (loaded.albedo.source() == SurfaceAlbedo::Source::none)
-        throw WrongUsage("bounces: found no albedo in " + file.string() +
-                         "; expected materials, colours of vertices, --albedo or --albedo-texture");
-      command.warn(loaded.warnings());
-      command.also_read(loaded.files);
-      scene.add(imported.mesh, loaded.albedo);
-    }
+    const ProbeScene scene = load_probe_scene(high_files, settings, command);
     OutputSet outputs(output);
 
     // Run.

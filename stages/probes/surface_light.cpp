@@ -6,13 +6,13 @@
 #include "raycast/beam_transfer.h"
 #include "raycast/gather.h"
 #include "sh/directions.h"
+#include "sh/ray_offset.h"
 
 namespace kiln {
 
 namespace {
 
 constexpr double automatic_share = 1e-3;
-constexpr double ray_offset = 1e-4;  // fraction of the scene's diagonal, as kiln-bake has it
 
 double norm(const std::vector<float>& values) {
   double sum = 0;
@@ -67,8 +67,7 @@ SurfaceLight light_surface(const ProbeScene& scene, const ProbesSettings& settin
   order_coherently(directions, block_directions);
   const RayScene rays(cache.positions, cache.triangles);
   const BeamScene beams(cache.positions, cache.triangles);
-  const BeamReceivers receivers(cache.receivers(),
-                                static_cast<float>(ray_offset * bounding_box(scene.mesh).diagonal()));
+  const BeamReceivers receivers(cache.receivers(), rounding_offset(scene.mesh.positions));
   const int coefficients = settings.bands * settings.bands, width = light.channels * coefficients;
   const auto part_done = [&](int part, double fraction) { progress((part + fraction) / (bounces + 1)); };
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "base/command_line.h"
+#include "base/stopwatch.h"
 #include "base/errors.h"
 #include "base/process.h"
 #include "image/image_file.h"

@@ -42,6 +42,8 @@ constexpr Known known_metrics[] = {
     {"found_by_ray_inwards", "found by ray inwards", Unit::share},
     {"found_by_nearest_point", "found by nearest point", Unit::share},
     {"disagreeing", "normals disagreeing", Unit::share},
+    {"buried_texels", "texels buried in another part", Unit::plain},
+    {"moved_texels", "texels moved to a place that is not buried", Unit::plain},
     {"cage_distance", "cage distance, object units", Unit::plain},
     {"mean_distance", "mean distance, object units", Unit::plain},
     {"largest_distance", "largest distance, object units", Unit::plain},

@@ -1,3 +1,5 @@
+#include <CLI/CLI.hpp>
+
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "report/page.h"

@@ -7,13 +7,13 @@
 
 #include "raycast/ray_scene.h"
 #include "raycast/ray_transfer.h"
+#include "sh/ray_offset.h"
 
 namespace kiln {
 
 namespace {
 
 constexpr std::size_t batch_receivers = 16384;  // bounds the memory that transfer vectors of many bands take
-constexpr float ray_offset_relative = 1e-4f;    // of the box' diagonal, as kiln-bake has it
 
 /// The surface points that the samples of a picture see, in the order of the samples' rows.
 struct VisiblePoints {
@@ -68,8 +68,9 @@ std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const Ref
                                              std::span<const Eigen::Vector3f> directions,
                                              const ProgressFunction& progress) {
   const VisiblePoints points = visible_points(RayScene(mesh), mesh, view);
-  const RayScene scene(joined(mesh, view.surroundings));
-  const float ray_offset = ray_offset_relative * bounding_box(mesh).diagonal();
+  const TriangleMesh occluders = joined(mesh, view.surroundings);
+  const RayScene scene(occluders);
+  const float ray_offset = rounding_offset(occluders.positions);                      // as kiln-bake has it
   const float share = 1.f / static_cast<float>(view.supersample * view.supersample);  // of a pixel that one sample has
   std::vector<Image<float>> pictures(lights.size(), Image<float>(view.width, view.height, 4));
   if (lights.empty()) return pictures;

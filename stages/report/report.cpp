@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "base/command_line.h"
+#include "base/stopwatch.h"
 
 namespace kiln {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/command_line.h"
+#include "base/stopwatch.h"
 #include "base/errors.h"
 #include "mesh/hard_edges.h"
 #include "mesh/nearest_surface.h"

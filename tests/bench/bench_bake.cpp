@@ -8,6 +8,7 @@
 #include "bake/engines/embree_engine.h"
 #include "import/import_mesh.h"
 #include "sh/directions.h"
+#include "sh/ray_offset.h"
 
 namespace kiln {
 namespace {
@@ -41,7 +42,7 @@ void run(benchmark::State& state, TransferEngine& engine) {
 }
 
 void bake_embree(benchmark::State& state) {
-  EmbreeEngine engine(bunny().scene(), 1e-4);
+  EmbreeEngine engine(bunny().scene(), rounding_offset(bunny().scene().positions));
   run(state, engine);
 }
 

@@ -20,14 +20,15 @@
 
 #include "cost.h"
 #include "detail/detail_maps.h"
-#include "mesh/draco_file.h"
 #include "import/import_mesh.h"
+#include "mesh/draco_file.h"
 #include "mesh/triangle_mesh.h"
 #include "raycast/beam_transfer.h"
 #include "raycast/ray_scene.h"
 #include "raycast/ray_transfer.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
+#include "sh/ray_offset.h"
 
 namespace {
 
@@ -197,9 +198,7 @@ int main(int argc, char** argv) {
   const TriangleMesh mesh = load_mesh(mesh_file);
   const Points points = asset.empty() ? vertices_of(mesh) : texels_of(asset);
   const Receivers receivers = points.view();
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& p : mesh.positions) box.extend(p);
-  const float ray_offset = 1e-4f * box.diagonal().norm();
+  const float ray_offset = rounding_offset(mesh.positions);
   std::printf("%zu triangles, %zu receivers, %d directions, %d coefficients, %d threads, %s\n", mesh.triangles.size(),
               receivers.size(), direction_count, coefficients, threads, ray_library_name().c_str());
 

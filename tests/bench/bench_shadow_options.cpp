@@ -32,6 +32,7 @@
 #include "import/import_mesh.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
+#include "sh/ray_offset.h"
 
 namespace kiln {
 namespace {
@@ -57,7 +58,8 @@ const std::vector<std::string> built_in = {
 
 ShadowMapSettings parse(const std::string& text) {
   ShadowMapSettings settings;
-  settings.depth_bias = settings.angle_bias_texels = settings.normal_offset_texels = 0;
+  settings.depth_bias = 0;
+  settings.angle_bias_texels = settings.normal_offset_texels = 0;
   settings.receiver_plane = false;
   settings.count_ambiguous = true;
   std::istringstream words(text);
@@ -275,11 +277,11 @@ void run(const Options& options) {
     const Occluders occluders = join_occluders({mesh});
     const TransferScene scene{occluders.mesh.positions, occluders.mesh.triangles, occluders.hull, occluders.closed};
     const Sample sample = sample_surface(mesh, options.receivers);
-    EmbreeEngine engine(scene, 1e-4);
+    EmbreeEngine engine(scene, rounding_offset(scene.positions));
     engine.set_receivers({sample.positions, sample.normals}, options.bands);
     engine.add(directions, no_progress);
     const TransferVectors reference = engine.sums().transfer();
-    const ShadowRays rays = make_shadow_rays(scene, 1e-4);
+    const ShadowRays rays = make_shadow_rays(scene, rounding_offset(scene.positions));
     for (int size : options.sizes) {
       std::printf("### %s, %zu triangles%s, %d x %d\n\n", file.substr(file.rfind('/') + 1).c_str(),
                   scene.triangles.size(), scene.closed ? ", closed" : "", size, size);

@@ -237,9 +237,10 @@ constexpr char two_squares[] =
     "vt 0.1 0.1\nvt 0.4 0.1\nvt 0.4 0.4\nvt 0.1 0.4\nvt 0.6 0.1\nvt 0.9 0.1\nvt 0.9 0.4\nvt 0.6 0.4\n";
 
 TEST_F(AtlasLayout, LoadsUvs) {
-  const fs::path obj = file("mesh.obj", std::string(two_squares) +
-                                            "vn 0 1 0\n# a quad, and two triangles with counts from the end\nusemtl none\n"
-                                            "f 1/1/1 2/2/1 3/3/1 4/4/1\nf -5/-4/1 -2/-3/1 -1/-2/1\nf -5/-4/1 -1/-2/1 -4/-1/1\n");
+  const fs::path obj =
+      file("mesh.obj", std::string(two_squares) +
+                           "vn 0 1 0\n# a quad, and two triangles with counts from the end\nusemtl none\n"
+                           "f 1/1/1 2/2/1 3/3/1 4/4/1\nf -5/-4/1 -2/-3/1 -1/-2/1\nf -5/-4/1 -1/-2/1 -4/-1/1\n");
   const TriangleMesh mesh = load_uv_mesh(obj);
   ASSERT_EQ(mesh.triangles.size(), 4u);
   EXPECT_EQ(mesh.positions.size(), 8u);  // the common edge has two uvs

@@ -14,6 +14,7 @@
 #include "import/import_mesh.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
+#include "sh/ray_offset.h"
 #include "shapes.h"
 
 namespace kiln {
@@ -53,11 +54,11 @@ struct Bench {
     return run(engine);
   }
   TransferVectors beams() const {
-    BeamEngine engine(scene(), 1e-4);
+    BeamEngine engine(scene(), rounding_offset(occluders.positions));
     return run(engine);
   }
   TransferVectors embree() const {
-    EmbreeEngine engine(scene(), 1e-4);
+    EmbreeEngine engine(scene(), rounding_offset(occluders.positions));
     return run(engine);
   }
 };

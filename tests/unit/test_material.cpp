@@ -11,9 +11,9 @@
 #include "base/errors.h"
 #include "image/image_file.h"
 #include "image/srgb.h"
+#include "import/import_mesh.h"
 #include "material/load_albedo.h"
 #include "mesh/draco_file.h"
-#include "import/import_mesh.h"
 #include "scratch.h"
 #include "shapes.h"
 
@@ -120,7 +120,8 @@ TEST_F(Material, TextureLookupsAreBilinearInLinearLightAndRepeat) {
   write_png(path("two.png"), bytes);
   const float left = linear_from_srgb(188 / 255.f), right = linear_from_srgb(64 / 255.f);
   const ColorTexture texture(path("two.png"), ColorEncoding::srgb);
-  const auto red = [&](float u, bool clamp = false) { using Wrap = ColorTexture::Wrap;
+  const auto red = [&](float u, bool clamp = false) {
+    using Wrap = ColorTexture::Wrap;
     return texture.at({u, 0.3f}, clamp ? Wrap::clamp : Wrap::repeat).x();
   };
   EXPECT_NEAR(red(0.25f), left, rounding);
@@ -439,8 +440,9 @@ TEST_F(Material, BadFilesAreNamed) {
   write("a.obj", "mtllib a.mtl\n" + triangle + "usemtl m\nf 1 2 3\n");
   EXPECT_TRUE(says(message(), {"a.obj:9", "without texture coordinates", "'m'"}));
   EXPECT_TRUE(says(message({.texture = path("ramp.exr").string()}), {"a.obj:9", "without texture coordinates"}));
-  const fs::path stl = write("a.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
-                                      "endloop\nendfacet\nendsolid\n");
+  const fs::path stl = write("a.stl",
+                             "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+                             "endloop\nendfacet\nendsolid\n");
   EXPECT_TRUE(says(message_of([&] { load(stl, {.texture = path("ramp.exr").string()}); }),
                    {"a.stl", "no texture coordinates"}));
   // Materials that no face uses are nobody's business.

@@ -13,8 +13,8 @@
 
 #include "base/errors.h"
 #include "base/outputs.h"
-#include "mesh/mesh_distance.h"
 #include "import/import_mesh.h"
+#include "mesh/mesh_distance.h"
 #include "mesh/mesh_repair.h"
 #include "shapes.h"
 #include "simplify/collapse.h"

@@ -41,8 +41,7 @@ TEST(SurfaceTransfer, FootOfWall) {
   const std::vector<Eigen::Vector3f> normals(positions.size(), Eigen::Vector3f::UnitY());
   const std::vector<float> openness = surface_openness(wall, {positions, normals}, 4096);
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    // Rays start 1e-4 of the diagonal, 0.1, above the point.
-    const double phi = std::atan2(0.9, positions[i].z());
+    const double phi = std::atan2(1.0, positions[i].z());
     EXPECT_NEAR(openness[i], 0.5 + 0.5 * std::cos(phi), 0.003) << "at " << positions[i].z();
   }
 }

@@ -7,10 +7,11 @@
 #include <fstream>
 #include <unistd.h>
 
-#include "base/command_line.h"
+#include "base/stopwatch.h"
 #include "base/errors.h"
 #include "base/outputs.h"
 #include "base/process.h"
+#include "base/progress.h"
 
 namespace kiln {
 

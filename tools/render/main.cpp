@@ -1,4 +1,5 @@
 #include "base/command_line.h"
+#include "base/stopwatch.h"
 #include "base/errors.h"
 #include "gpu/egl_context.h"
 #include "relight/light/light_command.h"

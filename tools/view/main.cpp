@@ -1,4 +1,7 @@
+#include <CLI/CLI.hpp>
+
 #include "base/command_line.h"
+#include "base/stopwatch.h"
 #include "relight/light/light_command.h"
 #include "view/viewer.h"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "bake/integrate/error_driven.h"
-#include "base/command_line.h"
+#include "base/stopwatch.h"
 #include "sh/basis.h"
 
 namespace kiln {

@@ -5,9 +5,9 @@
 
 namespace kiln {
 
-RayGatherEngine::RayGatherEngine(const ReflectingSurface& surface, double ray_offset, bool by_beams)
+RayGatherEngine::RayGatherEngine(const ReflectingSurface& surface, float ray_offset, bool by_beams)
     : scene_(surface.positions, surface.triangles),
-      ray_offset_(static_cast<float>(ray_offset) * diagonal_of(surface.hull)),
+      ray_offset_(ray_offset),
       points_(surface.points.begin(), surface.points.end()) {
   if (by_beams) beams_.emplace(surface.positions, surface.triangles);
 }

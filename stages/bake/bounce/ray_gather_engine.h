@@ -14,8 +14,8 @@ namespace kiln {
 /// all, and Embree, what.
 class RayGatherEngine : public GatherEngine {
  public:
-  /// Rays start `ray_offset` off the receiver along its normal, a fraction of the surface's bounding box diagonal.
-  RayGatherEngine(const ReflectingSurface& surface, double ray_offset, bool by_beams);
+  /// Rays start `ray_offset` (object units) off the receiver along its normal.
+  RayGatherEngine(const ReflectingSurface& surface, float ray_offset, bool by_beams);
 
   void set_radiance(std::span<const float> values, int width) override;
   TransferSums gather(const Receivers& receivers, std::span<const Eigen::Vector3f> directions,

@@ -9,6 +9,7 @@
 #include "bake/egl/receiver_tiles.h"
 #include "gpu/egl_context.h"
 #include "gpu/program.h"
+#include "sh/ray_offset.h"
 
 namespace kiln {
 
@@ -49,6 +50,7 @@ struct BundleEngine::Implementation {
   std::optional<BundleLists> lists;
   GlBuffer positions, triangles, points;
   GlProgram find_program, sum_program;
+  float position_rounding = 0;  // rounding_offset of the surface, object units
   int width = 0, chunk = 0, chunks = 0;
   std::vector<GlBuffer> radiance;  // one per chunk
 
@@ -59,8 +61,19 @@ struct BundleEngine::Implementation {
 
 BundleEngine::BundleEngine(const ReflectingSurface& surface, const std::string& device, int software_threads,
                            const ShadowMapSettings& settings)
-    : implementation_(
-          new Implementation{EglContext(device, software_threads), settings, {}, {}, {}, {}, {}, {}, 0, 0, 0, {}}) {
+    : implementation_(new Implementation{EglContext(device, software_threads),
+                                         settings,
+                                         {},
+                                         {},
+                                         {},
+                                         {},
+                                         {},
+                                         {},
+                                         rounding_offset(surface.hull),
+                                         0,
+                                         0,
+                                         0,
+                                         {}}) {
   Implementation& own = *implementation_;
   own.lists.emplace(surface, settings);
   own.positions = make_buffer(surface.positions);
@@ -128,7 +141,8 @@ void BundleEngine::Implementation::find(const Group& group, int first_row, int d
     glUniform1i(uniform_location(find_program, name), static_cast<GLint>(value));
   };
   glUseProgram(find_program.name());
-  set("depth_bias", settings.depth_bias);
+  set("depth_bias", settings.depth_bias.value_or(0));
+  set("position_bias", settings.depth_bias ? 0 : position_rounding);
   set("angle_bias_texels", settings.angle_bias_texels);
   set("normal_offset_texels", settings.normal_offset_texels);
   set("depth_rounding", depth_rounding);

@@ -134,7 +134,8 @@ void ShadePass::weigh(const ShadowMaps& maps, int first, int directions) {
   const auto set = [&](const char* name, double value) {
     glUniform1f(uniform_location(weigh_program_, name), static_cast<float>(value));
   };
-  set("depth_bias", settings_.depth_bias);
+  set("depth_bias", settings_.depth_bias.value_or(0));
+  set("position_bias", settings_.depth_bias ? 0 : maps.position_rounding());
   set("angle_bias_texels", settings_.angle_bias_texels);
   set("normal_offset_texels", settings_.normal_offset_texels);
   set("error_band_texels", settings_.error_band_texels);

@@ -9,6 +9,7 @@
 #include "bake/egl/shadow_settings.h"
 #include "bake/engines/transfer_engine.h"
 #include "gpu/gl_objects.h"
+#include "sh/ray_offset.h"
 
 namespace kiln {
 
@@ -34,6 +35,9 @@ class ShadowMaps {
 
   /// The largest error of a stored depth.
   float depth_rounding() const;
+
+  /// How far a receiver may be off the surface that it stands on: rounding_offset of the occluders, object units.
+  float position_rounding() const { return rounding_offset(hull_); }
 
   /// With settings.triangle_ids: the vertices of each triangle, those at the same place as one.
   std::span<const std::array<std::uint32_t, 3>> corners() const { return corners_; }

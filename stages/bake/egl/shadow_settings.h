@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,14 +28,15 @@ enum class ShadowFaces {
 
 /// How the EGL engine decides whether a receiver is in shadow. A receiver at depth z (0 to 1 along the direction) is
 /// lit where the map holds at least z - bias. The bias is made of
-///   depth_bias                                   a constant, in depths (D3DX's ZBias)
+///   depth_bias                                   a constant, in depths (D3DX's ZBias); if none is given what the
+///                                                precision of the positions asks for (rounding_offset)
 ///   angle_bias_texels * texel * tan / extent     grows with the tangent of the angle between normal and direction
 ///                                                (D3DX's ZAngleBias), which is clamped to steepest_slope
 ///   half a step of the depth format              what rounding may take
 struct ShadowMapSettings {
   int size_texels = 1024;  ///< width and height of the depth map of one direction
   ShadowDepth depth = ShadowDepth::float_32;
-  double depth_bias = 2e-4;            ///< fraction of the occluders' extent along the direction
+  std::optional<double> depth_bias;    ///< fraction of the occluders' extent along the direction; none: rounding_offset
   double angle_bias_texels = 0.25;     ///< texels of the depth map, times the tangent
   double normal_offset_texels = 0.25;  ///< how far receivers are moved along their normal, in texels of the depth map
   /// Each texel is compared with the depth that the receiver's tangent plane has at that texel's centre, not with the

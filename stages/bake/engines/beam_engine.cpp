@@ -4,8 +4,8 @@
 
 namespace kiln {
 
-BeamEngine::BeamEngine(const TransferScene& scene, double ray_offset)
-    : scene_(scene.positions, scene.triangles), ray_offset_(static_cast<float>(ray_offset) * diagonal_of(scene.hull)) {}
+BeamEngine::BeamEngine(const TransferScene& scene, float ray_offset)
+    : scene_(scene.positions, scene.triangles), ray_offset_(ray_offset) {}
 
 void BeamEngine::set_receivers(const Receivers& receivers, int bands) {
   packets_ = BeamReceivers(receivers, ray_offset_);

@@ -12,8 +12,8 @@ namespace kiln {
 /// ray-cast radiosity", 1991).
 class BeamEngine : public TransferEngine {
  public:
-  /// Rays start `ray_offset` off the receiver along its normal, a fraction of the occluders' bounding box diagonal.
-  BeamEngine(const TransferScene& scene, double ray_offset);
+  /// Rays start `ray_offset` (object units) off the receiver along its normal.
+  BeamEngine(const TransferScene& scene, float ray_offset);
 
   void set_receivers(const Receivers& receivers, int bands) override;
   void add(std::span<const Eigen::Vector3f> directions, const ProgressFunction& progress) override;

@@ -5,8 +5,8 @@
 
 namespace kiln {
 
-EmbreeEngine::EmbreeEngine(const TransferScene& scene, double ray_offset)
-    : scene_(scene.positions, scene.triangles), ray_offset_(static_cast<float>(ray_offset) * diagonal_of(scene.hull)) {}
+EmbreeEngine::EmbreeEngine(const TransferScene& scene, float ray_offset)
+    : scene_(scene.positions, scene.triangles), ray_offset_(ray_offset) {}
 
 void EmbreeEngine::set_receivers(const Receivers& receivers, int bands) {
   receivers_ = receivers;

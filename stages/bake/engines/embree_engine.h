@@ -8,8 +8,8 @@ namespace kiln {
 /// Shadows by occlusion rays (Embree): exact visibility of the occluders' triangles. The reference, and the CPU's way.
 class EmbreeEngine : public TransferEngine {
  public:
-  /// Rays start `ray_offset` off the receiver along its normal, a fraction of the occluders' bounding box diagonal.
-  EmbreeEngine(const TransferScene& scene, double ray_offset);
+  /// Rays start `ray_offset` (object units) off the receiver along its normal.
+  EmbreeEngine(const TransferScene& scene, float ray_offset);
 
   void set_receivers(const Receivers& receivers, int bands) override;
   void add(std::span<const Eigen::Vector3f> directions, const ProgressFunction& progress) override;

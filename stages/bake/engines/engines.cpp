@@ -7,6 +7,7 @@
 #include "bake/engines/embree_engine.h"
 #include "bake/engines/shadow_rays.h"
 #include "gpu/egl_context.h"
+#include "sh/ray_offset.h"
 
 namespace kiln {
 
@@ -15,15 +16,20 @@ BakeBackend choose_backend(const BakeSettings& settings) {
   return has_hardware_egl(settings.gl_device) ? BakeBackend::egl : BakeBackend::beams;
 }
 
+float ray_offset_of(const BakeSettings& settings, std::span<const Eigen::Vector3f> hull) {
+  if (!settings.ray_offset) return rounding_offset(hull);
+  return static_cast<float>(*settings.ray_offset) * diagonal_of(hull);
+}
+
 std::unique_ptr<TransferEngine> make_engine(BakeBackend backend, const Occluders& occluders,
                                             const BakeSettings& settings, int threads) {
   const TransferScene scene{occluders.mesh.positions, occluders.mesh.triangles, occluders.hull, occluders.closed};
-  if (backend == BakeBackend::beams) return std::make_unique<BeamEngine>(scene, settings.ray_offset);
-  if (backend == BakeBackend::embree) return std::make_unique<EmbreeEngine>(scene, settings.ray_offset);
+  const float ray_offset = ray_offset_of(settings, occluders.hull);
+  if (backend == BakeBackend::beams) return std::make_unique<BeamEngine>(scene, ray_offset);
+  if (backend == BakeBackend::embree) return std::make_unique<EmbreeEngine>(scene, ray_offset);
   ShadowMapSettings shadows = settings.shadows;
   shadows.size_texels = settings.shadow_size;
-  return std::make_unique<EglEngine>(scene, settings.gl_device, threads, shadows,
-                                     make_shadow_rays(scene, settings.ray_offset));
+  return std::make_unique<EglEngine>(scene, settings.gl_device, threads, shadows, make_shadow_rays(scene, ray_offset));
 }
 
 std::unique_ptr<GatherEngine> make_gather_engine(BakeBackend backend, const ReflectingSurface& surface,
@@ -33,7 +39,8 @@ std::unique_ptr<GatherEngine> make_gather_engine(BakeBackend backend, const Refl
     shadows.size_texels = settings.shadow_size > 0 ? settings.shadow_size : shadows.size_texels;
     return std::make_unique<BundleEngine>(surface, settings.gl_device, threads, shadows);
   }
-  return std::make_unique<RayGatherEngine>(surface, settings.ray_offset, backend == BakeBackend::beams);
+  return std::make_unique<RayGatherEngine>(surface, ray_offset_of(settings, surface.hull),
+                                           backend == BakeBackend::beams);
 }
 
 }  // namespace kiln

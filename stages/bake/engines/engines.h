@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
+#include <span>
 
 #include "bake/bake_settings.h"
 #include "bake/bounce/gather_engine.h"
@@ -11,6 +13,10 @@ namespace kiln {
 
 /// `automatic` becomes egl where EGL has a GPU, else beams.
 BakeBackend choose_backend(const BakeSettings& settings);
+
+/// How far rays start off their receivers, object units: what the settings say of the diagonal of the occluders, or
+/// what the precision of their positions asks for (rounding_offset). `hull` holds the occluders.
+float ray_offset_of(const BakeSettings& settings, std::span<const Eigen::Vector3f> hull);
 
 /// The engine of a backend that is not automatic. `threads` is for a software GL renderer. Throws MachineLacks where it
 /// cannot run. `settings.shadow_size` is not automatic (shadow_choice.h); `occluders` outlives the engine.

@@ -27,8 +27,7 @@ class LazyScene {
 
 }  // namespace
 
-ShadowRays make_shadow_rays(const TransferScene& scene, double ray_offset) {
-  const float offset = static_cast<float>(ray_offset) * diagonal_of(scene.hull);
+ShadowRays make_shadow_rays(const TransferScene& scene, float ray_offset) {
   const auto lazy = std::make_shared<LazyScene>(scene);
   ShadowRays rays;
   rays.triangles_below = [lazy](const Receivers& receivers) {
@@ -39,13 +38,14 @@ ShadowRays make_shadow_rays(const TransferScene& scene, double ray_offset) {
     });
     return triangles;
   };
-  rays.occluded = [lazy, offset](const Receivers& receivers, std::span<ShadowRayQuery> queries) {
+  rays.occluded = [lazy, ray_offset](const Receivers& receivers, std::span<ShadowRayQuery> queries) {
     const RayScene& tree = lazy->rays();
     tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t q) {
       ShadowRayQuery& query = queries[q];
       std::vector<Eigen::Vector3f> origins;
       origins.reserve(query.receivers.size());
-      for (std::uint32_t r : query.receivers) origins.push_back(receivers.positions[r] + offset * receivers.normals[r]);
+      for (std::uint32_t r : query.receivers)
+        origins.push_back(receivers.positions[r] + ray_offset * receivers.normals[r]);
       tree.occluded(origins, query.direction, 0.f, query.occluded);
     });
   };

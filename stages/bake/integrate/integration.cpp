@@ -6,7 +6,7 @@
 
 #include "bake/engines/engines.h"
 #include "bake/integrate/unoccluded.h"
-#include "base/command_line.h"
+#include "base/stopwatch.h"
 #include "base/errors.h"
 #include "sh/basis.h"
 
@@ -80,7 +80,7 @@ Integration::Integration(const Receivers& receivers, const Occluders& occluders,
       backend_(choose_backend(settings)),
       sampling_(settings.sampling) {
   // Step 1: the receivers that something may shadow.
-  const float lift = static_cast<float>(settings.ray_offset) * diagonal_of(occluders.hull);
+  const float lift = ray_offset_of(settings, occluders.hull);
   const std::vector<std::uint8_t> unoccluded = unoccluded_receivers(occluders.hull, receivers, lift);
   for (std::uint32_t r = 0; r < receivers.size(); ++r)
     if (unoccluded[r] == 0) tested_.push_back(r);

@@ -21,11 +21,33 @@ std::string plane_name(int channel, int coefficient) {
 }
 
 Image<float> filled_plane(std::span<const float> values, const TexelReceivers& receivers,
-                          const std::vector<std::uint8_t>& covered) {
+                          const std::vector<std::uint8_t>& filled) {
   Image<float> plane(receivers.width, receivers.height, 1);
   for (std::size_t r = 0; r < values.size(); ++r) plane.values()[receivers.texels[r]] = values[r];
-  fill_gutters(plane, covered);
+  receivers.fills.apply(plane.values());
+  fill_gutters(plane, filled);
   return plane;
+}
+
+/// Texels whose values come of receivers: their own, or those of others of their chart.
+std::vector<std::uint8_t> filled_texels(const TexelReceivers& receivers) {
+  std::vector<std::uint8_t> filled = receivers.covered();
+  for (const FillPlan::Texel& fill : receivers.fills.texels) filled[fill.texel] = 1;
+  return filled;
+}
+
+/// Points along the seams whose lookups see no buried texel: what mismatch is measured at.
+std::vector<SeamPoint> seen_points(const Seams& seams, const TexelReceivers& receivers) {
+  std::vector<std::uint8_t> is_buried(static_cast<std::size_t>(receivers.width) * receivers.height, 0);
+  for (const std::uint32_t texel : receivers.buried) is_buried[texel] = 1;
+  std::vector<SeamPoint> points = seams.measuring_points();
+  std::erase_if(points, [&](const SeamPoint& point) {
+    return std::any_of(point.sides.begin(), point.sides.end(), [&](const SeamSide& side) {
+      return std::any_of(side.footprint.texels.begin(), side.footprint.texels.end(),
+                         [&](std::uint32_t texel) { return is_buried[texel] != 0; });
+    });
+  });
+  return points;
 }
 
 template <class Stored>
@@ -65,13 +87,13 @@ class MismatchSums {
 
 /// Has `solver` weigh those points more where it leaves more than elsewhere, by the planes that hold most of transfer.
 void reweigh_points(SeamSolver& solver, const std::vector<TransferVectors>& channels, const TexelReceivers& receivers,
-                    const std::vector<std::uint8_t>& covered) {
+                    const std::vector<std::uint8_t>& filled) {
   constexpr int rounds = 2;
   constexpr int planes = 9;
   for (int round = 0; round < rounds; ++round) {
     std::vector<double> mismatches(solver.points().size(), 0);
     for (int i = 0; i < std::min(planes, channels[0].coefficients); ++i) {
-      Image<float> plane = filled_plane(channels[0].plane(i), receivers, covered);
+      Image<float> plane = filled_plane(channels[0].plane(i), receivers, filled);
       solver.equalise(plane);
       Seams::add_squared_differences(solver.points(), plane, 0, mismatches);
     }
@@ -125,34 +147,36 @@ void remove_stale_planes(OutputSet& outputs, const std::set<std::string>& writte
   }
 }
 
-PlaneSeams write_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels,
-                        const TexelReceivers& receivers, int bits, const AssetFiles& files, const Seams& seams,
-                        SeamChoice choice) {
-  const std::vector<std::uint8_t> covered = receivers.covered();
-  const std::vector<SeamPoint> points = seams.measuring_points();
+WrittenPlanes write_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels,
+                           const TexelReceivers& receivers, int bits, const AssetFiles& files, const Seams& seams,
+                           SeamChoice choice) {
+  const std::vector<std::uint8_t> filled = filled_texels(receivers);
+  const std::vector<SeamPoint> points = seen_points(seams, receivers);
   MismatchSums before(points), after(points);
   std::optional<SeamSolver> solver;
   if (choice == SeamChoice::equalise && !seams.edges().empty())
-    reweigh_points(solver.emplace(seams, covered, NormalSpace::object, plane_weights), channels, receivers, covered);
-  double squared_length = 0, squared_change = 0;
+    reweigh_points(solver.emplace(seams, receivers.covered(), NormalSpace::object, plane_weights), channels, receivers,
+                   filled);
+  double squared_length = 0, squared_change = 0, squared_error = 0;
 
   std::set<std::string> written;
   Json planes = Json::array();
   for (std::size_t channel = 0; channel < channels.size(); ++channel)
     for (int i = 0; i < channels[channel].coefficients; ++i) {
       const std::span<const float> values = channels[channel].plane(i);
-      PlaneRange range = range_of(values);
-      Image<float> plane = filled_plane(values, receivers, covered);
+      // The range of what was baked is what is possible: no equalising and no slope that a gutter continues leaves it.
+      const PlaneRange range = range_of(values);
+      Image<float> plane = filled_plane(values, receivers, filled);
       before.add(shown_plane(plane, range, bits));
-      if (solver) {
-        solver->equalise(plane);
-        range = range_of(plane.values());  // beyond the covered texels' in gutters that continue a slope
-      }
-      after.add(shown_plane(plane, range, bits));
+      if (solver) solver->equalise(plane, range.lowest, range.highest);
+      const Image<float> shown = shown_plane(plane, range, bits);
+      after.add(shown);
       for (std::size_t r = 0; r < values.size(); ++r) {
-        const double value = values[r], change = plane.values()[receivers.texels[r]] - value;
+        const std::uint32_t texel = receivers.texels[r];
+        const double value = values[r], equalised = plane.values()[texel];
         squared_length += value * value;
-        squared_change += change * change;
+        squared_change += (equalised - value) * (equalised - value);
+        squared_error += (shown.values()[texel] - equalised) * (shown.values()[texel] - equalised);
       }
       const std::string name = plane_name(static_cast<int>(channel), i);
       if (bits == 8)
@@ -178,8 +202,8 @@ PlaneSeams write_planes(OutputSet& outputs, const std::vector<TransferVectors>& 
   remove_stale_planes(outputs, written);
 
   const double length = std::sqrt(squared_length / static_cast<double>(receivers.texels.size()));
-  return {before.relative_to(length), after.relative_to(length),
-          squared_length > 0 ? std::sqrt(squared_change / squared_length) : 0};
+  const auto relative = [&](double squared) { return squared_length > 0 ? std::sqrt(squared / squared_length) : 0; };
+  return {before.relative_to(length), after.relative_to(length), relative(squared_change), relative(squared_error)};
 }
 
 std::vector<TransferVectors> read_planes(const std::filesystem::path& folder, const TexelReceivers& receivers) {

@@ -49,20 +49,22 @@ struct AssetFiles {
   NormalSpace normal_space = NormalSpace::object;
 };
 
-/// How far both sides of the seams are apart in what bilinear lookups of the stored planes give: the distance between
-/// transfer vectors, of all channels together, over their root mean square length over covered texels.
-struct PlaneSeams {
-  SeamMismatch before;  ///< of planes stored as they were baked
-  SeamMismatch after;   ///< of those that were written
-  double change = 0;    ///< relative L2, over covered texels, of what equalising changed, before storing
+/// What came of writing planes. Mismatch is how far both sides of the seams are apart in what bilinear lookups of the
+/// stored planes give: the distance between transfer vectors, of all channels together, over their root mean square
+/// length over receivers.
+struct WrittenPlanes {
+  SeamMismatch before;            ///< of planes stored as they were baked
+  SeamMismatch after;             ///< of those that were written
+  double change = 0;              ///< relative L2, over receivers, of what equalising changed, before storing
+  double quantisation_error = 0;  ///< relative L2, over receivers, of what storing changed, after equalising
 };
 
 /// Writes `coeff_<c>_<ii>.png` for every channel c and coefficient ii, gutters filled, seams treated as `choice` says,
 /// and ranges.json, last. One entry of `channels` per channel, all for the same receivers, which are texels of the
 /// atlas of `seams`. Planes that an earlier run with more of them left in the folder are removed.
-PlaneSeams write_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels,
-                        const TexelReceivers& receivers, int bits, const AssetFiles& files, const Seams& seams,
-                        SeamChoice choice);
+WrittenPlanes write_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels,
+                           const TexelReceivers& receivers, int bits, const AssetFiles& files, const Seams& seams,
+                           SeamChoice choice);
 
 /// Transfer as it reads back from planes in `folder` that write_planes wrote.
 std::vector<TransferVectors> read_planes(const std::filesystem::path& folder, const TexelReceivers& receivers);

@@ -20,8 +20,8 @@ constexpr int group_size = 4;  // coefficients of one attribute: a shader's vec4
 std::vector<std::uint32_t> write_vertex_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels,
                                                const TexelReceivers& receivers, const TriangleMesh& mesh, int bits,
                                                const Json& albedo) {
-  if (receivers.texels.size() != mesh.positions.size())
-    throw std::invalid_argument("write_vertex_planes: one receiver per vertex is needed");
+  if (static_cast<std::size_t>(receivers.width) != mesh.positions.size())
+    throw std::invalid_argument("write_vertex_planes: receivers of this mesh's vertices are needed");
 
   // Step 1: attributes.
   std::vector<IntegerAttribute> attributes;
@@ -41,9 +41,12 @@ std::vector<std::uint32_t> write_vertex_planes(OutputSet& outputs, const std::ve
       IntegerAttribute& attribute = attributes.back();
       const std::span<const float> values = channels[channel].plane(i);
       const PlaneRange range = range_of(values);
-      for (std::size_t r = 0; r < values.size(); ++r)
-        attribute.values[receivers.texels[r] * static_cast<std::size_t>(attribute.components) + component] =
-            static_cast<std::uint16_t>(range.store(values[r], bits));
+      std::vector<float> plane(mesh.positions.size(), range.lowest);
+      for (std::size_t r = 0; r < values.size(); ++r) plane[receivers.texels[r]] = values[r];
+      receivers.fills.apply(plane);
+      for (std::size_t v = 0; v < plane.size(); ++v)
+        attribute.values[v * static_cast<std::size_t>(attribute.components) + component] =
+            static_cast<std::uint16_t>(range.store(plane[v], bits));
       planes.push_back({{"attribute", attribute.name},
                         {"unique_id", 0},
                         {"component", component},
@@ -75,7 +78,8 @@ std::vector<std::uint32_t> write_vertex_planes(OutputSet& outputs, const std::ve
 std::vector<TransferVectors> read_vertex_planes(const std::filesystem::path& folder, const TexelReceivers& receivers,
                                                 const std::vector<std::uint32_t>& sources) {
   constexpr std::uint32_t lost = ~0u;
-  std::vector<std::uint32_t> place(receivers.texels.size(), lost);  // of a vertex of the mesh in the file
+  std::vector<std::uint32_t> place(static_cast<std::size_t>(receivers.width),
+                                   lost);  // of a vertex of the mesh in the file
   for (std::uint32_t k = 0; k < sources.size(); ++k) place[sources[k]] = k;
   if (std::find(place.begin(), place.end(), lost) != place.end())
     throw std::invalid_argument("read_vertex_planes: a vertex has no proper triangle and is not in the file");

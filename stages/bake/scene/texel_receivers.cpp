@@ -34,6 +34,14 @@ Eigen::Vector3f vector_at(const Image<float>& image, int i, int j) {
 
 }  // namespace
 
+void FillPlan::apply(std::span<float> plane) const {
+  for (const Texel& fill : texels) {
+    float sum = 0;
+    for (std::uint32_t k = 0; k < fill.sources; ++k) sum += plane[sources[fill.first_source + k]];
+    plane[fill.texel] = sum / static_cast<float>(fill.sources);
+  }
+}
+
 std::vector<std::uint8_t> TexelReceivers::covered() const {
   std::vector<std::uint8_t> flags(static_cast<std::size_t>(width) * height, 0);
   for (std::uint32_t texel : texels) flags[texel] = 1;

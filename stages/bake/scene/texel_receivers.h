@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "bake/scene/occluders.h"
@@ -10,6 +11,19 @@
 #include "sh/transfer.h"
 
 namespace kiln {
+
+/// Values of texels that have no receiver of their own: each is the mean of some that have one, or were filled before.
+struct FillPlan {
+  struct Texel {
+    std::uint32_t texel;
+    std::uint32_t first_source, sources;  ///< of `sources`
+  };
+  std::vector<Texel> texels;  ///< in the order to fill them in
+  std::vector<std::uint32_t> sources;
+
+  /// Fills a plane, a value per texel.
+  void apply(std::span<float> plane) const;
+};
 
 /// The covered texels of an atlas as receivers, tile after tile, so that neighbours in the list are neighbours on the
 /// surface.
@@ -20,9 +34,11 @@ struct TexelReceivers {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
   std::vector<Eigen::Vector3f> albedos = {};  ///< linear red, green and blue; none where nothing was asked for
+  std::vector<std::uint32_t> buried = {};     ///< covered texels that are not among `texels` (set_aside_buried)
+  FillPlan fills = {};                        ///< of the buried ones that are filled
 
   Receivers view() const { return {positions, normals}; }
-  std::vector<std::uint8_t> covered() const;  ///< 1 or 0 per texel
+  std::vector<std::uint8_t> covered() const;  ///< 1 or 0 per texel: whether it has a receiver
 };
 
 /// Texels stand at the high mesh's points, with its normals.

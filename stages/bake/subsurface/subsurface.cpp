@@ -5,7 +5,7 @@
 
 #include "bake/subsurface/scattering.h"
 #include "bake/subsurface/surface_samples.h"
-#include "base/command_line.h"
+#include "base/stopwatch.h"
 
 namespace kiln {
 

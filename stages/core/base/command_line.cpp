@@ -1,5 +1,6 @@
 #include "base/command_line.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <csignal>
@@ -13,6 +14,7 @@
 #include <thread>
 
 #include "base/errors.h"
+#include "base/stopwatch.h"
 
 namespace kiln {
 
@@ -33,47 +35,53 @@ int fail(const std::string& program, ExitCode code, const std::string& message) 
 }  // namespace
 
 CommandLine::CommandLine(std::string program, const std::string& purpose)
-    : program_(std::move(program)), stage_(program_.substr(program_.find('-') + 1)), app_(purpose, program_) {
-  app_.set_version_flag("--version", std::string(KILN_VERSION));
-  app_.get_formatter()->column_width(38);
-  app_.add_flag("--json", json_, "Print the result as one JSON object on stdout")->group("Common");
-  app_.add_flag("--quiet", quiet_, "Print warnings and errors only")->group("Common");
-  app_.add_option("--threads", threads_, "Threads, 0 for all cores (default 0; 0 to 1024)")
+    : program_(std::move(program)),
+      stage_(program_.substr(program_.find('-') + 1)),
+      app_(std::make_unique<CLI::App>(purpose, program_)) {
+  app_->set_version_flag("--version", std::string(KILN_VERSION));
+  app_->get_formatter()->column_width(38);
+  app_->add_flag("--json", json_, "Print the result as one JSON object on stdout")->group("Common");
+  app_->add_flag("--quiet", quiet_, "Print warnings and errors only")->group("Common");
+  app_->add_option("--threads", threads_, "Threads, 0 for all cores (default 0; 0 to 1024)")
       ->check(CLI::Range(0, 1024))
       ->group("Common");
-  app_.add_option("--seed", seed_, "Seed of everything random (default 1; 0 to 2147483647)")
+  app_->add_option("--seed", seed_, "Seed of everything random (default 1; 0 to 2147483647)")
       ->check(CLI::Range(0, 2147483647))
       ->group("Common");
 }
 
+CommandLine::~CommandLine() = default;
+
+bool CommandLine::given(const std::string& name) const { return app_->count("--" + name) > 0; }
+
 void CommandLine::input(const std::string& name, fs::path& path, const std::string& help) {
-  app_.add_option(name, path, help)->required();
+  app_->add_option(name, path, help)->required();
   inputs_.push_back(&path);
 }
 
 void CommandLine::inputs(const std::string& name, std::vector<fs::path>& paths, const std::string& help) {
-  app_.add_option(name, paths, help)->required();
+  app_->add_option(name, paths, help)->required();
   input_lists_.push_back(&paths);
 }
 
 void CommandLine::output(fs::path& path, const std::string& help) {
-  app_.add_option("-o,--output", path, help)->required();
+  app_->add_option("-o,--output", path, help)->required();
 }
 
 void CommandLine::input_option(const std::string& name, fs::path& path, const std::string& help) {
-  app_.add_option("--" + name, path, help);
+  app_->add_option("--" + name, path, help);
   inputs_.push_back(&path);
 }
 
 void CommandLine::input_option(const std::string& name, std::vector<fs::path>& paths, const std::string& help) {
   // One path an option, so that a positional input after it is not swallowed.
-  app_.add_option("--" + name, paths, help)->expected(1)->take_all();
+  app_->add_option("--" + name, paths, help)->expected(1)->take_all();
   input_lists_.push_back(&paths);
 }
 
 void CommandLine::list_option(const std::string& name, std::vector<std::string>& texts, const std::string& heading,
                               const std::string& help) {
-  app_.add_option("--" + name, texts, help)->expected(1)->take_all()->type_name("")->group(heading);
+  app_->add_option("--" + name, texts, help)->expected(1)->take_all()->type_name("")->group(heading);
 }
 
 void CommandLine::options(const std::string& heading, const OptionSet& options) {
@@ -81,13 +89,13 @@ void CommandLine::options(const std::string& heading, const OptionSet& options) 
   for (const Option& option : option_sets_.back().options()) {
     const Json value = option.get();
     if (option.is_switch) {
-      app_.add_flag_callback(
+      app_->add_flag_callback(
               "--" + option.name, [set = option.set] { set("true"); }, option.help)
           ->group(heading);
       continue;
     }
     const std::string shown = value.is_string() ? value.get<std::string>() : value.dump();
-    app_.add_option_function<std::string>(
+    app_->add_option_function<std::string>(
             "--" + option.name,
             [set = option.set](const std::string& text) {
               try {
@@ -127,9 +135,9 @@ void CommandLine::parse(int argc, char** argv) {
   try {
     std::vector<std::string> words = joined_values(argc, argv);
     std::reverse(words.begin(), words.end());  // CLI11 takes them off the end
-    app_.parse(words);
+    app_->parse(words);
   } catch (const CLI::Success& asked_for_help) {
-    app_.exit(asked_for_help);
+    app_->exit(asked_for_help);
     throw;
   }
   if (threads_ == 0) threads_ = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));

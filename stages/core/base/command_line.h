@@ -1,7 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -12,6 +10,10 @@
 #include "base/outputs.h"
 #include "base/progress.h"
 
+namespace CLI {
+class App;
+}
+
 namespace kiln {
 
 /// The command line that all stages share: `kiln-<stage> INPUT... -o OUTPUT [options]` with --json, --quiet,
@@ -20,6 +22,7 @@ class CommandLine {
  public:
   /// `program` is "kiln-<stage>".
   CommandLine(std::string program, const std::string& purpose);
+  ~CommandLine();
 
   /// A positional input, an existing file or folder; the hash of a file goes into the result.
   void input(const std::string& name, std::filesystem::path& path, const std::string& help);
@@ -45,7 +48,10 @@ class CommandLine {
   void options(const std::string& heading, const OptionSet& options);
 
   /// For what the above does not cover.
-  CLI::App& app() { return app_; }
+  CLI::App& app() { return *app_; }
+
+  /// After parse(): whether `--name` was given.
+  bool given(const std::string& name) const;
 
   /// Parses, limits the number of threads; throws CLI::ParseError (run_program knows it) and BadInput where an input
   /// does not exist.
@@ -86,7 +92,7 @@ class CommandLine {
 
   std::string program_;
   std::string stage_;
-  CLI::App app_;
+  std::unique_ptr<CLI::App> app_;
   bool json_ = false;
   bool quiet_ = false;
   int threads_ = 0;
@@ -98,18 +104,6 @@ class CommandLine {
   std::vector<OptionSet> option_sets_;
   std::shared_ptr<void> thread_limit_;
 };
-
-/// Wall-clock seconds since construction.
-class Stopwatch {
- public:
-  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-/// Peak resident memory of this process.
-long long peak_memory_bytes();
 
 /// Runs the body of a main(): maps exceptions to exit statuses and one message on stderr each, and ends by the signal
 /// where one interrupted it. `program` starts the message.

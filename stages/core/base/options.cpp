@@ -82,6 +82,21 @@ OptionSet& OptionSet::number(std::string name, double& value, double lowest, dou
   return *this;
 }
 
+OptionSet& OptionSet::number_or_auto(std::string name, std::optional<double>& value, double lowest, double highest,
+                                     std::string help) {
+  const std::string range = fmt::format("auto or {:g} to {:g}", lowest, highest);
+  auto set = [=, &value](const std::string& text) {
+    const std::optional<double> parsed = text == "auto" ? std::nullopt : parse<double>(text);
+    if (text != "auto" && (!parsed || !std::isfinite(*parsed) || *parsed < lowest || *parsed > highest))
+      throw WrongUsage(
+          fmt::format("{}: found '{}'; expected auto or a number, {:g} to {:g}", name, text, lowest, highest));
+    value = parsed;
+  };
+  options_.push_back(
+      {name, std::move(help), range, false, set, [&value] { return value ? Json(*value) : Json("auto"); }});
+  return *this;
+}
+
 OptionSet& OptionSet::extent(std::string name, Extent& value, int lowest, int highest, std::string help) {
   const std::string range = fmt::format("{} to {}, or WIDTHxHEIGHT", lowest, highest);
   auto set = [=, &value](const std::string& text) {

@@ -54,6 +54,10 @@ class OptionSet {
   /// "automatic".
   OptionSet& number(std::string name, double& value, double lowest, double highest, std::string help);
 
+  /// The same, or "auto", which is kept as nothing.
+  OptionSet& number_or_auto(std::string name, std::optional<double>& value, double lowest, double highest,
+                            std::string help);
+
   /// "1024" (square) or "1024x512" (width x height), both of `lowest` to `highest`. In JSON a square is a number, else
   /// the text. 0, which stands for "automatic" where `lowest` is 0, is square only.
   OptionSet& extent(std::string name, Extent& value, int lowest, int highest, std::string help);

@@ -95,6 +95,7 @@ struct SeamSolver::System {
   std::vector<double> factors;          ///< of the points' weights
   std::vector<Equation> equations;
   Sparse normal;                        ///< the normal equations, lower half
+  Sparse symmetric;                     ///< both halves
   Sparse from_pinned;                   ///< rows: unknowns, columns: pinned
   std::vector<int> own_at, foreign_at;  ///< where products stand in those two, in for_each_product's order
   Eigen::SimplicialLDLT<Sparse> factor;
@@ -135,6 +136,29 @@ std::vector<Equation> seam_equations(const Seams& seams, std::span<const SeamPoi
     equations.push_back(std::move(equation));
   }
   return equations;
+}
+
+/// The least squares of `normal` x = `right` with every x of `lowest` to `highest`, from the free ones: each in turn
+/// gets its best value in these bounds, given the others.
+void keep_within(const Sparse& normal, const Eigen::VectorXd& right, double lowest, double highest,
+                 Eigen::VectorXd& values) {
+  constexpr int most_sweeps = 50;
+  const double small_change = 1e-5 * (highest - lowest);  // far less than a step of 8 bits
+  values = values.cwiseMax(lowest).cwiseMin(highest);
+  double change = std::numeric_limits<double>::infinity();
+  for (int sweep = 0; sweep < most_sweeps && change > small_change; ++sweep) {
+    change = 0;
+    for (Eigen::Index k = 0; k < values.size(); ++k) {
+      double residual = right[k], diagonal = 0;
+      for (Sparse::InnerIterator entry(normal, k); entry; ++entry) {
+        residual -= entry.value() * values[entry.index()];
+        if (entry.index() == k) diagonal = entry.value();
+      }
+      const double value = std::clamp(values[k] + residual / diagonal, lowest, highest);
+      change = std::max(change, std::abs(value - values[k]));
+      values[k] = value;
+    }
+  }
 }
 
 /// For every texel among `number`ed ones that is not covered, the seam that is nearest.
@@ -243,6 +267,7 @@ void SeamSolver::System::factorise() {
         else if (block * row.place + r >= block * column.place + c)
           normal.valuePtr()[*own_place++] += weight * product(r, c);
   });
+  symmetric = normal.selfadjointView<Eigen::Lower>();
   factor.factorize(normal);
   if (factor.info() != Eigen::Success)
     throw std::runtime_error("SeamSolver: the normal equations cannot be factorised");
@@ -340,7 +365,7 @@ void SeamSolver::reweigh(std::span<const double> mismatches) {
   own.factorise();
 }
 
-void SeamSolver::equalise(Image<float>& image) const {
+void SeamSolver::equalise(Image<float>& image, float lowest, float highest) const {
   const System& own = *system_;
   if (image.width() != own.width || image.height() != own.height || image.channels() % own.block != 0)
     throw std::invalid_argument("SeamSolver: an image of the seams' size is needed");
@@ -362,7 +387,9 @@ void SeamSolver::equalise(Image<float>& image) const {
     for (std::size_t k = 0; k < own.unknowns.size(); ++k)
       for (std::size_t c = 0; c < block; ++c) right[static_cast<Eigen::Index>(block * k + c)] *= own.keep[k];
     right -= own.from_pinned * gather(own.pinned);
-    const Eigen::VectorXd solved = own.factor.solve(right);
+    Eigen::VectorXd solved = own.factor.solve(right);
+    if (solved.minCoeff() < lowest || solved.maxCoeff() > highest)
+      keep_within(own.symmetric, right, static_cast<double>(lowest), static_cast<double>(highest), solved);
     for (std::size_t k = 0; k < own.unknowns.size(); ++k)
       for (std::size_t c = 0; c < block; ++c)
         value(own.unknowns[k], c) = static_cast<float>(solved[static_cast<Eigen::Index>(block * k + c)]);

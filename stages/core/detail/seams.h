@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -116,9 +117,11 @@ class SeamSolver {
   SeamSolver(SeamSolver&&) noexcept;
   SeamSolver& operator=(SeamSolver&&) noexcept;
 
-  /// Changes texels near seams, each channel on its own (tangent space: all three). Gutters are filled. Throws
+  /// Changes texels near seams, each channel on its own (tangent space: all three), to values of `lowest` to `highest`
+  /// alone: the constrained least squares, by projected Gauss-Seidel from the free solution. Gutters are filled. Throws
   /// std::invalid_argument for another size, or without three channels in tangent space.
-  void equalise(Image<float>& image) const;
+  void equalise(Image<float>& image, float lowest = -std::numeric_limits<float>::infinity(),
+                float highest = std::numeric_limits<float>::infinity()) const;
 
   /// The points at which equality is asked for.
   std::span<const SeamPoint> points() const;

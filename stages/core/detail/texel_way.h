@@ -5,8 +5,8 @@
 
 namespace kiln {
 
-/// How a texel's point of the high mesh was found, as match.png shows it.
-enum class TexelWay : std::uint8_t { uncovered, ray_outwards, ray_inwards, nearest_point, disagreeing };
+/// How a texel's point of the high mesh was found, as match.png shows it; or that no one can see that point.
+enum class TexelWay : std::uint8_t { uncovered, ray_outwards, ray_inwards, nearest_point, disagreeing, buried };
 
 struct TexelWayColour {
   const char* name;
@@ -14,10 +14,11 @@ struct TexelWayColour {
 };
 
 /// By TexelWay.
-inline constexpr std::array<TexelWayColour, 5> texel_way_colours = {{{"not covered", {24, 22, 20}},
+inline constexpr std::array<TexelWayColour, 6> texel_way_colours = {{{"not covered", {24, 22, 20}},
                                                                      {"ray outwards", {214, 164, 88}},
                                                                      {"ray inwards", {74, 132, 150}},
                                                                      {"nearest point", {196, 120, 190}},
-                                                                     {"disagreeing", {228, 40, 30}}}};
+                                                                     {"disagreeing", {228, 40, 30}},
+                                                                     {"buried in another part", {96, 92, 88}}}};
 
 }  // namespace kiln

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "raycast/exact_side.h"
+
 namespace kiln {
 
 namespace {
@@ -155,8 +157,13 @@ BeamScene::BeamScene(std::span<const Eigen::Vector3f> positions,
   Builder(*this, positions, triangles);
   closed = is_closed(positions, triangles);
   float largest = 0;
+  Eigen::AlignedBox3f box;
   for (const auto& triangle : triangles)
-    for (std::uint32_t vertex : triangle) largest = std::max(largest, positions[vertex].cwiseAbs().maxCoeff());
+    for (std::uint32_t vertex : triangle) {
+      largest = std::max(largest, positions[vertex].cwiseAbs().maxCoeff());
+      box.extend(positions[vertex]);
+    }
+  if (!triangles.empty()) doubtful = doubtful_share * box.diagonal().norm();
   slack = 8 * std::numeric_limits<float>::epsilon() * largest;
 }
 

@@ -41,6 +41,8 @@ struct BeamScene {
   bool closed = false;
   /// A few roundings of the largest coordinate: the slack that makes all tests on boxes and planes conservative.
   float slack = 0;
+  /// Hits nearer than this (object units) are looked at again by is_before.
+  float doubtful = 0;
 
   BeamScene() = default;
   BeamScene(std::span<const Eigen::Vector3f> positions, std::span<const std::array<std::uint32_t, 3>> triangles);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "raycast/exact_side.h"
 #include "raycast/vector_width.h"
 #include "sh/transfer_sums.h"
 
@@ -60,6 +61,10 @@ KILN_INLINE std::uint32_t bits_of(const Bits& bits) {
 KILN_INLINE std::uint32_t mask_at_most(const Floats& a, const Floats& b) {
   constexpr Bits bit = {1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768};
   return bits_of(a <= b ? bit : Bits{});
+}
+
+KILN_INLINE Eigen::Vector3f at_lane(const float (&lanes)[3][beam_lanes], int lane) {
+  return {lanes[0][lane], lanes[1][lane], lanes[2][lane]};
 }
 
 /// 1 / x, of a tiny number instead of 0; the number's sign is x's.
@@ -184,11 +189,35 @@ KILN_INLINE Sheared shear_along(const float* direction, const BeamPacket& packet
   return s;
 }
 
+/// A triangle and a direction, for all receivers of a packet.
+struct TriangleHits {
+  Floats inside;      ///< at least 0 where the ray meets the triangle
+  Floats depth;       ///< its distance along the sheared axis times twice_area
+  Floats twice_area;  ///< of the triangle as the direction sees it
+};
+
+KILN_INLINE TriangleHits hits_of(const Floats (&corner_x)[3], const Floats (&corner_y)[3], const Floats (&corner_w)[3],
+                                 int i, const Floats& origin_x, const Floats& origin_y, const Floats& origin_w,
+                                 bool outside) {
+  const Floats ax = corner_x[0][i] - origin_x, ay = corner_y[0][i] - origin_y;
+  const Floats bx = corner_x[1][i] - origin_x, by = corner_y[1][i] - origin_y;
+  const Floats cx = corner_x[2][i] - origin_x, cy = corner_y[2][i] - origin_y;
+  const Floats u = cx * by - cy * bx, v = ax * cy - ay * cx, w = bx * ay - by * ax;
+  const Floats depth =
+      u * (corner_w[0][i] - origin_w) + v * (corner_w[1][i] - origin_w) + w * (corner_w[2][i] - origin_w);
+  // Inside all edges, whichever way around, and on the ray's side.
+  const Floats one_way = least(least(u, v), w);
+  const Floats other_way = outside ? Floats{} - 1 : -greatest(greatest(u, v), w);
+  const Floats area = u + v + w;
+  return {depth > 0 ? one_way : (depth < 0 ? other_way : Floats{} - 1), greatest(depth, -depth), greatest(area, -area)};
+}
+
 /// Clears the weights of the receivers that a candidate hides from one direction; returns whether any triangle was
 /// near enough to be tested. `first` is the candidate to begin with, and becomes the one that hid the last receivers.
 KILN_ANY_VECTOR_WIDTH bool shade(const BeamPacket& packet, const float* centre, const float* half, float slack,
                                  const float* direction, const BeamScene::Cluster* const* candidates,
-                                 int candidate_count, const BeamBoxes* boxes, bool outside, int& first, float* weight) {
+                                 int candidate_count, const BeamBoxes* boxes, bool outside, float doubtful, int& first,
+                                 float* weight) {
   // Step 1: the candidates whose box the beam meets.
   constexpr int most = 256;
   std::uint16_t met[most];
@@ -251,20 +280,28 @@ KILN_ANY_VECTOR_WIDTH bool shade(const BeamPacket& packet, const float* centre, 
       if (triangles == 0) continue;
       tested = true;
 
-      // Step 3: all receivers against each of these triangles.
-      for (; triangles != 0; triangles &= triangles - 1) {
+      // Step 3: all receivers against each of these triangles, those beside the receivers last: there float32 may take
+      // what lies behind a receiver for a hit, so that hits are decided in float64.
+      const std::uint32_t beside = triangles & mask_at_most(least(least(corner_w[0], corner_w[1]), corner_w[2]),
+                                                            Floats{} + (half[z] + doubtful));
+      for (triangles &= ~beside; triangles != 0; triangles &= triangles - 1) {
+        const TriangleHits hits =
+            hits_of(corner_x, corner_y, corner_w, __builtin_ctz(triangles), origin_x, origin_y, origin_w, outside);
+        weights = hits.inside >= 0 ? Floats{} : weights;
+      }
+      for (triangles = beside; triangles != 0; triangles &= triangles - 1) {
         const int i = __builtin_ctz(triangles);
-        const Floats ax = corner_x[0][i] - origin_x, ay = corner_y[0][i] - origin_y;
-        const Floats bx = corner_x[1][i] - origin_x, by = corner_y[1][i] - origin_y;
-        const Floats cx = corner_x[2][i] - origin_x, cy = corner_y[2][i] - origin_y;
-        const Floats u = cx * by - cy * bx, v = ax * cy - ay * cx, w = bx * ay - by * ax;
-        const Floats depth =
-            u * (corner_w[0][i] - origin_w) + v * (corner_w[1][i] - origin_w) + w * (corner_w[2][i] - origin_w);
-        // Inside all edges, whichever way around, and on the ray's side.
-        const Floats one_way = least(least(u, v), w);
-        const Floats other_way = outside ? Floats{} - 1 : -greatest(greatest(u, v), w);
-        const Floats inside = depth > 0 ? one_way : (depth < 0 ? other_way : Floats{} - 1);
-        weights = inside >= 0 ? Floats{} : weights;
+        TriangleHits hits = hits_of(corner_x, corner_y, corner_w, i, origin_x, origin_y, origin_w, outside);
+        std::uint32_t doubts = mask_at_most(Floats{}, hits.inside) & ~mask_at_most(weights, Floats{});
+        if (doubts == 0) continue;
+        doubts &= mask_at_most(hits.depth, hits.twice_area * doubtful);
+        for (; doubts != 0; doubts &= doubts - 1) {
+          const int r = __builtin_ctz(doubts);
+          if (!is_before(at_lane(packet.origin, r), Eigen::Vector3f(direction[0], direction[1], direction[2]),
+                         at_lane(cluster.corner[0], i), at_lane(cluster.corner[1], i), at_lane(cluster.corner[2], i)))
+            hits.inside[r] = -1;
+        }
+        weights = hits.inside >= 0 ? Floats{} : weights;
       }
       if (mask_at_most(weights, Floats{}) == all_lanes) {
         store(weight, Floats{});
@@ -514,7 +551,7 @@ void BeamTracer::trace(const float (*direction)[3], int count, BeamWeights& weig
   for (std::uint32_t left = weights.facing; left != 0; left &= left - 1) {
     const int d = __builtin_ctz(left);
     if (!shade(packet_, centre_, half_, slack_, direction[d], candidates_.data(), static_cast<int>(candidates_.size()),
-               boxes_.data(), outside_, first, weights.weight[d]))
+               boxes_.data(), outside_, scene_.doubtful, first, weights.weight[d]))
       weights.lit |= 1u << d;
   }
 }

@@ -4,13 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <embree3/rtcore.h>
 #include <limits>
-#include <new>
-#include <stdexcept>
-#include <tbb/task_arena.h>
+#include <vector>
 
-#include "base/errors.h"
+#include "raycast/embree_scene.h"
 
 namespace kiln {
 
@@ -75,38 +72,22 @@ Eigen::Vector2d closest_weights(const Eigen::Vector3d& p, const Eigen::Vector3d&
   return {vb / sum, vc / sum};
 }
 
-/// Embree keeps its own copy of the buffers, padded as its wide loads need.
-void attach_triangles(RTCDevice device, RTCScene scene, const std::vector<Eigen::Vector3f>& positions,
-                      const std::vector<Triangle>& triangles) {
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertex_buffer = static_cast<float*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), positions.size()));
-  auto* index_buffer = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), triangles.size()));
-  if (vertex_buffer == nullptr || index_buffer == nullptr) {
-    rtcReleaseGeometry(geometry);
-    throw std::bad_alloc();
-  }
-  for (std::size_t i = 0; i < positions.size(); ++i)
-    for (int axis = 0; axis < 3; ++axis) vertex_buffer[3 * i + axis] = positions[i][axis];
-  for (std::size_t i = 0; i < triangles.size(); ++i)
-    for (int corner = 0; corner < 3; ++corner) index_buffer[3 * i + corner] = triangles[i][corner];
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(scene, geometry);
-  rtcReleaseGeometry(geometry);
-}
-
 }  // namespace
 
 struct RayScene::Implementation {
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
   std::vector<Eigen::Vector3f> positions;
   std::vector<Triangle> triangles;
+  EmbreeScene embree;
+  RTCScene scene = embree.scene();
 
-  ~Implementation() {
-    if (scene != nullptr) rtcReleaseScene(scene);
-    if (device != nullptr) rtcReleaseDevice(device);
+  Implementation(std::span<const Eigen::Vector3f> own_positions, std::span<const Triangle> own_triangles)
+      : positions(own_positions.begin(), own_positions.end()),
+        triangles(own_triangles.begin(), own_triangles.end()),
+        embree(positions, triangles) {}
+
+  bool shows_front(std::uint32_t triangle, const Eigen::Vector3f& direction) const {
+    const Triangle& t = triangles[triangle];
+    return (positions[t[1]] - positions[t[0]]).cross(positions[t[2]] - positions[t[0]]).dot(direction) < 0;
   }
 
   /// The closest point, of triangles that face `facing` if that is not null.
@@ -152,23 +133,7 @@ SurfacePoint RayScene::Implementation::closest(const Eigen::Vector3f& point, con
 RayScene::RayScene(const TriangleMesh& mesh) : RayScene(mesh.positions, mesh.triangles) {}
 
 RayScene::RayScene(std::span<const Eigen::Vector3f> positions, std::span<const Triangle> triangles)
-    : implementation_(std::make_unique<Implementation>()) {
-  Implementation& own = *implementation_;
-  own.positions.assign(positions.begin(), positions.end());
-  own.triangles.assign(triangles.begin(), triangles.end());
-  own.device = rtcNewDevice(nullptr);
-  if (own.device == nullptr) throw MachineLacks("Embree finds no device it can run on");
-  own.scene = rtcNewScene(own.device);
-  // Robust: no ray slips through between two triangles.
-  rtcSetSceneFlags(own.scene, RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(own.scene, RTC_BUILD_QUALITY_HIGH);
-  if (!own.triangles.empty()) attach_triangles(own.device, own.scene, own.positions, own.triangles);
-  // Built by one thread, so that the tree, and with it which of two triangles a query on their edge gets, does not
-  // depend on the number of threads.
-  tbb::task_arena one_thread(1);
-  one_thread.execute([&] { rtcCommitScene(own.scene); });
-  if (rtcGetDeviceError(own.device) != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot build the scene");
-}
+    : implementation_(std::make_unique<Implementation>(positions, triangles)) {}
 
 RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;
@@ -213,13 +178,19 @@ void RayScene::first_front_hits(const float (&origin)[3][PacketHits::lanes], con
   }
   rtcIntersect16(valid, implementation_->scene, &context, &query);
   for (std::size_t k = 0; k < lanes; ++k) {
-    const bool hit = valid[k] != 0 && query.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID;
-    const bool front =
-        hit &&
-        query.hit.Ng_x[k] * direction.x() + query.hit.Ng_y[k] * direction.y() + query.hit.Ng_z[k] * direction.z() < 0;
-    hits.triangle[k] = front ? query.hit.primID[k] : SurfacePoint::none;
-    hits.u[k] = query.hit.u[k];
-    hits.v[k] = query.hit.v[k];
+    hits.triangle[k] = SurfacePoint::none;
+    if (valid[k] == 0) continue;
+    const Eigen::Vector3f from(origin[0][k], origin[1][k], origin[2][k]);
+    SurfacePoint hit;
+    if (query.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID)
+      hit = {query.hit.primID[k], query.hit.u[k], query.hit.v[k], query.ray.tfar[k]};
+    while (hit.found() && implementation_->embree.is_behind(from, direction, hit.triangle, hit.distance))
+      hit = first_hit(from, direction, std::nextafter(hit.distance, std::numeric_limits<float>::infinity()),
+                      std::numeric_limits<float>::infinity());
+    if (!hit.found() || !implementation_->shows_front(hit.triangle, direction)) continue;
+    hits.triangle[k] = hit.triangle;
+    hits.u[k] = hit.u;
+    hits.v[k] = hit.v;
   }
 }
 

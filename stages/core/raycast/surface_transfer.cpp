@@ -5,15 +5,15 @@
 #include "raycast/beam_transfer.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
+#include "sh/ray_offset.h"
 
 namespace kiln {
 
 TransferVectors surface_transfer(const TriangleMesh& occluder, const Receivers& points,
                                  const SurfaceTransferSettings& settings) {
-  constexpr float ray_offset = 1e-4f;  // of the diagonal, as in a bake
   constexpr std::uint64_t seed = 1;
   const BeamScene scene(occluder.positions, occluder.triangles);
-  const BeamReceivers receivers(points, ray_offset * bounding_box(occluder).diagonal());
+  const BeamReceivers receivers(points, rounding_offset(occluder.positions));
   std::vector<Eigen::Vector3f> directions = sample_directions(Sampling::fibonacci, settings.directions, seed);
   order_coherently(directions);
   TransferSums sums(points.size(), coefficient_count(settings.bands));
