@@ -182,7 +182,7 @@ bool BuriedTest::Implementation::in_open(const Eigen::Vector3f& origin) const {
 }
 
 bool BuriedTest::Implementation::is_buried(const Eigen::Vector3f& origin, const Eigen::Vector3f& normal) const {
-  if (is_free(origin, normal)) return false;
+  if (!(normal.squaredNorm() > 0) || is_free(origin, normal)) return false;
   if (in_closed(origin, normal, nearest_crossing * ray_offset)) return true;
   // What is left: open parts, and points so close to the line that only the dark tells on which side they are.
   if (sees_light(origin, normal)) return false;

@@ -27,8 +27,8 @@ class BuriedTest {
   BuriedTest(std::span<const Eigen::Vector3f> positions, std::span<const Triangle> triangles, float ray_offset);
   ~BuriedTest();
 
-  /// 1 for each buried one of `points`, which lie on the mesh's surface, else 0. Neighbours should stand next to each
-  /// other. Does not depend on the number of threads.
+  /// 1 for each buried one of `points`, which lie on the mesh's surface, else 0; points without a normal are not.
+  /// Neighbours should stand next to each other. Does not depend on the number of threads.
   std::vector<std::uint8_t> operator()(const Receivers& points) const;
 
  private:
