@@ -10,6 +10,7 @@
 #include "kiln/build.h"
 #include "kiln/clean.h"
 #include "kiln/init.h"
+#include "kiln/makefile.h"
 #include "kiln/pipeline.h"
 #include "kiln/step.h"
 
@@ -147,7 +148,7 @@ Commands::Commands(CLI::App& app) : values_(std::make_unique<Values>()) {
   init_command.callback([&v] {
     init_pipeline(v.meshes, v.file);
     std::fprintf(stderr, "kiln: wrote %s; 'kiln build%s' makes what it says\n", v.file.c_str(),
-                 v.file == "pipeline.yaml" ? "" : (" " + v.file.string()).c_str());
+                 v.file == "pipeline.yaml" ? "" : (" " + shell_quoted(v.file.string())).c_str());
   });
 
   // What the Makefile calls.

@@ -107,4 +107,17 @@ std::vector<std::string> metrics_of(const std::map<Stage, StageSettings>& settin
   return metrics;
 }
 
+std::string setting_of_metric(const std::string& metric) {
+  constexpr std::pair<std::string_view, const char*> settings[] = {{"bake.verification.", "verify-directions of bake"},
+                                                                   {"bake.bounces.", "bounces of bake"},
+                                                                   {"bake.subsurface.", "subsurface of bake"},
+                                                                   {"bake.adaptive.", "adaptive of bake"},
+                                                                   {"bake.max_error.", "max-error of bake"},
+                                                                   {"bake.shadow_map.", "shadow-size: auto of bake"},
+                                                                   {"report.compressed_", "compress"}};
+  for (const auto& [prefix, setting] : settings)
+    if (metric.starts_with(prefix)) return setting;
+  return "";
+}
+
 }  // namespace kiln

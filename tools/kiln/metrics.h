@@ -12,4 +12,7 @@ namespace kiln {
 /// list here, for a budget is checked before any record is there; cli.metrics holds it against records.
 std::vector<std::string> metrics_of(const std::map<Stage, StageSettings>& settings);
 
+/// The setting that has a metric written, as "verify-directions of bake"; empty where it takes none.
+std::string setting_of_metric(const std::string& metric);
+
 }  // namespace kiln

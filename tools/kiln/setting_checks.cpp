@@ -172,11 +172,13 @@ void check_budgets(const Asset& asset, const std::map<std::string, Limits>& budg
     std::vector<std::string> names;
     for (const std::string& name : known)
       if (name.starts_with(stage)) names.push_back(name.substr(stage.size()));
-    throw BadInput(limits.place,
-                   fmt::format("a budget for '{}', which no stage of asset '{}' writes", metric, asset.name),
+    const std::string found = fmt::format("a budget for '{}', which no stage of asset '{}' writes", metric, asset.name);
+    if (const std::string setting = setting_of_metric(metric); !setting.empty())
+      throw BadInput(limits.place, found, "a metric of the stages as they are set", "set " + setting);
+    throw BadInput(limits.place, found,
                    nearest.empty() ? fmt::format("{} and one of {}", stage, fmt::join(names, ", "))
                                    : fmt::format("a metric, such as '{}'", nearest),
-                   "metrics.json beside a report has them all; some need settings, as verify-directions of bake");
+                   "see metrics.json beside a report, which has them all");
   }
 }
 
