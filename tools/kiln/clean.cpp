@@ -74,7 +74,7 @@ class Cleaner {
         else
           remove_leftovers(entry);
       } else {
-        kept_.push_back(entry);
+        kept_.push_back(entry.lexically_normal());
       }
     fs::remove(folder, error);
   }

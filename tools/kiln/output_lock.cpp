@@ -50,8 +50,8 @@ OutputLock::OutputLock(const fs::path& output) {
     while (flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
       if (errno != EWOULDBLOCK && errno != EINTR) fail_to_write(file, std::strerror(errno), errno);
       if (!said)
-        std::fprintf(stderr, "kiln: another build is at work in %s%s; waiting for its end\n", output.c_str(),
-                     holder(descriptor_).c_str());
+        std::fprintf(stderr, "kiln: another build is at work in %s%s; waiting for its end\n",
+                     output.lexically_normal().c_str(), holder(descriptor_).c_str());
       said = true;
       throw_if_interrupted();
       poll(nullptr, 0, poll_milliseconds);
