@@ -119,7 +119,12 @@ int run_step(const fs::path& plan_file, const fs::path& programs, int threads) {
   const int status = end.signal != 0 ? static_cast<int>(ExitCode::failed) : end.exit_status;
   const bool missed_budget = status == static_cast<int>(ExitCode::budget_missed);
   if (status == 0 || missed_budget) {
-    save_state(plan.state, state_after(plan, inputs, "."));
+    try {
+      save_state(plan.state, state_after(plan, inputs, "."));
+    } catch (const std::exception&) {
+      tell_driver({plan.asset, plan.run.name, static_cast<int>(ExitCode::failed), watch.seconds()});
+      throw;
+    }
     std::error_code ignored;
     fs::remove(plan.state.string() + ".begun", ignored);
   }
