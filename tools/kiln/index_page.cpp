@@ -23,8 +23,8 @@ h1 { margin: 0; font-size: 28px; letter-spacing: -0.01em; }
 .asset { display: flex; flex-direction: column; min-width: 0; overflow: hidden; background: var(--card);
   border: 1px solid var(--line); border-radius: 10px; color: inherit; text-decoration: none; }
 a.asset:hover, a.asset:focus-visible { border-color: var(--accent); box-shadow: 0 2px 14px #0000001a; }
-.picture { display: grid; place-items: center; aspect-ratio: 4 / 3; background: #efedf0; color: var(--soft); }
-.picture img { display: block; width: 100%; height: 100%; object-fit: contain; }
+.picture { position: relative; display: grid; place-items: center; aspect-ratio: 4 / 3; background: #efedf0; color: var(--soft); }
+.picture img { position: absolute; inset: 0; width: 100%; height: 100%; object-fit: contain; }
 .text { padding: 14px 16px 16px; }
 h2 { margin: 0 0 6px; font-size: 17px; overflow-wrap: anywhere; }
 dl { display: grid; grid-template-columns: auto auto; gap: 1px 12px; margin: 10px 0 0; font-size: 13px; }
