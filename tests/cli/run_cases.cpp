@@ -158,7 +158,8 @@ class Runner {
         write(folder_ / file, text.get<std::string>());
     for (const auto& [file, bytes] : cuts.items()) fs::resize_file(folder_ / file, bytes.get<std::uintmax_t>());
 
-    for (const auto& [file, seconds] : step.value("time", Json::object()).items())
+    const Json new_times = step.value("time", Json::object());
+    for (const auto& [file, seconds] : new_times.items())
       set_time(folder_ / file, seconds.get<std::int64_t>());
 
     Words faults;

@@ -87,6 +87,7 @@ echo >>"$latin"
 $kiln build -n | grep -q simplify || fail "a change of a file of that name is not seen"
 
 # Every number of the records is known as a metric, and every one that is known is there or is of another asset.
+pipeline 64 >pipeline.yaml
 cat >>pipeline.yaml <<EOF
   all:
     mesh: ball.obj
