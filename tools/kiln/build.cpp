@@ -111,6 +111,7 @@ class Build {
       for (const std::size_t need : needs_[k])
         if (reasons_[k].empty() && must_run(need)) reasons_[k] = rules_[need].run.name + " runs again";
     }
+    bytes_read_ = hashes.bytes_read();
   }
 
   /// The rule of the last stage that an asset shall pass.
@@ -156,8 +157,10 @@ class Build {
 
   void save_plans() {
     for (std::size_t k = 0; k < rules_.size(); ++k) save_plan(pipeline_.folder / rules_[k].plan, plans_[k]);
+    // Stamps that save the next build from reading files again; but for a few bytes nothing is written.
+    constexpr std::int64_t much = 16 << 20;
     for (const std::size_t k : wanted_)
-      if (states_[k] && !must_run(k)) save_state(pipeline_.folder / rules_[k].state, *states_[k]);
+      if (bytes_read_ > much && states_[k] && !must_run(k)) save_state(pipeline_.folder / rules_[k].state, *states_[k]);
     write_if_changed(pipeline_.folder / pipeline_.output / "Makefile", makefile_text(rules_, program_folder()));
   }
 
@@ -282,6 +285,7 @@ class Build {
   std::vector<std::string> reasons_;               ///< why a rule has to run; empty where it does not
   std::vector<std::size_t> wanted_;                ///< rules, each behind those it needs
   std::vector<int> statuses_;
+  std::int64_t bytes_read_ = 0;  ///< to see what has changed
   bool noted_ = false;
 };
 

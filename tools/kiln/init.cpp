@@ -48,9 +48,8 @@ assets:
 /// A mesh as seen from the folder of the pipeline file: relative where it lies in or beside it.
 fs::path seen_from(const fs::path& folder, const fs::path& mesh) {
   if (mesh.is_absolute()) return mesh.lexically_normal();
-  std::error_code error;
-  const fs::path relative = fs::proximate(mesh, folder, error);
-  return error ? fs::absolute(mesh) : relative;
+  const fs::path whole = fs::weakly_canonical(fs::absolute(folder_of(mesh))) / mesh.filename();
+  return whole.lexically_relative(fs::weakly_canonical(fs::absolute(folder)));
 }
 
 }  // namespace

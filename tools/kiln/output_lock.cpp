@@ -65,7 +65,9 @@ OutputLock::OutputLock(const fs::path& output) {
 }
 
 OutputLock::~OutputLock() {
-  if (descriptor_ >= 0) close(descriptor_);
+  // Who held it is of no use any more, and a build that had nothing to do leaves the folder as it was.
+  [[maybe_unused]] const int failure = ftruncate(descriptor_, 0);
+  close(descriptor_);
 }
 
 }  // namespace kiln

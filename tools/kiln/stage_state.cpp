@@ -102,6 +102,7 @@ std::optional<FileStamp> FileHashes::stamp(const fs::path& file, const FileStamp
     clock_gettime(CLOCK_REALTIME, &clock);
     if (nanoseconds(clock) - std::max(now.changed, now.modified) < youngest) now.inode = 0;
     now.hash = hash_file(path);
+    bytes_read_ += now.bytes;
   }
   return known_[file] = now;
 }

@@ -31,9 +31,13 @@ class FileHashes {
   /// The stamp of a file as it is now; nothing where there is no such file. `earlier` may be null.
   std::optional<FileStamp> stamp(const std::filesystem::path& file, const FileStamp* earlier = nullptr);
 
+  /// Of files that had to be read.
+  std::int64_t bytes_read() const { return bytes_read_; }
+
  private:
   std::filesystem::path folder_;
   std::map<std::filesystem::path, FileStamp> known_;
+  std::int64_t bytes_read_ = 0;
 };
 
 /// A stage of an asset as the Makefile has it run.
