@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -329,7 +330,7 @@ Packing pack_charts(const std::vector<Chart>& charts, const PackSettings& settin
     }
     if (!packing)
       throw WrongUsage(
-          "charts at " + std::to_string(settings.texels_per_unit) +
+          "charts at " + fmt::format("{:g}", settings.texels_per_unit) +
           " texels per unit of length find no room in such an atlas; choose fewer texels or a larger atlas");
     return *packing;
   }

@@ -1,6 +1,7 @@
 #include "bake/bake_run.h"
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "base/errors.h"
 
@@ -60,12 +61,12 @@ BakeResult integrate(OutputSet& outputs, const BakePaths& paths, const BakeScene
   }
   if (result.choice && result.choice->estimated_error > result.choice->target_error)
     command.say("WARNING: " + std::to_string(result.directions) + " directions leave an estimated error of " +
-                std::to_string(result.choice->estimated_error) + ", above the " +
-                std::to_string(result.choice->target_error) + " asked for; raise --max-directions");
+                fmt::format("{:.3g}", result.choice->estimated_error) + ", above the " +
+                fmt::format("{:.3g}", result.choice->target_error) + " asked for; raise --max-directions");
   if (result.shadow_choice && !result.shadow_choice->reached)
     command.say("WARNING: depth maps of " + std::to_string(result.shadow_choice->size_texels) +
-                " texels leave an error of visibility of " + std::to_string(result.shadow_choice->error) +
-                ", above the " + std::to_string(result.shadow_choice->floor) +
+                " texels leave an error of visibility of " + fmt::format("{:.3g}", result.shadow_choice->error) +
+                ", above the " + fmt::format("{:.3g}", result.shadow_choice->floor) +
                 " that --bits costs; --refine rays brings it under that");
   if (result.bounces && !result.bounces->reached)
     command.say("WARNING: " + std::to_string(result.bounces->energy.size()) +

@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include "base/errors.h"
+#include "base/outputs.h"
 
 namespace kiln {
 
@@ -170,8 +171,7 @@ Json save_compressed(OutputSet& outputs, const fs::path& input, const PrtAsset& 
     const fs::path file = outputs.add(name);
     std::ofstream stream(file, std::ios::binary);
     stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    if (!stream.flush())
-      throw BadInput(file.string(), "cannot be written", "room for a file", "free some space, or name another folder");
+    if (!stream.flush()) fail_to_write(file, "");
   }
   remove_stale_files(outputs, result.files);
 

@@ -2,6 +2,8 @@
 
 #include "base/command_line.h"
 #include "base/errors.h"
+#include "base/file_names.h"
+#include "image/image_file.h"
 #include "report/page.h"
 #include "report/report.h"
 
@@ -15,7 +17,9 @@ int main(int argc, char** argv) {
     ReportSettings settings;
     command.input("ASSET-FOLDER", folder,
                   "The asset's folder: what kiln-simplify to kiln-bake wrote, as `kiln build` lays it out");
-    command.output(page_file, "The report, one HTML file; metrics.json and report.json are written beside it");
+    command.output(page_file,
+                   "The report, one HTML file; metrics.json, report.json and report.png, the asset under the first "
+                   "light, are written beside it");
     command.input_option("high", high_file,
                          "The high mesh to compare with (default: the one that simplify.json names)");
     command.input_option("compressed", compressed, "The asset as kiln-compress stored it, to show beside it");
@@ -40,10 +44,12 @@ int main(int argc, char** argv) {
 
     // Save.
     Json result = command.result(report.seconds, report.to_json());
-    for (const StageRecord& record : asset.records) result["inputs"][record.file.string()] = hash_file(record.file);
+    for (const StageRecord& record : asset.records)
+      result["inputs"][text_of_path(record.file)] = hash_file(record.file);
     const Json metrics = all_metrics(asset, result);
     outputs.add_text(page_file.filename().string(), page_html(asset, report, metrics, outputs.staging()));
-    outputs.add_text("metrics.json", metrics.dump(2) + "\n");
+    write_png(outputs.add("report.png"), cover_picture(report));
+    outputs.add_text("metrics.json", json_text(metrics, 2) + "\n");
     command.finish(outputs, result);
     if (const std::size_t missed = report.missed_budgets(); missed > 0)
       throw BudgetMissed(std::to_string(missed) + " of " + std::to_string(report.budgets.size()) +

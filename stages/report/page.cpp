@@ -300,6 +300,11 @@ std::string footer(const Json& metrics) {
 
 }  // namespace
 
+Image<std::uint8_t> cover_picture(const Report& report) {
+  const LightComparison& light = report.comparison.lights.front();
+  return cropped(shown_radiance(light.asset), crop_of(light));
+}
+
 std::string page_html(const AssetFolder& asset, const Report& report, const Json& metrics,
                       const fs::path& scratch_folder) {
   const fs::path scratch = scratch_folder / "picture.png";

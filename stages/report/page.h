@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "image/image.h"
 #include "report/records.h"
 #include "report/report.h"
 
@@ -13,5 +14,8 @@ namespace kiln {
 /// read.
 std::string page_html(const AssetFolder& asset, const Report& report, const Json& metrics,
                       const std::filesystem::path& scratch);
+
+/// The asset alone under the report's first light, cropped to it: what an index of assets shows.
+Image<std::uint8_t> cover_picture(const Report& report);
 
 }  // namespace kiln

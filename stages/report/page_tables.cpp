@@ -27,7 +27,7 @@ std::string row(const std::string& label, const std::string& value) {
 std::string metric_rows(const std::string& stage, const Json& metrics) {
   std::string html;
   for (const auto& [key, value] : metrics.items()) {
-    if (key == "stage" || key == "version" || key == "settings" || key == "inputs" || key == "seconds" ||
+    if (key == "stage" || key == "version" || key == "settings" || key == "inputs" || key == "outputs" || key == "seconds" ||
         key == "verification" || key == "plain" || key == "chosen" || key == "bounces" || key == "subsurface" ||
         value.is_array())
       continue;

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "base/errors.h"
+#include "base/file_names.h"
 #include "base/outputs.h"
 
 namespace kiln {
@@ -71,7 +72,7 @@ AssetFolder load_asset_folder(const fs::path& folder, const fs::path& compressed
 
 fs::path recorded_high_mesh(const AssetFolder& asset) {
   const Json inputs = asset.record("simplify").value("inputs", Json::object());
-  const fs::path high = inputs.empty() ? fs::path() : fs::path(inputs.begin().key());
+  const fs::path high = inputs.empty() ? fs::path() : path_of_text(inputs.begin().key());
   if (high.empty() || !fs::is_regular_file(high))
     throw BadInput((asset.folder / "simplify.json").string(),
                    "names the high mesh '" + high.string() + "', which does not exist", "a mesh to compare with",

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <iterator>
 #include <utility>
 #include <vector>
@@ -112,7 +113,7 @@ SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settin
   constexpr double smallest_max_error = 1e-4;  // several steps of 16 bits
   const bool by_error = settings.max_error > 0;
   if (by_error && settings.max_error < smallest_max_error)
-    throw WrongUsage("max-error: found " + std::to_string(settings.max_error) + ", expected 0 or 0.0001 to 1");
+    throw WrongUsage("max-error: found " + fmt::format("{:g}", settings.max_error) + ", expected 0 or 0.0001 to 1");
   const Stopwatch stopwatch;
   Writer write(written);
   SimplifyResult result;

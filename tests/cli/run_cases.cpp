@@ -4,20 +4,24 @@
 // sphere.obj (512 triangles) and what the setup's commands made. A step, all of it but "run" optional:
 //   "write":    {file: text}   first; null removes the file
 //   "cut":      {file: bytes}  first; keeps that many bytes
+//   "time":     {file: seconds since 1970}  first, its time
 //   "run":      [program, argument...]
 //   "status":   its exit status (0)
 //   "stderr", "stdout": [words that are there]; "json": true: stdout is one JSON object (else it is empty, unless words
-//   are given) "makes":    [files that are there afterwards] "remade":   [files with a new time], "kept": [files with
-//   the old time]
+//   are given) "makes":    [files that are there afterwards] "gone": [files or folders that are not] "remade":   [files
+//   with a new time], "kept": [files with the old time]
 // A step that fails must leave the folder as it was, to the byte and without further files; "writes": true lifts that.
 // A case with a step's own keys is that one step.
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
+#include <fcntl.h>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <sys/stat.h>
 #include <vector>
 
 #include "base/outputs.h"
@@ -54,6 +58,11 @@ Snapshot snapshot(const fs::path& folder) {
 void write(const fs::path& file, const std::string& text) {
   if (file.has_parent_path()) fs::create_directories(file.parent_path());
   std::ofstream(file, std::ios::binary) << text;
+}
+
+void set_time(const fs::path& file, std::int64_t seconds) {
+  const timespec times[2] = {{seconds, 0}, {seconds, 0}};
+  if (utimensat(AT_FDCWD, file.c_str(), times, 0) != 0) throw std::runtime_error(file.string() + " has no time");
 }
 
 /// An octahedron whose faces are split into four again and again, each new corner on the unit sphere: 8 *
@@ -149,6 +158,10 @@ class Runner {
         write(folder_ / file, text.get<std::string>());
     for (const auto& [file, bytes] : cuts.items()) fs::resize_file(folder_ / file, bytes.get<std::uintmax_t>());
 
+    const Json new_times = step.value("time", Json::object());
+    for (const auto& [file, seconds] : new_times.items())
+      set_time(folder_ / file, seconds.get<std::int64_t>());
+
     Words faults;
     std::map<std::string, fs::file_time_type> times;
     for (const char* key : {"remade", "kept"})
@@ -171,6 +184,8 @@ class Runner {
     }
     for (const std::string& file : list("makes"))
       if (!after.contains(file)) faults.push_back("there is no " + file);
+    for (const std::string& file : list("gone"))
+      if (after.contains(file)) faults.push_back("there still is " + file);
     for (const auto& [file, bytes] : after) {
       if (fs::path(file).filename().string().starts_with(".kiln-")) faults.push_back("left over: " + file);
     }

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <sstream>
 
 #include "base/errors.h"
+#include "kiln/asset_names.h"
 #include "kiln/build.h"
+#include "kiln/init.h"
 #include "kiln/pipeline.h"
 #include "scratch.h"
 
@@ -161,7 +164,6 @@ TEST(Pipeline, RefusalsNameTheLine) {
             std::string::npos);
   EXPECT_NE(refusal("defaults:\n  bake:\n    backend: cuda\nassets: {a: {mesh: x}}\n").find("egl, beams or embree"),
             std::string::npos);
-  EXPECT_NE(refusal("assets:\n  a: {mesh: 'x:y.obj'}\n").find("':' in the path"), std::string::npos);
   EXPECT_EQ(refusal("assets:\n  a: {mesh: x.obj}\n"), "");
 }
 
@@ -172,12 +174,205 @@ TEST(Pipeline, SelectsByNameOrDefault) {
   EXPECT_THROW(select_assets(pipeline, {"third"}), WrongUsage);
 }
 
-TEST(Makefile, QuotesForShellAndMake) {
+TEST(Pipeline, WhatCannotWorkIsRefusedAtOnce) {
+  const auto refusal_of = [](const std::string& settings) {
+    return refusal("assets:\n  a:\n    mesh: x.obj\n    " + settings + "\n");
+  };
+  const std::pair<const char*, const char*> cases[] = {
+      {"atlas: {keep-uv: true}", "'true' for keep-uv of atlas"},
+      {"bake: {per-vertex: true}", "'true' for per-vertex of bake"},
+      {"bake: {size: 64}", "'64' for size of bake"},
+      {"bake: {bits: 12}", "8 or 16"},
+      {"bake: {max-error: 2}", "above 0 and below 1"},
+      {"bake: {ground: '0,0'}", "a size above 0"},
+      {"bake: {gl-device: cuda}", "auto, software or a number"},
+      {"bake: {subsurface: custom}", "no --subsurface-scattering"},
+      {"bake: {subsurface: marble, bake-albedo: true}", "bake-albedo"},
+      {"bake: {receiver: low, bounces: 1}", "the low mesh has no materials"},
+      {"compress: {max-error: 7}", "'7'"},
+      {"compress: {pca: 26}", "at most 25"},
+      {"simplify: {max-error: 1e-7}", "0.0001 to 1"},
+      {"report: {lights: ['45']}", "AZIMUTH,ELEVATION"},
+      {"report: {lights: []}", "at least one light"},
+      {"budgets: {simplify.hausdorf: {max: 1}}", "'simplify.hausdorff'"},
+      {"budgets: {bake.verification.error: {max: 1}}", "set verify-directions of bake"},
+      {"budgets: {report.compressed_relative_l2: {max: 1}}", "set compress"},
+  };
+  for (const auto& [settings, word] : cases) {
+    const std::string message = refusal_of(settings);
+    EXPECT_NE(message.find("pipeline.yaml:4: "), std::string::npos) << settings << ": " << message;
+    EXPECT_NE(message.find(word), std::string::npos) << settings << ": " << message;
+  }
+  for (const char* settings :
+       {"bake: {receiver: low}", "bake: {receiver: low, bounces: 1, albedo: 0.5}", "bake: {max-error: auto}",
+        "compress: {pca: 25}", "atlas: {keep-uv: false}", "report: {lights: ['cone:45,30,5', 'ambient:1,0.5,0']}"})
+    EXPECT_EQ(refusal_of(settings), "") << settings;
+}
+
+TEST(Pipeline, ALowReceiverIsShadowedByItself) {
+  const std::vector<MakeRule> rules =
+      make_rules(pipeline_of("assets:\n  low: {mesh: a.obj, bake: {receiver: low}}\n  high: {mesh: a.obj}\n"));
+  // kiln-bake takes the atlas itself where no occluder is named.
+  EXPECT_EQ(value_after(run_of(rules, "low", "bake").command, "--occluder"), "");
+  EXPECT_EQ(value_after(run_of(rules, "high", "bake").command, "--occluder"), "a.obj");
+}
+
+TEST(Pipeline, TabsThatIndentAreNamed) {
+  EXPECT_NE(refusal("assets:\n\ta: {mesh: x.obj}\n").find("pipeline.yaml:2: a tab"), std::string::npos);
+  EXPECT_NE(refusal("# \tnot this\nassets:\n  a:\n\t  mesh: x.obj\n").find("pipeline.yaml:4: a tab"),
+            std::string::npos);
+  EXPECT_EQ(refusal("assets:\t\n  a:\tx.obj\n").find("a tab"), std::string::npos) << "it indents nothing";
+}
+
+class Names : public testing::Test {
+ protected:
+  void make(const std::string& file) const {
+    fs::create_directories((scratch_.folder() / file).parent_path());
+    std::ofstream(scratch_.folder() / file, std::ios::binary) << "x";
+  }
+  std::vector<std::string> names_of(const std::string& text) const {
+    std::vector<std::string> names;
+    for (const Asset& asset : pipeline_in(scratch_.folder(), text).assets)
+      names.push_back(asset.name + "=" + asset.mesh.string());
+    return names;
+  }
+  std::string refusal_of(const std::string& text) const {
+    try {
+      names_of(text);
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  Scratch scratch_;
+};
+
+TEST_F(Names, PatternsAreFilesInOrder) {
+  for (const char* file : {"scans/b.ply", "scans/a.ply", "scans/.c.ply", "scans/d.obj", "scans/e.ply/x"}) make(file);
+  EXPECT_EQ(names_of("assets:\n  scans/*.ply: {simplify: {faces: 9}}\n"),
+            (std::vector<std::string>{"a=scans/a.ply", "b=scans/b.ply"}));
+  EXPECT_EQ(names_of("assets: ['scans/{d,a}.*']\n"), (std::vector<std::string>{"a=scans/a.ply", "d=scans/d.obj"}));
+  EXPECT_NE(refusal_of("assets: ['*.stl']\n").find("'*.stl', which no file matches"), std::string::npos);
+  EXPECT_NE(refusal_of("assets: [scans/a.ply, 'scans/*.ply']\n").find("a second time"), std::string::npos);
+  make("more/a.obj");
+  EXPECT_NE(refusal_of("assets: ['*/a.*']\n").find("both be the asset 'a'"), std::string::npos);
+}
+
+TEST_F(Names, AFileOfAPatternsCharactersIsThatFile) {
+  make("[ab].obj");
+  make("a.obj");
+  EXPECT_EQ(names_of("assets: ['[ab].obj']\n"), (std::vector<std::string>{"[ab]=[ab].obj"}));
+}
+
+TEST_F(Names, NamedSettingsRefineAPattern) {
+  make("a.ply");
+  make("b.ply");
+  const Pipeline pipeline = pipeline_in(scratch_.folder(), R"(
+defaults: {simplify: {faces: 1000}}
+assets:
+  '*.ply': {simplify: {faces: 200}, bake: {bands: 3}}
+  b: {simplify: {max-error: 0.01}, default: false}
+)");
+  const std::vector<MakeRule> rules = make_rules(pipeline);
+  EXPECT_EQ(value_after(run_of(rules, "a", "simplify").command, "--faces"), "200");
+  EXPECT_EQ(value_after(run_of(rules, "b", "simplify").command, "--faces"), "");
+  EXPECT_EQ(value_after(run_of(rules, "b", "simplify").command, "--max-error"), "0.01");
+  EXPECT_EQ(value_after(run_of(rules, "b", "bake").command, "--bands"), "3");
+  EXPECT_EQ(select_assets(pipeline, {}).size(), 1u);
+}
+
+TEST_F(Names, IncludedFilesAreWeaker) {
+  fs::create_directories(scratch_.folder() / "shared");
+  std::ofstream(scratch_.folder() / "shared/all.yaml")
+      << "include: most.yaml\ndefaults: {simplify: {faces: 10}, material: {texture: wood.png}}\n";
+  std::ofstream(scratch_.folder() / "shared/most.yaml")
+      << "defaults: {simplify: {faces: 5}, bake: {bands: 2}}\nbudgets: {simplify.rms: {max: 1}}\n";
+  std::ofstream(scratch_.folder() / "props.yaml") << "defaults: {bake: {bands: 4}}\n";
+  const Pipeline pipeline = pipeline_in(scratch_.folder(), R"(
+include: shared/all.yaml
+defaults: {atlas: {size: 64}}
+assets:
+  a: {mesh: a.obj}
+  b: {mesh: b.obj, include: [props.yaml], simplify: {faces: 20}}
+)");
+  const std::vector<MakeRule> rules = make_rules(pipeline);
+  EXPECT_EQ(value_after(run_of(rules, "a", "simplify").command, "--faces"), "10");
+  EXPECT_EQ(value_after(run_of(rules, "b", "simplify").command, "--faces"), "20");
+  EXPECT_EQ(value_after(run_of(rules, "a", "bake").command, "--bands"), "2");
+  EXPECT_EQ(value_after(run_of(rules, "b", "bake").command, "--bands"), "4");
+  EXPECT_EQ(value_after(run_of(rules, "a", "atlas").command, "--size"), "64");
+  // A path is relative to the file it stands in.
+  EXPECT_EQ(value_after(run_of(rules, "a", "normals").command, "--albedo-texture"), "shared/wood.png");
+  EXPECT_EQ(pipeline.assets[0].budgets, std::vector<std::string>{"simplify.rms<=1"});
+
+  std::ofstream(scratch_.folder() / "props.yaml") << "include: props.yaml\n";
+  EXPECT_NE(refusal_of("include: props.yaml\nassets: {a: {mesh: a.obj}}\n").find("include one another"),
+            std::string::npos);
+  std::ofstream(scratch_.folder() / "props.yaml") << "defaults:\n  bake: {bands: 99}\n";
+  EXPECT_NE(refusal_of("include: props.yaml\nassets: {a: {mesh: a.obj}}\n").find("props.yaml:2: '99'"),
+            std::string::npos);
+}
+
+TEST(AssetNames, AreOfAnyScript) {
+  for (const char* name : {"a", "Старый дуб", "木の像", "🌲👩‍🎨", "it's", "a.b", "a (2)", "#1", "$x", "100%"})
+    EXPECT_EQ(fault_of_name(name), "") << name;
+  for (const char* name : {"", ".a", "-a", " a", "a ", "a.", "a/b", "a\\b", "a:b", "a*", "a?", "a\nb", "a\x7f",
+                           "a\xc2\x85", "a\xe2\x80\xa8", "caf\xe9", "Makefile", "index.html", "a.yaml"})
+    EXPECT_NE(fault_of_name(name), "") << name;
+  EXPECT_NE(fault_of_name(std::string(201, 'a')), "");
+}
+
+TEST(AssetNames, OfMeshesArePermitted) {
+  EXPECT_EQ(name_of_mesh("scans/Model (2).obj"), "Model (2)");
+  EXPECT_EQ(name_of_mesh("caf\xe9 木.obj"), "caf_ 木");
+  EXPECT_EQ(name_of_mesh("a:b\n.obj"), "a_b_");
+  EXPECT_EQ(name_of_mesh("-x.obj"), "_-x");
+  EXPECT_EQ(name_of_mesh(".obj"), "_.obj");
+  for (const char* mesh : {"Makefile.obj", "a..obj", "a .obj", "x.yaml.obj"})
+    EXPECT_EQ(fault_of_name(name_of_mesh(mesh)), "") << mesh;
+  EXPECT_EQ(fault_of_name(name_of_mesh(std::string(199, 'a') + "木.obj")), "");
+}
+
+TEST(Init, WritesWhatIsReadBack) {
+  const Scratch scratch;
+  std::vector<fs::path> meshes;
+  for (const char* name : {"Model (2).obj", "it's.ply", "a: b.stl", "new\nline.obj", "caf\xe9.obj", "-x.obj",
+                           "true.obj", "tab\t\"quoted\".obj", "back\\slash.obj", "1.obj", "1.ply", "木.OBJ"}) {
+    meshes.push_back(scratch.folder() / name);
+    std::ofstream(meshes.back(), std::ios::binary) << "x";
+  }
+  const fs::path file = scratch.folder() / "new" / "pipeline.yaml";
+  init_pipeline(meshes, file);
+  const Pipeline pipeline = load_pipeline(file);
+  ASSERT_EQ(pipeline.assets.size(), meshes.size());
+  for (std::size_t k = 0; k < meshes.size(); ++k)
+    EXPECT_EQ(fs::weakly_canonical(pipeline.folder / pipeline.assets[k].mesh), fs::weakly_canonical(meshes[k]));
+  EXPECT_EQ(pipeline.assets[10].name, "1_2");
+  EXPECT_THROW(init_pipeline(meshes, file), BadInput) << "it is there";
+  EXPECT_THROW(init_pipeline({meshes[0], meshes[0]}, scratch.folder() / "b.yaml"), BadInput);
+  EXPECT_THROW(init_pipeline({scratch.folder() / "no.obj"}, scratch.folder() / "b.yaml"), BadInput);
+  EXPECT_THROW(init_pipeline({file}, scratch.folder() / "b.yaml"), BadInput) << "no mesh";
+}
+
+TEST(Makefile, QuotesForTheShell) {
   EXPECT_EQ(shell_quoted("a-b_1.obj"), "a-b_1.obj");
   EXPECT_EQ(shell_quoted("a b$c"), "'a b$c'");
   EXPECT_EQ(shell_quoted("it's"), "'it'\\''s'");
   EXPECT_EQ(shell_quoted(""), "''");
-  EXPECT_EQ(make_quoted("a b#c$d"), "a\\ b\\#c$$d");
+  EXPECT_EQ(shown_command({"a", "b c", "d\ne"}), "a 'b c' 'd\\012e'");
+}
+
+TEST(Makefile, HoldsNoFileNames) {
+  // Whatever make makes of a name, it is in the plans.
+  const std::vector<MakeRule> rules = make_rules(pipeline_of("assets:\n  all: {mesh: \"a\\n$(x) %.obj\"}\n"));
+  std::istringstream lines(makefile_text(rules, "/bin"));
+  for (std::string line; std::getline(lines, line);)
+    EXPECT_TRUE(line.starts_with("#") || line.find("(x)") == std::string::npos) << line;
+  const std::vector<std::vector<std::size_t>> needs = needs_of(rules);
+  ASSERT_EQ(needs.size(), 5u);
+  EXPECT_EQ(needs[0], std::vector<std::size_t>{});
+  EXPECT_EQ(needs[3], (std::vector<std::size_t>{1, 2})) << "a bake reads the atlas and the normals";
 }
 
 TEST(Build, GravestStatus) {
@@ -219,6 +414,13 @@ TEST(Scene, NeighboursShadowEachOther) {
   EXPECT_EQ(value_after(run_of(rules, "lamp", "bake").command, "--neighbour"), "");
 }
 
+TEST(Scene, NamesMayHoldWhatPartsFields) {
+  const std::vector<MakeRule> rules = make_rules(
+      pipeline_of("assets:\n  a: {mesh: 'x;y\\z.obj'}\n  b: {mesh: -b.obj}\nscene: {a: '0,0,0', b: '1,0,0'}\n"));
+  EXPECT_EQ(value_after(run_of(rules, "b", "bake").command, "--neighbour"), "x\\;y\\\\z.obj;place=0,0,0");
+  EXPECT_EQ(value_after(run_of(rules, "a", "bake").command, "--neighbour"), "./-b.obj;place=1,0,0");
+}
+
 TEST(Scene, SquaresAreMadeFirst) {
   const std::vector<MakeRule> rules = make_rules(pipeline_of(scene));
   const StageRun& square = run_of(rules, "floor", "square");
@@ -245,21 +447,6 @@ assets:
   }
   EXPECT_EQ(value_after(run_of(rules, "odd", "normals").command, "--albedo"), "0.5");
   EXPECT_EQ(value_after(run_of(rules, "odd", "bake").command, "--albedo"), "0.6");
-}
-
-TEST(Material, FilesOfTheRecordAreInputs) {
-  const Scratch scratch;
-  const fs::path folder = scratch.folder() / "made" / "a" / "normals";
-  fs::create_directories(folder);
-  const fs::path texture = scratch.folder() / "wood.png";
-  std::ofstream(texture) << "x";
-  std::ofstream(folder / "normals.json") << R"({"inputs": {"a.obj": "1", "wood.png": "2", "gone.mtl": "3"}})";
-  const std::vector<MakeRule> rules =
-      make_rules(pipeline_in(scratch.folder(), "output: made\nassets:\n  a: {mesh: a.obj}\n"));
-  const std::vector<fs::path>& inputs = run_of(rules, "a", "normals").inputs;
-  EXPECT_TRUE(contains(inputs, "wood.png"));
-  EXPECT_FALSE(contains(inputs, "gone.mtl")) << "make would know no way to it";
-  EXPECT_EQ(std::count(inputs.begin(), inputs.end(), fs::path("a.obj")), 1);
 }
 
 TEST(Scene, MistakesAreNamed) {

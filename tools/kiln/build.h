@@ -1,18 +1,21 @@
 #pragma once
 
-#include <string>
+#include <optional>
 #include <vector>
 
-#include "kiln/makefile.h"
 #include "kiln/pipeline.h"
+#include "kiln/rules.h"
 
 namespace kiln {
 
 struct BuildSettings {
-  int jobs = 0;             ///< stages at a time; 0: as many as there are cores
-  bool keep_going = false;  ///< build the other assets where one fails
-  bool dry_run = false;     ///< say what would run, run and write nothing
+  int jobs = 0;                ///< stages at a time; 0: as many as there are cores
+  bool keep_going = false;     ///< build the other assets where one fails
+  bool dry_run = false;        ///< say what would run, run and write nothing
+  bool force = false;          ///< run all stages of the assets, also those that are up to date
+  std::optional<Stage> until;  ///< the last stage to run
   bool quiet = false;
+  bool json = false;  ///< the outcome as one JSON object on stdout
 };
 
 /// Brings the assets up to date through make. Returns the exit status: that of the failed stage, the gravest
@@ -23,11 +26,7 @@ int build(const Pipeline& pipeline, const std::vector<const Asset*>& assets, con
 /// bad input (3), wrong usage (2), a missed budget (4) and success (0).
 int gravest_status(const std::vector<int>& statuses);
 
-/// The rules of every asset of the pipeline. `programs` is where the stages' executables are.
-std::vector<MakeRule> make_rules(const Pipeline& pipeline);
-
-/// What a rule's stamp holds: everything that makes the command give another result. It names the programs without
-/// their folder, but by content, so that a moved build does not make all anew and a changed one does.
-std::string stamp_text(const StageRun& run, const std::filesystem::path& programs);
+/// Writes the page over all assets of the pipeline, index.html of the output folder, where something was built there.
+void write_index(const Pipeline& pipeline);
 
 }  // namespace kiln

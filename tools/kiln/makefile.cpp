@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
 #include <set>
 
 namespace kiln {
@@ -10,6 +11,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
+bool is_plain(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || std::string_view("_-+./,:@").find(c) != std::string::npos;
+}
+
 /// A word of a recipe: for the shell, its dollars for make.
 std::string recipe_word(const std::string& word) {
   std::string text;
@@ -17,98 +22,99 @@ std::string recipe_word(const std::string& word) {
   return text;
 }
 
-std::string joined(const std::vector<fs::path>& paths) {
+/// The value of a variable, where # begins a comment.
+std::string variable_value(const std::string& word) {
   std::string text;
-  std::set<fs::path> seen;
-  for (const fs::path& path : paths)
-    if (seen.insert(path).second) text += (text.empty() ? "" : " ") + make_quoted(path);
+  for (const char c : recipe_word(word)) text += c == '#' ? "\\#" : std::string(1, c);
   return text;
 }
 
-/// What expands to a phony prerequisite where one of the files is missing.
-std::string forced_where_missing(const std::vector<fs::path>& files) {
-  std::string text = "$(shell for file in";
-  for (const fs::path& file : files) {
-    text += ' ';
-    for (const char c : recipe_word(file.string())) text += c == '#' ? "\\#" : std::string(1, c);
-  }
-  return text + "; do [ -e \"$$file\" ] || echo missing; done)";
-}
-
-std::string recipe(const MakeRule& rule) {
-  std::string text =
-      fmt::format("\t@$(STEP) {} {} -- $(PROGRAMS)/{}", rule.asset, rule.run.name, recipe_word(rule.run.command[0]));
-  for (std::size_t i = 1; i < rule.run.command.size(); ++i) text += " " + recipe_word(rule.run.command[i]);
-  return text + "\n";
+/// A name that make may have as a target besides those it has.
+bool is_target(const std::string& name) {
+  return name != "all" && std::isalpha(static_cast<unsigned char>(name[0])) != 0 &&
+         std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return c < 0x80 && (std::isalnum(c) != 0 || c == '-' || c == '_'); });
 }
 
 }  // namespace
 
 std::string shell_quoted(const std::string& word) {
-  const auto plain = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
-           std::string_view("_-+./,:@").find(c) != std::string_view::npos;
-  };
-  if (!word.empty() && std::all_of(word.begin(), word.end(), plain)) return word;
+  if (!word.empty() && std::all_of(word.begin(), word.end(), is_plain)) return word;
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
   return text + "'";
 }
 
-std::string make_quoted(const fs::path& path) {
+std::string shown_command(const std::vector<std::string>& words) {
   std::string text;
-  for (const char c : path.string()) {
-    if (c == ' ' || c == '#') text += '\\';
-    if (c == '$') text += '$';
-    text += c;
+  for (const std::string& word : words) {
+    if (!text.empty()) text += ' ';
+    for (const char c : shell_quoted(word))
+      text += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? fmt::format("\\{:03o}", c) : std::string(1, c);
   }
   return text;
+}
+
+std::vector<std::vector<std::size_t>> needs_of(const std::vector<MakeRule>& rules) {
+  std::map<fs::path, std::size_t> maker;
+  for (std::size_t k = 0; k < rules.size(); ++k)
+    for (const fs::path& output : rules[k].run.outputs) maker[output] = k;
+  std::vector<std::vector<std::size_t>> needs(rules.size());
+  for (std::size_t k = 0; k < rules.size(); ++k) {
+    std::set<std::size_t> makers;
+    for (const fs::path& input : rules[k].run.inputs)
+      if (const auto found = maker.find(input); found != maker.end() && found->second != k)
+        makers.insert(found->second);
+    needs[k].assign(makers.begin(), makers.end());
+  }
+  return needs;
+}
+
+std::vector<std::string> targets_of(const std::vector<MakeRule>& rules) {
+  std::vector<std::string> targets;
+  std::size_t number = 0;
+  for (std::size_t k = 0; k < rules.size(); ++k) {
+    number += k == 0 || rules[k - 1].asset != rules[k].asset ? 1u : 0u;
+    targets.push_back(fmt::format("{}.{}", number, rules[k].run.name));
+  }
+  return targets;
 }
 
 std::string makefile_text(const std::vector<MakeRule>& rules, const fs::path& programs) {
   std::string text =
       "# Written by `kiln build`, which runs it from the folder of the pipeline file. Changes here are overwritten.\n"
+      "#\n"
+      "# Times decide nothing: every step is asked, and sees by the content of what it reads and made whether it must "
+      "run.\n"
       "\n"
       "SHELL := /bin/sh\n"
       "MAKEFLAGS += --no-builtin-rules\n";
-  text += fmt::format("PROGRAMS := {}\n", recipe_word(programs.string()));
+  text += fmt::format("PROGRAMS := {}\n", variable_value(programs.string()));
   text +=
       "# Threads of each stage, 0 for all cores; no result depends on them.\n"
       "THREADS := 0\n"
       "STEP = $(PROGRAMS)/kiln step --threads $(THREADS)\n"
       ".SUFFIXES:\n";
 
-  std::vector<std::string> assets;
-  for (const MakeRule& rule : rules)
-    if (assets.empty() || assets.back() != rule.asset) assets.push_back(rule.asset);
-  text += "\n.PHONY: all missing";
-  for (const std::string& asset : assets) text += " " + asset;
-  text += "\nall:";
-  for (const std::string& asset : assets) text += " " + asset;
-  text += "\n";
-
-  // No .DELETE_ON_ERROR: a stage renames its outputs when all of them are whole, so a failed run leaves the earlier
-  // ones, which are older than what made it run and so are made again.
-  //
-  // The record, renamed last, stands for all outputs of a stage. Not a group of targets ("&:"): make would find the
-  // record up to date, then remake it for another missing output, and yet not remake what depends on it.
-  for (const std::string& asset : assets) {
-    std::string records;
-    std::string body;
-    for (const MakeRule& rule : rules) {
-      if (rule.asset != asset) continue;
-      const fs::path& record = rule.run.outputs.front();
-      const std::vector<fs::path> others(rule.run.outputs.begin() + 1, rule.run.outputs.end());
-      std::vector<fs::path> needed = rule.run.inputs;
-      needed.push_back(rule.stamp);
-      records += " " + make_quoted(record);
-      body += fmt::format("\n{}: {}{}\n{}", make_quoted(record), joined(needed),
-                          others.empty() ? "" : " \\\n    " + forced_where_missing(others), recipe(rule));
-      if (!others.empty()) body += fmt::format("{}: {} ;\n", joined(others), make_quoted(record));
-    }
-    text += fmt::format("\n# {}\n{}:{}\n{}", asset, asset, records, body);
+  const std::vector<std::vector<std::size_t>> needs = needs_of(rules);
+  const std::vector<std::string> targets = targets_of(rules);
+  std::string phony, all, body;
+  for (std::size_t k = 0; k < rules.size(); ++k) {
+    const MakeRule& rule = rules[k];
+    const bool is_first = k == 0 || rules[k - 1].asset != rule.asset;
+    const bool is_last = k + 1 == rules.size() || rules[k + 1].asset != rule.asset;
+    if (is_first) body += fmt::format("\n# {}\n", rule.asset);
+    body += fmt::format("# {}\n{}:", shown_command(rule.run.command), targets[k]);
+    for (const std::size_t need : needs[k]) body += " " + targets[need];
+    body += fmt::format("\n\t@$(STEP) {}\n", recipe_word(rule.plan.string()));
+    phony += " " + targets[k];
+    if (!is_last) continue;
+    all += " " + targets[k];
+    if (!is_target(rule.asset)) continue;
+    body += fmt::format("{}: {}\n", rule.asset, targets[k]);
+    phony += " " + rule.asset;
   }
-  return text;
+  return text + "\n.PHONY: all" + phony + "\nall:" + all + "\n" + body;
 }
 
 }  // namespace kiln

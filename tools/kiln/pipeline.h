@@ -12,14 +12,15 @@ namespace kiln {
 /// One asset of pipeline.yaml. Paths are as written there: absolute, or relative to its folder.
 struct Asset {
   std::string name;
-  int line = 0;                   ///< of pipeline.yaml, from 1
+  std::string place;              ///< "FILE:LINE" of its name
   std::filesystem::path mesh;     ///< a mesh file; empty: `member` of `archive`
   std::filesystem::path archive;  ///< a tar file, compressed or not
   std::string member;
-  std::string square;                       ///< half the side of a square, which is the mesh in place of a file
-  bool on_request = false;                  ///< built only when named
-  std::map<Stage, StageSettings> settings;  ///< a stage on request is in here where the asset passes it
-  std::vector<std::string> budgets;         ///< "simplify.hausdorff<=0.012"
+  std::string square;                             ///< half the side of a square, which is the mesh in place of a file
+  bool on_request = false;                        ///< built only when named
+  std::map<Stage, StageSettings> settings;        ///< a stage on request is in here where the asset passes it
+  std::map<Stage, StageSettings> setting_places;  ///< "FILE:LINE" of each
+  std::vector<std::string> budgets;               ///< "simplify.hausdorff<=0.012"
 };
 
 struct Pipeline {
@@ -30,8 +31,10 @@ struct Pipeline {
   std::map<std::string, std::string> places;  ///< of assets that stand in one scene, as kiln-bake's --place has them
 };
 
-/// Reads and checks a pipeline file. Throws BadInput that names the line for whatever is not understood: an unknown
-/// key, a key given twice, a value out of range, an asset without a mesh, a scene of assets that are not there.
+/// Reads and checks a pipeline file and those it includes: all that can be told without the meshes. Throws BadInput
+/// that names the line for whatever is not understood or cannot work: an unknown key, a key given twice, a value out of
+/// range, a budget for a metric that no stage writes, an asset without a mesh, a pattern that no file matches, a scene
+/// of assets that are not there.
 Pipeline load_pipeline(const std::filesystem::path& file);
 
 /// The assets of these names, or, where there are none, those that are not built on request. Throws WrongUsage for a

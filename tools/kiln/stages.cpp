@@ -59,15 +59,6 @@ const StageSettings& settings_of(const AssetPlan& plan, Stage stage) {
   return found == plan.settings.end() ? none : found->second;
 }
 
-/// The value that the stage will run with.
-Json effective(const AssetPlan& plan, Stage stage, const std::string& setting) {
-  const StageOptions options(stage);
-  const Option& option = *options.find(setting);
-  const StageSettings& given = settings_of(plan, stage);
-  if (const auto found = given.find(setting); found != given.end()) option.set(found->second);
-  return option.get();
-}
-
 /// Appends `--name value` for what is given, in the order that --help has.
 void append_settings(std::vector<std::string>& command, const AssetPlan& plan, Stage stage) {
   const StageOptions options(stage);
@@ -80,6 +71,35 @@ void append_settings(std::vector<std::string>& command, const AssetPlan& plan, S
     command.push_back("--" + option.name + (looks_like_option ? "=" + value : ""));
     if (!option.is_switch && !looks_like_option) command.push_back(value);
   }
+}
+
+/// The bake of an asset by itself.
+StageRun bake_run(const AssetPlan& plan, const std::string& mesh, const fs::path& atlas, const fs::path& normals) {
+  const fs::path prt = plan.folder / "prt";
+  const fs::path atlas_record = plan.folder / "atlas.json", normals_record = normals / "normals.json";
+  StageRun bake{"bake",
+                {"kiln-bake", atlas.string(), "--detail", normals.string() + "/"},
+                {},
+                {plan.mesh, atlas_record, atlas, normals_record},
+                {prt / "bake.json"},
+                {}};
+  // A low receiver lies beneath the high mesh here and above it there: it is in the shadow of its own mesh, which is
+  // what kiln-bake takes where nothing is said.
+  if (effective_setting(plan.settings, Stage::bake, "receiver") == "high")
+    bake.command.insert(bake.command.end(), {"--occluder", mesh});
+  bake.command.insert(bake.command.end(), {"-o", prt.string() + "/"});
+  if (!plan.place.empty()) bake.command.insert(bake.command.end(), {"--place", plan.place});
+  for (const PlanNeighbour& neighbour : plan.neighbours) {
+    bake.command.insert(bake.command.end(), {"--neighbour", neighbour.text});
+    bake.inputs.push_back(neighbour.mesh);
+  }
+  append_settings(bake.command, plan, Stage::bake);
+  const int bands = effective_setting(plan.settings, Stage::bake, "bands").get<int>();
+  for (int i = 0; i < bands * bands; ++i) bake.outputs.push_back(prt / fmt::format("coeff_0_{:02}.png", i));
+  for (const char* name : {"atlas.drc", "normal.png", "ranges.json"}) bake.outputs.push_back(prt / name);
+  // A bake that interpolates texels does not go by blocks of directions, and has no checkpoints.
+  if (effective_setting(plan.settings, Stage::bake, "adaptive") == 0) bake.checkpoint = plan.folder / "prt.checkpoint";
+  return bake;
 }
 
 }  // namespace
@@ -118,25 +138,41 @@ std::string rival_of(Stage stage, const std::string& setting) {
   return "";
 }
 
+std::string command_word(const fs::path& path) { return (path.native().starts_with('-') ? "./" : "") + path.native(); }
+
+bool names_a_file(const std::string& setting) { return setting == "albedo-texture"; }
+
+Json effective_setting(const std::map<Stage, StageSettings>& settings, Stage stage, const std::string& setting) {
+  const StageOptions options(stage);
+  const Option& option = *options.find(setting);
+  const auto block = settings.find(stage);
+  if (block != settings.end())
+    if (const auto found = block->second.find(setting); found != block->second.end()) option.set(found->second);
+  return option.get();
+}
+
 std::vector<StageRun> stage_runs(const AssetPlan& plan) {
   const fs::path& folder = plan.folder;
   const fs::path normals = folder / "normals", prt = folder / "prt";
   const fs::path low = folder / "low.drc", atlas = folder / "atlas.drc", report = folder / "report.html";
   const fs::path simplify_record = folder / "simplify.json", atlas_record = folder / "atlas.json";
   const fs::path normals_record = normals / "normals.json", bake_record = prt / "bake.json";
-  const std::string mesh = plan.mesh.string(), normals_folder = normals.string() + "/", prt_folder = prt.string() + "/";
+  const std::string mesh = command_word(plan.mesh), normals_folder = normals.string() + "/",
+                    prt_folder = prt.string() + "/";
 
   // A stage's outputs are renamed together, its record last. The record stands first here, and whoever reads an output
   // depends on it too.
-  StageRun simplify{"simplify", {"kiln-simplify", mesh, "-o", low.string()}, {}, {plan.mesh}, {simplify_record, low}};
+  StageRun simplify{"simplify", {"kiln-simplify", mesh, "-o", low.string()}, {}, {plan.mesh}, {simplify_record, low},
+                    {}};
   append_settings(simplify.command, plan, Stage::simplify);
 
   StageRun cut{"atlas",
                {"kiln-atlas", low.string(), "-o", atlas.string()},
                {},
                {simplify_record, low},
-               {atlas_record, atlas, folder / "atlas.png"}};
-  if (effective(plan, Stage::atlas, "density") == "transfer") {
+               {atlas_record, atlas, folder / "atlas.png"},
+               {}};
+  if (effective_setting(plan.settings, Stage::atlas, "density") == "transfer") {
     cut.command.insert(cut.command.end(), {"--high", mesh});
     cut.inputs.push_back(plan.mesh);
   }
@@ -147,29 +183,18 @@ std::vector<StageRun> stage_runs(const AssetPlan& plan) {
                  {},
                  {plan.mesh, simplify_record, atlas_record, atlas},
                  {normals_record, normals / "normal.png", normals / "position.exr", normals / "coverage.png",
-                  normals / "match.png"}};
+                  normals / "match.png"},
+                 {}};
   append_settings(match.command, plan, Stage::normals);
 
-  StageRun bake{"bake",
-                {"kiln-bake", atlas.string(), "--detail", normals_folder, "--occluder", mesh, "-o", prt_folder},
-                {},
-                {plan.mesh, atlas_record, atlas, normals_record},
-                {bake_record}};
-  if (!plan.place.empty()) bake.command.insert(bake.command.end(), {"--place", plan.place});
-  for (const PlanNeighbour& neighbour : plan.neighbours) {
-    bake.command.insert(bake.command.end(), {"--neighbour", neighbour.text});
-    bake.inputs.push_back(neighbour.mesh);
-  }
-  append_settings(bake.command, plan, Stage::bake);
-  const int bands = effective(plan, Stage::bake, "bands").get<int>();
-  for (int i = 0; i < bands * bands; ++i) bake.outputs.push_back(prt / fmt::format("coeff_0_{:02}.png", i));
-  for (const char* name : {"atlas.drc", "normal.png", "ranges.json"}) bake.outputs.push_back(prt / name);
+  const StageRun bake = bake_run(plan, mesh, atlas, normals);
 
   StageRun tell{"report",
                 {"kiln-report", folder.string(), "-o", report.string(), "--high", mesh},
                 {"kiln-render"},
                 {plan.mesh, simplify_record, atlas_record, normals_record, bake_record},
-                {folder / "report.json", report, folder / "metrics.json"}};
+                {folder / "report.json", report, folder / "metrics.json", folder / "report.png"},
+                {}};
   std::vector<StageRun> runs = {simplify, cut, match, bake};
   if (plan.settings.contains(Stage::compress)) {
     const fs::path small = folder / "small", compress_record = small / "compress.json";
@@ -179,7 +204,8 @@ std::vector<StageRun> stage_runs(const AssetPlan& plan) {
                       {"kiln-compress", prt_folder, "-o", small_folder},
                       {},
                       {bake_record},
-                      {compress_record, small / "atlas.drc", small / "normal.png"}};
+                      {compress_record, small / "atlas.drc", small / "normal.png"},
+                      {}};
     append_settings(compress.command, plan, Stage::compress);
     runs.push_back(compress);
     tell.command.insert(tell.command.end(), {"--compressed", small_folder});

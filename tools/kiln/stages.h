@@ -41,6 +41,15 @@ class StageOptions {
 /// Settings of which a stage takes one: with both given, the more specific place wins. Empty where there is no rival.
 std::string rival_of(Stage stage, const std::string& setting);
 
+/// Whether a setting's text is the path of a file.
+bool names_a_file(const std::string& setting);
+
+/// What a setting is: the text that is given, or the default.
+Json effective_setting(const std::map<Stage, StageSettings>& settings, Stage stage, const std::string& setting);
+
+/// A path as a word of a command that does not look like an option.
+std::string command_word(const std::filesystem::path& path);
+
 /// One stage of one asset as make runs it. Paths are as the command has them.
 struct StageRun {
   std::string name;                  ///< of the stage
@@ -48,6 +57,7 @@ struct StageRun {
   std::vector<std::string> helpers;  ///< further programs it runs
   std::vector<std::filesystem::path> inputs;
   std::vector<std::filesystem::path> outputs;  ///< the record, <stage>.json, first
+  std::filesystem::path checkpoint;            ///< a folder; where it is there, the stage goes on with --resume
 };
 
 /// Another asset of the scene, as the bake of one is told of it.

@@ -1,5 +1,6 @@
 #include "kiln/step.h"
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -7,11 +8,12 @@
 #include <fstream>
 #include <unistd.h>
 
-#include "base/stopwatch.h"
 #include "base/errors.h"
 #include "base/outputs.h"
 #include "base/process.h"
 #include "base/progress.h"
+#include "base/stopwatch.h"
+#include "kiln/stage_state.h"
 
 namespace kiln {
 
@@ -30,47 +32,130 @@ void end_by(int signal) {
 std::vector<StepEvent> read_events(const fs::path& file) {
   std::vector<StepEvent> events;
   std::ifstream stream(file);
-  for (StepEvent event; stream >> event.asset >> event.stage >> event.status;) events.push_back(event);
+  for (std::string line; std::getline(stream, line);) {
+    const Json json = Json::parse(line);
+    events.push_back({json.at("asset").get<std::string>(), json.at("stage").get<std::string>(),
+                      json.at("status").get<int>(), json.at("seconds").get<double>()});
+  }
   return events;
 }
 
-int run_step(const std::string& asset, const std::string& stage, std::vector<std::string> command, int threads) {
-  if (const char* messages = std::getenv(step_environment::messages)) dup2(std::atoi(messages), STDERR_FILENO);
-  if (stage != "extract" && stage != "square") command.insert(command.end(), {"--threads", std::to_string(threads)});
+namespace {
+
+/// Appends the event for the driver, if there is one. A run that it is not told of would count as none.
+void tell_driver(const StepEvent& event) {
+  const char* file = std::getenv(step_environment::events);
+  if (file == nullptr) return;
+  const Json json = {
+      {"asset", event.asset}, {"stage", event.stage}, {"status", event.status}, {"seconds", event.seconds}};
+  std::ofstream stream(file, std::ios::app);
+  stream << json_text(json) + "\n" << std::flush;
+  if (!stream) fail_to_write(file, "");
+}
+
+/// Whether a checkpoint is of this very run; one of another is removed. What a run began with is kept beside the state.
+bool may_resume(const StagePlan& plan, const StageState& begun) {
+  std::error_code error;
+  if (plan.run.checkpoint.empty()) return false;
+  const fs::path file = plan.state.string() + ".begun";
+  const std::optional<StageState> earlier = load_state(file);
+  const auto same = [](const auto& a, const auto& b) { return a.first == b.first && a.second.hash == b.second.hash; };
+  const bool resumes =
+      earlier && earlier->key == begun.key && fs::is_directory(plan.run.checkpoint, error) &&
+      std::equal(earlier->inputs.begin(), earlier->inputs.end(), begun.inputs.begin(), begun.inputs.end(), same);
+  if (!resumes) fs::remove_all(plan.run.checkpoint, error);
+  save_state(file, begun);
+  return resumes;
+}
+
+/// The command with what is of this run alone.
+std::vector<std::string> command_of(const StagePlan& plan, const fs::path& programs, int threads) {
+  std::vector<std::string> command = plan.run.command;
+  const bool is_own = command.front() == "kiln";
+  command.front() = (programs / command.front()).string();
+  if (!is_own) command.insert(command.end(), {"--threads", std::to_string(threads)});
+  return command;
+}
+
+/// Runs the command, from its checkpoint where that may be, its messages under the asset's name where others run
+/// beside.
+ProcessEnd run_command(const StagePlan& plan, std::vector<std::string> command, bool resumes) {
   ProcessSettings settings;
   if (std::getenv(step_environment::alone) == nullptr)
     settings.on_error_line = [&](const std::string& line) {
-      std::fprintf(stderr, "[%s] %s\n", asset.c_str(), line.c_str());
+      std::fprintf(stderr, "[%s] %s\n", plan.asset.c_str(), line.c_str());
     };
+  if (!resumes) return run_process(command, settings);
+  std::fprintf(stderr, "[%s] %s goes on from its checkpoint\n", plan.asset.c_str(), plan.run.name.c_str());
+  command.push_back("--resume");
+  const ProcessEnd end = run_process(command, settings);
+  if (end.exit_status != static_cast<int>(ExitCode::bad_input)) return end;
+  // Of another backend, or damaged.
+  std::fprintf(stderr, "[%s] %s begins anew\n", plan.asset.c_str(), plan.run.name.c_str());
+  std::error_code ignored;
+  fs::remove_all(plan.run.checkpoint, ignored);
+  command.pop_back();
+  return run_process(command, settings);
+}
+
+}  // namespace
+
+int run_step(const fs::path& plan_file, const fs::path& programs, int threads) {
+  if (const char* messages = std::getenv(step_environment::messages)) dup2(std::atoi(messages), STDERR_FILENO);
+  const StagePlan plan = load_plan(plan_file);
+  const char* asset = plan.asset.c_str();
+  const char* stage = plan.run.name.c_str();
+  FileHashes hashes(".");
+  std::optional<StageState> state = load_state(plan.state);
+  if (reason_to_run(plan, state, hashes).empty()) return 0;
+  const std::map<fs::path, FileStamp> inputs = stamps_of_inputs(plan, hashes);
 
   const Stopwatch watch;
-  const ProcessEnd end = run_process(command, settings);
+  const bool resumes = may_resume(plan, {plan.key, inputs, {}});
+  const ProcessEnd end = run_command(plan, command_of(plan, programs, threads), resumes);
   if (noted_signal() != 0) end_by(noted_signal());
   if (end.signal == SIGINT || end.signal == SIGTERM) end_by(end.signal);
 
   const int status = end.signal != 0 ? static_cast<int>(ExitCode::failed) : end.exit_status;
   const bool missed_budget = status == static_cast<int>(ExitCode::budget_missed);
-  const char* events = std::getenv(step_environment::events);
-  if (events != nullptr) std::ofstream(events, std::ios::app) << fmt::format("{} {} {}\n", asset, stage, status);
+  if (status == 0 || missed_budget) {
+    try {
+      save_state(plan.state, state_after(plan, inputs, "."));
+    } catch (const std::exception&) {
+      tell_driver({plan.asset, plan.run.name, static_cast<int>(ExitCode::failed), watch.seconds()});
+      throw;
+    }
+    std::error_code ignored;
+    fs::remove(plan.state.string() + ".begun", ignored);
+  }
+  tell_driver({plan.asset, plan.run.name, status, watch.seconds()});
   if (status == 0 || missed_budget)
-    std::fprintf(stderr, "[%s] %s ... %.1f s\n", asset.c_str(), stage.c_str(), watch.seconds());
+    std::fprintf(stderr, "[%s] %s ... %.1f s\n", asset, stage, watch.seconds());
   else if (end.signal != 0)
-    std::fprintf(stderr, "kiln: asset '%s', stage '%s' failed (ended by signal %d)\n", asset.c_str(), stage.c_str(),
-                 end.signal);
+    std::fprintf(stderr, "kiln: asset '%s', stage '%s' failed (ended by signal %d)\n", asset, stage, end.signal);
   else
-    std::fprintf(stderr, "kiln: asset '%s', stage '%s' failed (exit status %d)\n", asset.c_str(), stage.c_str(),
-                 status);
-  return missed_budget && events != nullptr ? 0 : status;
+    std::fprintf(stderr, "kiln: asset '%s', stage '%s' failed (exit status %d)\n", asset, stage, status);
+  return missed_budget && std::getenv(step_environment::events) != nullptr ? 0 : status;
+}
+
+bool has_member(const fs::path& archive, const std::string& member) {
+  ProcessSettings settings;
+  settings.on_output_line = settings.on_error_line = [](const std::string&) {};
+  return run_process({"tar", "--list", "--force-local", "--no-wildcards", "--no-unquote", "--occurrence=1", "--file",
+                      archive.string(), "--", member},
+                     settings)
+      .succeeded();
 }
 
 void extract_member(const fs::path& archive, const std::string& member, const fs::path& mesh) {
   OutputSet outputs(folder_of(mesh));
   const fs::path staged = outputs.add(mesh.filename().string());
   const fs::path staging = staged.parent_path();
-  // The time of the extraction, not that in the archive, which would be older than what make compares it with.
-  const ProcessEnd end = run_process({"tar", "--extract", "--touch", "--no-same-owner", "--file", archive.string(),
-                                      "--directory", staging.string(), "--", member});
+  const ProcessEnd end =
+      run_process({"tar", "--extract", "--no-same-owner", "--force-local", "--no-wildcards", "--no-unquote", "--file",
+                   archive.string(), "--directory", staging.string(), "--", member});
   throw_if_interrupted();
+  if (!end.succeeded() && disk_is_full(staging)) fail_to_write(mesh, "");
   if (!end.succeeded() || !fs::is_regular_file(staging / member))
     throw BadInput(archive.string(), "has no file '" + member + "' that tar can extract", "a tar file with that member",
                    "check archive and member");

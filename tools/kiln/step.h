@@ -18,17 +18,22 @@ struct StepEvent {
   std::string asset;
   std::string stage;
   int status = 0;  ///< exit status, 1 where a signal ended it
+  double seconds = 0;
 };
 
 /// The events in the order in which the steps ended.
 std::vector<StepEvent> read_events(const std::filesystem::path& file);
 
-/// Runs one stage of one asset for make: says how long it took, or that it failed. Returns what make is to see: the
-/// exit status, but 0 for a missed budget, which leaves whole outputs and is the driver's to judge.
-int run_step(const std::string& asset, const std::string& stage, std::vector<std::string> command, int threads);
+/// Runs the stage of a plan for make where it has to (reason_to_run): says how long it took, or that it failed. Runs in
+/// the folder that relative paths start from. Returns what make is to see: the exit status, but 0 for a missed budget,
+/// which leaves whole outputs and is the driver's to judge.
+int run_step(const std::filesystem::path& plan_file, const std::filesystem::path& programs, int threads);
 
 /// Writes `member` of a tar file to `mesh`. Throws BadInput where there is none.
 void extract_member(const std::filesystem::path& archive, const std::string& member, const std::filesystem::path& mesh);
+
+/// Whether a tar file has that member, as it is written.
+bool has_member(const std::filesystem::path& archive, const std::string& member);
 
 /// Writes a square about the origin of the xz plane, facing +Y, as an OBJ file with texture coordinates.
 void write_square(double half_size, const std::filesystem::path& mesh);

@@ -1,5 +1,6 @@
 #include "bake/integrate/sums_file.h"
 
+#include <cerrno>
 #include <bit>
 #include <fstream>
 
@@ -41,10 +42,10 @@ void write_sums(const fs::path& path, const SumsFile& file) {
     stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     stream.close();
     if (!stream) {
+      const bool full = disk_is_full(unfinished);
       std::error_code ignored;
       fs::remove(unfinished, ignored);
-      throw BadInput(path.string(), "cannot be written", "a writable folder with room on its disk",
-                     "free some room, or choose another output");
+      fail_to_write(path, "", full ? ENOSPC : 0);
     }
   }
   fs::rename(unfinished, path);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -209,7 +210,7 @@ ProbeSet load_probes(const fs::path& folder) {
   for (std::size_t e = 0; e < entries; ++e) {
     const Fields range(file.string(), "ranges[" + std::to_string(e) + "]", ranges[e], remedy);
     const double lowest = range.number("min"), highest = range.number("max");
-    if (lowest > highest) range.fail(range.path("min"), std::to_string(lowest) + ", above max", "min <= max");
+    if (lowest > highest) range.fail(range.path("min"), fmt::format("{:g}, above max", lowest), "min <= max");
     for (std::size_t k = 0; k < count; ++k)
       probes.matrices[k * entries + e] = static_cast<float>(
           lowest + stored.at(static_cast<int>(e), static_cast<int>(count - 1 - k)) / white * (highest - lowest));

@@ -3,8 +3,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <fmt/format.h>
 #include <memory>
@@ -14,6 +16,7 @@
 #include <thread>
 
 #include "base/errors.h"
+#include "base/file_names.h"
 #include "base/stopwatch.h"
 
 namespace kiln {
@@ -25,6 +28,14 @@ namespace {
 void require_exists(const fs::path& path) {
   std::error_code error;
   if (!fs::exists(path, error)) throw BadInput(path.string(), "does not exist", "an input file", "check the path");
+}
+
+/// Whether what was printed on stdout got there; says what is wrong.
+bool stdout_is_whole(const std::string& program) {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
+  std::fprintf(stderr, "%s: stdout cannot be written (%s)\n", program.c_str(), std::strerror(errno));
+  return false;
 }
 
 int fail(const std::string& program, ExitCode code, const std::string& message) {
@@ -177,7 +188,7 @@ Json CommandLine::result(double seconds, const Json& metrics) const {
   settings["seed"] = seed_;
   Json inputs = Json::object();
   const auto add = [&](const fs::path& path) {
-    if (!path.empty() && fs::is_regular_file(path)) inputs[path.string()] = hash_file(path);
+    if (!path.empty() && fs::is_regular_file(path)) inputs[text_of_path(path)] = hash_file(path);
   };
   for (const fs::path* path : inputs_) add(*path);
   for (const auto* list : input_lists_)
@@ -191,8 +202,12 @@ Json CommandLine::result(double seconds, const Json& metrics) const {
 }
 
 void CommandLine::finish(OutputSet& outputs, const Json& result) const {
-  outputs.add_text(stage_ + ".json", result.dump(2) + "\n");
-  finish_without_record(outputs, result);
+  Json record = result;
+  record["outputs"] = Json::object();
+  for (const std::string& name : outputs.names())
+    record["outputs"][text_of_path(name)] = hash_file(outputs.staging() / name);
+  outputs.add_text(stage_ + ".json", json_text(record, 2) + "\n");
+  finish_without_record(outputs, record);
 }
 
 void CommandLine::finish_without_record(OutputSet& outputs, const Json& result) const {
@@ -202,7 +217,7 @@ void CommandLine::finish_without_record(OutputSet& outputs, const Json& result) 
 }
 
 void CommandLine::finish_without_output(const Json& result) const {
-  if (json_) std::printf("%s\n", result.dump().c_str());
+  if (json_) std::printf("%s\n", json_text(result).c_str());
 }
 
 long long peak_memory_bytes() {
@@ -215,9 +230,9 @@ int run_program(const std::string& program, const std::function<void()>& body) {
   stop_on_signals();
   try {
     body();
-    return static_cast<int>(ExitCode::done);
-  } catch (const CLI::Success&) {
-    return static_cast<int>(ExitCode::done);  // --help or --version, printed by parse()
+    return static_cast<int>(stdout_is_whole(program) ? ExitCode::done : ExitCode::failed);
+  } catch (const CLI::Success&) {  // --help or --version, printed by parse()
+    return static_cast<int>(stdout_is_whole(program) ? ExitCode::done : ExitCode::failed);
   } catch (const CLI::ParseError& error) {
     return fail(program, ExitCode::wrong_usage, std::string(error.what()) + "; see " + program + " --help");
   } catch (const WrongUsage& error) {
@@ -234,8 +249,17 @@ int run_program(const std::string& program, const std::function<void()>& body) {
     std::signal(noted_signal(), SIG_DFL);
     std::raise(noted_signal());
     return static_cast<int>(ExitCode::failed);
+  } catch (const DiskFull& error) {
+    return fail(program, ExitCode::failed, error.what());
   } catch (const std::bad_alloc&) {
     return fail(program, ExitCode::failed, "ran out of memory");
+  } catch (const std::filesystem::filesystem_error& error) {
+    const bool full = error.code() == std::errc::no_space_on_device;
+    return fail(program, ExitCode::failed,
+                full ? error.path2().string() +
+                           ": cannot be written, the disk is full; free some room, or choose "
+                           "another output"
+                     : std::string("failed inside: ") + error.what());
   } catch (const std::exception& error) {
     return fail(program, ExitCode::failed, std::string("failed inside: ") + error.what());
   }

@@ -75,8 +75,8 @@ class CommandLine {
   /// same level. `seconds` is the stage's own work, without reading and writing files.
   Json result(double seconds, const Json& metrics) const;
 
-  /// Writes `result` to `<stage>.json` of `outputs`, commits them all, and prints `result` on stdout if --json was
-  /// given.
+  /// Writes `result`, and under "outputs" the hash of each of `outputs`, to `<stage>.json`; commits them all, and
+  /// prints `result` on stdout if --json was given.
   void finish(OutputSet& outputs, const Json& result) const;
 
   /// The same without `<stage>.json`, for tools whose output is one file anywhere.

@@ -8,7 +8,7 @@ namespace kiln {
 /// Exit statuses of every executable, the same in all of them.
 enum class ExitCode : int {
   done = 0,
-  failed = 1,         ///< failed inside: a defect of Kiln, or the machine ran out of something
+  failed = 1,         ///< failed inside: a defect of Kiln, or memory or the disk ran out
   wrong_usage = 2,    ///< an option that does not exist or whose value is out of range
   bad_input = 3,      ///< a file that cannot be read, understood or written
   budget_missed = 4,  ///< everything ran, a quality budget was not met
@@ -31,6 +31,12 @@ class WrongUsage : public std::runtime_error {
 
 /// A quality budget was missed; the outputs are written nevertheless.
 class BudgetMissed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The disk is full.
+class DiskFull : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };

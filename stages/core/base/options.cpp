@@ -22,6 +22,10 @@ std::optional<Number> parse(const std::string& text) {
 
 }  // namespace
 
+std::string json_text(const Json& value, int indent) {
+  return value.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 std::string Extent::text() const {
   return width == height ? std::to_string(width) : fmt::format("{}x{}", width, height);
 }

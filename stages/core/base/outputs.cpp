@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <new>
+#include <sys/statvfs.h>
 #include <system_error>
 #include <unistd.h>
 #include <xxhash.h>
@@ -15,14 +16,23 @@ namespace kiln {
 
 namespace fs = std::filesystem;
 
-namespace {
-
-BadInput cannot_write(const fs::path& path, const std::string& reason) {
-  return BadInput(path.string(), "cannot be written (" + reason + ")", "a folder that can be written",
-                  "choose another output or change its permissions");
+bool disk_is_full(const fs::path& path) {
+  constexpr unsigned long long least_bytes = 4096;
+  std::error_code error;
+  fs::path place = fs::absolute(path, error);
+  while (!place.empty() && !fs::exists(place, error) && place != place.parent_path()) place = place.parent_path();
+  struct statvfs disk = {};
+  if (statvfs(place.c_str(), &disk) != 0 || disk.f_blocks == 0) return false;
+  const auto blocks = geteuid() == 0 ? disk.f_bfree : disk.f_bavail;  // some are kept for root
+  return static_cast<unsigned long long>(blocks) * disk.f_frsize < least_bytes;
 }
 
-}  // namespace
+void fail_to_write(const fs::path& path, const std::string& reason, int error_number) {
+  if (error_number == ENOSPC || error_number == EDQUOT || disk_is_full(path))
+    throw DiskFull(path.string() + ": cannot be written, the disk is full; free some room, or choose another output");
+  throw BadInput(path.string(), "cannot be written" + (reason.empty() ? "" : " (" + reason + ")"),
+                 "a place that can be written", "choose another output or change its permissions");
+}
 
 OutputSet::OutputSet(fs::path folder) : folder_(std::move(folder)) {
   std::error_code error;
@@ -30,10 +40,10 @@ OutputSet::OutputSet(fs::path folder) : folder_(std::move(folder)) {
        part = part.parent_path())
     made_folders_.push_back(part);
   if (!fs::is_directory(folder_, error)) fs::create_directories(folder_, error);
-  if (error) throw cannot_write(folder_, error.message());
-  if (!fs::is_directory(folder_, error)) throw cannot_write(folder_, "it is not a folder");
+  if (error) fail_to_write(folder_, error.message(), error.value());
+  if (!fs::is_directory(folder_, error)) fail_to_write(folder_, "it is not a folder");
   std::string pattern = (folder_ / ".kiln-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) throw cannot_write(folder_, std::strerror(errno));
+  if (mkdtemp(pattern.data()) == nullptr) fail_to_write(folder_, std::strerror(errno), errno);
   staging_ = pattern;
 }
 
@@ -50,21 +60,23 @@ fs::path OutputSet::add(const std::string& name) {
 }
 
 void OutputSet::add_text(const std::string& name, const std::string& text) {
+  errno = 0;
   std::ofstream stream(add(name), std::ios::binary);
   stream << text;
   stream.close();
-  if (!stream) throw cannot_write(folder_ / name, std::strerror(errno));
+  if (!stream) fail_to_write(folder_ / name, std::strerror(errno), errno);
 }
 
 void OutputSet::remove_stale(const std::string& name) { stale_.push_back(name); }
 
 void OutputSet::commit() {
+  if (disk_is_full(staging_)) fail_to_write(folder_ / (names_.empty() ? "" : names_.back()), "", ENOSPC);
   std::error_code error;
   for (const std::string& name : names_)
-    if (fs::is_directory(folder_ / name, error)) throw cannot_write(folder_ / name, "it is a folder");
+    if (fs::is_directory(folder_ / name, error)) fail_to_write(folder_ / name, "it is a folder");
   for (const std::string& name : names_) {
     fs::rename(staging_ / name, folder_ / name, error);
-    if (error) throw cannot_write(folder_ / name, error.message());
+    if (error) fail_to_write(folder_ / name, error.message(), error.value());
   }
   for (const std::string& name : stale_) fs::remove(folder_ / name, error);
   committed_ = true;
@@ -120,8 +132,18 @@ std::string hash_bytes(const std::vector<std::span<const std::byte>>& parts) {
 }
 
 std::string hash_file(const fs::path& file) {
-  const std::string bytes = read_text(file);
-  return hexadecimal(XXH3_128bits(bytes.data(), bytes.size()));
+  std::ifstream stream(file, std::ios::binary);
+  XXH3_state_t* state = XXH3_createState();
+  if (state == nullptr) throw std::bad_alloc();
+  XXH3_128bits_reset(state);
+  std::vector<char> bytes(1 << 20);
+  while (stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size())), stream.gcount() > 0)
+    XXH3_128bits_update(state, bytes.data(), static_cast<std::size_t>(stream.gcount()));
+  const XXH128_hash_t hash = XXH3_128bits_digest(state);
+  XXH3_freeState(state);
+  if (!stream.eof() || stream.bad())
+    throw BadInput(file.string(), "cannot be read", "a readable file", "check the path and its permissions");
+  return hexadecimal(hash);
 }
 
 }  // namespace kiln

@@ -28,10 +28,14 @@ class OutputSet {
   /// Has commit() remove `folder/name`, which an earlier run left and this one does not write.
   void remove_stale(const std::string& name);
 
-  /// Renames all files to their final names. Throws BadInput where that is not possible.
+  /// Renames all files to their final names. Throws BadInput where that is not possible, DiskFull where there is no
+  /// room left: the last bytes of a file may then be missing.
   void commit();
 
   const std::filesystem::path& folder() const { return folder_; }
+
+  /// The files so far, in the order they were added.
+  const std::vector<std::string>& names() const { return names_; }
 
   /// Where the files are until commit(), for measuring what was written.
   const std::filesystem::path& staging() const { return staging_; }
@@ -47,6 +51,13 @@ class OutputSet {
 
 /// The folder that holds `file`: "." for a bare name.
 std::filesystem::path folder_of(const std::filesystem::path& file);
+
+/// Throws DiskFull where the disk of `path` is full, else BadInput: the file or folder cannot be written. `reason` may
+/// be empty; `error_number` is errno, 0 where it is not known.
+[[noreturn]] void fail_to_write(const std::filesystem::path& path, const std::string& reason, int error_number = 0);
+
+/// Whether less is free on the disk of a file or folder, which need not exist, than any file of Kiln takes.
+bool disk_is_full(const std::filesystem::path& path);
 
 /// The whole content of a file. Throws BadInput.
 std::string read_text(const std::filesystem::path& file);

@@ -38,10 +38,7 @@ template <class T>
 void write_image(const std::filesystem::path& file, const Image<T>& image, const char* format, OIIO::ImageSpec spec) {
   keep_to_one_thread();
   if (image.values().empty()) throw std::invalid_argument("write_image: a picture without pixels");
-  const auto fail = [&](const std::string& reason) {
-    throw BadInput(file.string(), "cannot be written (" + reason + ")", "a place for a picture",
-                   "check that the folder exists, may be written to and has room");
-  };
+  const auto fail = [&](const std::string& reason) { fail_to_write(file, reason); };
   const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
   if (!output) throw std::runtime_error("OpenImageIO cannot write " + std::string(format) + ": " + OIIO::geterror());
   if (!output->open(file.string(), spec)) fail(output->geterror());

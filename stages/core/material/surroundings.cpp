@@ -1,6 +1,5 @@
 #include "material/surroundings.h"
 
-#include <sstream>
 #include <utility>
 
 #include "base/errors.h"
@@ -35,6 +34,22 @@ TriangleMesh ground_square(const Eigen::Vector3d& centre, double half_size) {
   return mesh;
 }
 
+/// The parts of a text between semicolons, but for those behind a backslash, which stand for themselves; a backslash
+/// before a backslash is one.
+std::vector<std::string> parts_of(const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const bool escapes = text[k] == '\\' && k + 1 < text.size() && (text[k + 1] == ';' || text[k + 1] == '\\');
+    if (escapes)
+      parts.back() += text[++k];
+    else if (text[k] == ';')
+      parts.emplace_back();
+    else
+      parts.back() += text[k];
+  }
+  return parts;
+}
+
 }  // namespace
 
 Neighbour parse_neighbour(const std::string& text) {
@@ -45,17 +60,17 @@ Neighbour parse_neighbour(const std::string& text) {
   add_import_options(fields, neighbour.import);
   add_material_options(fields, neighbour.material);
 
-  std::istringstream parts(text);
-  std::string part;
-  std::getline(parts, part, ';');
-  neighbour.file = part;
+  const std::vector<std::string> parts = parts_of(text);
+  neighbour.file = parts.front();
   const auto refuse = [&](const std::string& found) {
     throw WrongUsage("neighbour: found " + found + " in '" + text +
                      "'; expected FILE[;place=X,Y,Z[,AZIMUTH[,SCALE]]][;albedo=...][;albedo-texture=...]"
                      "[;albedo-encoding=...][;up=...][;unit=...][;scale=...][;normals=...][;fill-holes=...]");
   };
-  if (part.empty()) refuse("no file");
-  while (std::getline(parts, part, ';')) {
+  if (neighbour.file.empty()) refuse("no file");
+  for (std::size_t k = 1; k < parts.size(); ++k) {
+    const std::string& part = parts[k];
+    if (part.empty() && k + 1 == parts.size()) break;
     const std::size_t equals = part.find('=');
     const Option* field = equals == std::string::npos ? nullptr : fields.find(part.substr(0, equals));
     if (field == nullptr) refuse("'" + part + "'");

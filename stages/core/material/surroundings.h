@@ -23,7 +23,7 @@ struct Neighbour {
 
 /// Reads "FILE[;place=X,Y,Z[,AZIMUTH[,SCALE]]][;albedo=A][;albedo-texture=PICTURE][;albedo-encoding=E]"
 /// and the import options, such as ";up=+z" and ";fill-holes=EDGES", each value as the option of that name takes it.
-/// Throws WrongUsage.
+/// A semicolon or backslash of a name is written with a backslash before it. Throws WrongUsage.
 Neighbour parse_neighbour(const std::string& text);
 
 /// A mesh around an asset, in the asset's object space.

@@ -138,8 +138,7 @@ void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
   std::ofstream stream(file, std::ios::binary);
   stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   stream.close();
-  if (!stream)
-    throw BadInput(file.string(), "cannot be written", "space on the disk", "free some or choose another output");
+  if (!stream) fail_to_write(file, "");
 }
 
 /// `name` is for messages.

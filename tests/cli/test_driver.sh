@@ -1,0 +1,133 @@
+#!/bin/sh
+# test_driver.sh PROGRAMS: what kiln's cases cannot hold: builds that run side by side, are interrupted or killed, names
+# that are no UTF-8, disks that are full, and metrics.cpp's list against the records of a build.
+set -eu
+programs=$1
+work=$(mktemp -d)
+trap 'status=$?; umount "$work/small" 2>/dev/null || true; rm -rf "$work"; exit $status' EXIT
+cd "$work"
+kiln=$programs/kiln
+fail() { echo "FAILED: $*" >&2; exit 1; }
+
+# A bumpy ball of 2,048 triangles.
+awk 'BEGIN {
+  pi = atan2(0, -1); n = 32;
+  for (i = 0; i <= n; ++i) for (j = 0; j < n; ++j) {
+    t = pi * i / n; p = 2 * pi * j / n; r = 1 + 0.2 * sin(5 * p) * sin(t);
+    printf "v %.6f %.6f %.6f\n", r * sin(t) * cos(p), r * cos(t), r * sin(t) * sin(p);
+  }
+  for (i = 0; i < n; ++i) for (j = 0; j < n; ++j) {
+    a = i * n + j + 1; b = i * n + (j + 1) % n + 1;
+    if (i > 0) printf "f %d %d %d\n", a, b, a + n;
+    if (i < n - 1) printf "f %d %d %d\n", b, b + n, a + n;
+  }
+}' >ball.obj
+settings='defaults:
+  simplify: {faces: 200, quality: draft}
+  atlas: {size: 128, gutter: 2}
+  bake: {bands: 3, directions: DIRECTIONS, backend: embree}
+  report: {picture-size: 64, directions: 32, lights: ["45,30"]}
+assets:'
+pipeline() { # DIRECTIONS ASSET...
+  echo "$settings" | sed "s/DIRECTIONS/$1/"
+  shift
+  for asset; do echo "  $asset"; done
+}
+
+# One build at a time: the second waits, says so, and finds all done.
+pipeline 20000 'a: {mesh: ball.obj}' >pipeline.yaml
+$kiln build --until normals --quiet
+$kiln build --until bake 2>first & building=$!
+for _ in $(seq 200); do grep -q process out/.kiln/lock && ! flock -n out/.kiln/lock true && break; sleep 0.02; done
+$kiln build --until bake 2>second
+wait $building
+if grep -q "another build is at work in out (process" second; then grep -q "nothing to do" second || fail "the second built as well"; fi
+[ -e out/a/prt/bake.json ] || fail "no bake"
+
+# An interrupted bake goes on by itself, to the same bytes; a checkpoint of other settings is none.
+pipeline 60000 'a: {mesh: ball.obj}' >pipeline.yaml
+status=0
+$kiln build --until bake 2>interrupted & building=$!
+sleep 1.5
+kill -TERM $building
+wait $building || status=$?
+if [ -e out/a/prt.checkpoint ]; then # else the machine was so fast that nothing was left to stop
+  [ $status -eq 143 ] || fail "exit status $status of a build that was stopped"
+  $kiln build --until bake 2>resumed
+  grep -q "bake goes on from its checkpoint" resumed || fail "$(cat resumed)"
+  [ ! -e out/a/prt.checkpoint ] || fail "the checkpoint is still there"
+  cp -r out/a/prt resumed_prt
+  $kiln build --until bake --force --quiet
+  diff -r --exclude bake.json resumed_prt out/a/prt || fail "other bytes than those of one run"
+fi
+mkdir -p out/a/prt.checkpoint
+echo nonsense >out/a/prt.checkpoint/slab_0000.sums
+pipeline 64 'a: {mesh: ball.obj}' >pipeline.yaml
+$kiln build --until bake --quiet
+[ ! -e out/a/prt.checkpoint ] || fail "a foreign checkpoint is still there"
+
+# A build that is killed leaves no lock once what it ran has ended.
+pipeline 10000 'a: {mesh: ball.obj}' >pipeline.yaml
+$kiln build --until bake --quiet 2>killed & building=$!
+sleep 0.7
+kill -KILL $building
+wait $building 2>/dev/null || true
+timeout 120 $kiln build --until bake --quiet || fail "the lock of a killed build"
+
+# Names that are no UTF-8, in the shell, make, the records and the report.
+latin=$(printf 'caf\351 (2)\nit'\''s $x;\134.obj')
+cp ball.obj "$latin"
+pipeline 64 >pipeline.yaml
+printf '  ? "caf\351*.obj"\n' >>pipeline.yaml
+$kiln list | grep -q '^caf_ (2)_it' || fail "$($kiln list)"
+$kiln build 2>latin || fail "$(cat latin)"
+$kiln build 2>latin
+grep -q "nothing to do" latin || fail "$(cat latin)"
+echo >>"$latin"
+$kiln build -n | grep -q simplify || fail "a change of a file of that name is not seen"
+
+# Every number of the records is known as a metric, and every one that is known is there or is of another asset.
+pipeline 64 >pipeline.yaml
+cat >>pipeline.yaml <<EOF
+  all:
+    mesh: ball.obj
+    material: {albedo: 0.5}
+    bake: {verify-directions: 64, verify-texels: 64, bounces: auto, max-error: 0.2}
+    compress: {max-error: 0.2, clusters: 1}
+EOF
+$kiln build all --quiet
+python3 - out/all/metrics.json pipeline.yaml "$kiln" <<'EOF'
+import json, subprocess, sys
+metrics, pipeline, kiln = sys.argv[1:]
+record = json.load(open(metrics))
+def numbers(at, path):
+    for key, value in at.items():
+        if key in ("settings", "inputs", "outputs", "budgets", "lights", "candidates"): continue
+        if isinstance(value, dict): yield from numbers(value, path + [key])
+        elif isinstance(value, (bool, int, float)): yield ".".join(path + [key])
+names = [name for stage in ("simplify", "atlas", "normals", "bake", "compress", "report")
+         for name in numbers(record[stage], [stage]) if name not in ("report.peak_memory_bytes", "report.budgets_missed")]
+assert len(names) > 100, names
+text = open(pipeline).read() + "    budgets:\n"
+for name in names:
+    open("one.yaml", "w").write(text + "      %s: {min: 0}\n" % name)
+    run = subprocess.run([kiln, "list", "one.yaml"], capture_output=True, text=True)
+    assert run.returncode == 0, name + ": " + run.stderr
+EOF
+
+# What is printed and does not get there is a failure.
+status=0
+$kiln list >/dev/full 2>full || status=$?
+[ $status -eq 1 ] && grep -q "No space left" full || fail "stdout that is full: $status $(cat full)"
+
+# A full disk, where one may be mounted.
+mkdir small
+if mount -t tmpfs -o size=400k none small 2>/dev/null; then
+  pipeline 64 'a: {mesh: ball.obj}' | sed '1i output: small/out' >pipeline.yaml
+  status=0
+  $kiln build 2>full || status=$?
+  [ $status -eq 1 ] && grep -q "the disk is full" full || fail "a full disk: $status $(cat full)"
+  find small -name '.kiln-*' | grep . && fail "left over on the full disk"
+  umount small
+fi
+echo "one at a time, resumed, any name, known metrics, full disks"

@@ -1,0 +1,174 @@
+#include "kiln/commands.h"
+
+#include <cstdio>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "base/errors.h"
+#include "base/file_names.h"
+#include "base/process.h"
+#include "kiln/build.h"
+#include "kiln/clean.h"
+#include "kiln/init.h"
+#include "kiln/makefile.h"
+#include "kiln/pipeline.h"
+#include "kiln/step.h"
+
+namespace kiln {
+
+namespace fs = std::filesystem;
+
+struct Commands::Values {
+  int status = 0;
+  std::vector<std::string> words;  ///< a pipeline file and assets
+  BuildSettings build;
+  std::string until;
+  std::vector<fs::path> meshes;
+  fs::path file = "pipeline.yaml";
+  fs::path plan, archive, mesh;
+  std::string member;
+  double half_size = 0;
+  int threads = 0;
+};
+
+namespace {
+
+/// Takes the pipeline file off the front of `words`; what is left are assets.
+Pipeline take_pipeline(std::vector<std::string>& words) {
+  std::string file = "pipeline.yaml";
+  if (!words.empty() && (words.front().ends_with(".yaml") || words.front().ends_with(".yml"))) {
+    file = words.front();
+    words.erase(words.begin());
+  }
+  std::error_code error;
+  if (!fs::exists(file, error) && file == "pipeline.yaml")
+    throw BadInput(file, "does not exist", "a pipeline in this folder, or its file by name",
+                   "write one with 'kiln init MESH...'");
+  return load_pipeline(file);
+}
+
+/// Where its mesh comes from.
+std::string mesh_text(const Asset& asset) {
+  if (!asset.square.empty()) return "a square of half-size " + asset.square;
+  return asset.archive.empty() ? asset.mesh.string() : asset.archive.string() + ":" + asset.member;
+}
+
+void list(const Pipeline& pipeline, bool as_json) {
+  if (as_json) {
+    Json assets = Json::array();
+    for (const Asset& asset : pipeline.assets)
+      assets.push_back(
+          {{"name", asset.name}, {"default", !asset.on_request}, {"mesh", text_of_path(mesh_text(asset))}});
+    std::printf("%s\n", json_text({{"assets", assets}}).c_str());
+    return;
+  }
+  for (const Asset& asset : pipeline.assets)
+    std::printf("%s\t%s\t%s\n", asset.name.c_str(), asset.on_request ? "on request" : "default",
+                mesh_text(asset).c_str());
+}
+
+/// Builds. What is wrong before a stage runs is in the JSON object as well.
+int run_build(std::vector<std::string>& words, const BuildSettings& settings) {
+  try {
+    const Pipeline pipeline = take_pipeline(words);
+    return build(pipeline, select_assets(pipeline, words), settings);
+  } catch (const std::runtime_error& error) {
+    const auto tell = [&](ExitCode code) {
+      if (settings.json)
+        std::printf("%s\n", json_text({{"status", static_cast<int>(code)}, {"error", error.what()}}).c_str());
+    };
+    if (dynamic_cast<const BadInput*>(&error) != nullptr)
+      tell(ExitCode::bad_input);
+    else if (dynamic_cast<const WrongUsage*>(&error) != nullptr)
+      tell(ExitCode::wrong_usage);
+    else if (dynamic_cast<const MachineLacks*>(&error) != nullptr)
+      tell(ExitCode::machine_lacks);
+    else if (dynamic_cast<const Interrupted*>(&error) == nullptr)
+      tell(ExitCode::failed);
+    throw;
+  }
+}
+
+void add_words(CLI::App& command, std::vector<std::string>& words, const std::string& assets) {
+  command
+      .add_option("pipeline.yaml asset", words,
+                  "The pipeline (default pipeline.yaml), then assets (default " + assets + ")")
+      ->option_text("[pipeline.yaml] [asset...]");
+}
+
+std::vector<std::string> stage_words() {
+  std::vector<std::string> words;
+  for (const Stage stage : all_stages) words.push_back(stage_name(stage));
+  return words;
+}
+
+Stage stage_of(const std::string& name) {
+  for (const Stage stage : all_stages)
+    if (stage_name(stage) == name) return stage;
+  throw WrongUsage(fmt::format("until: found '{}'; expected one of {}", name, fmt::join(stage_words(), ", ")));
+}
+
+}  // namespace
+
+Commands::Commands(CLI::App& app) : values_(std::make_unique<Values>()) {
+  Values& v = *values_;
+  CLI::App& build = *app.add_subcommand("build", "Bring assets up to date");
+  add_words(build, v.words, "all that are not on request");
+  build.add_option("-j,--jobs", v.build.jobs, "Stages at a time, 0 for one per core (default 0; 0 to 1024)")
+      ->check(CLI::Range(0, 1024));
+  build.add_flag("-k,--keep-going", v.build.keep_going, "Build the other assets where one fails");
+  build.add_flag("-n,--dry-run", v.build.dry_run, "Print what would run, run and write nothing");
+  build.add_flag("--force", v.build.force, "Run all stages, also those that are up to date");
+  build.add_option("--until", v.until, fmt::format("The last stage to run: {}", fmt::join(stage_words(), ", ")))
+      ->type_name("STAGE");
+  build.add_flag("--json", v.build.json, "Print what became of every asset as one JSON object on stdout");
+  build.add_flag("--quiet", v.build.quiet, "Print errors only");
+  build.callback([&v] {
+    if (!v.until.empty()) v.build.until = stage_of(v.until);
+    v.status = run_build(v.words, v.build);
+  });
+
+  CLI::App& list_command = *app.add_subcommand("list", "Print the assets of a pipeline");
+  add_words(list_command, v.words, "all");
+  list_command.add_flag("--json", v.build.json, "Print them as one JSON object");
+  list_command.callback([&v] { list(take_pipeline(v.words), v.build.json); });
+
+  CLI::App& clean_command = *app.add_subcommand("clean", "Remove what was built");
+  add_words(clean_command, v.words, "all that was built");
+  clean_command.add_flag("--quiet", v.build.quiet, "Print errors and files that were kept only");
+  clean_command.callback([&v] {
+    const Pipeline pipeline = take_pipeline(v.words);
+    clean(pipeline, v.words, v.build.quiet);
+  });
+
+  CLI::App& init_command = *app.add_subcommand("init", "Write a pipeline file of meshes");
+  init_command.add_option("MESH", v.meshes, "Mesh files: OBJ, PLY, STL, OFF, glTF, GLB, FBX or DRC")->required();
+  init_command.add_option("-o,--output", v.file, "The file to write, which must not be there (default pipeline.yaml)")
+      ->type_name("FILE");
+  init_command.callback([&v] {
+    init_pipeline(v.meshes, v.file);
+    std::fprintf(stderr, "kiln: wrote %s; 'kiln build%s' makes what it says\n", v.file.c_str(),
+                 v.file == "pipeline.yaml" ? "" : (" " + shell_quoted(v.file.string())).c_str());
+  });
+
+  // What the Makefile calls.
+  CLI::App& step = *app.add_subcommand("step", "Run one stage")->group("");
+  step.add_option("--threads", v.threads);
+  step.add_option("plan", v.plan)->required();
+  step.callback([&v] { v.status = run_step(v.plan, program_folder(), v.threads); });
+  CLI::App& extract = *app.add_subcommand("extract", "Take a mesh out of an archive")->group("");
+  extract.add_option("archive", v.archive)->required();
+  extract.add_option("member", v.member)->required();
+  extract.add_option("-o,--output", v.mesh)->required();
+  extract.callback([&v] { extract_member(v.archive, v.member, v.mesh); });
+  CLI::App& square = *app.add_subcommand("square", "Make a square mesh")->group("");
+  square.add_option("half_size", v.half_size)->required();
+  square.add_option("-o,--output", v.mesh)->required();
+  square.callback([&v] { write_square(v.half_size, v.mesh); });
+}
+
+Commands::~Commands() = default;
+
+int Commands::status() const { return values_->status; }
+
+}  // namespace kiln

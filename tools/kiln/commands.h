@@ -1,0 +1,23 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace kiln {
+
+/// Adds kiln's subcommands to `app`: build, list, clean and init, and those that the Makefile calls. `status` becomes
+/// the exit status. Everything they refer to lives as long as `app` is parsed.
+class Commands {
+ public:
+  explicit Commands(CLI::App& app);
+  ~Commands();
+  Commands(const Commands&) = delete;
+  Commands& operator=(const Commands&) = delete;
+
+  int status() const;
+
+ private:
+  struct Values;
+  std::unique_ptr<Values> values_;
+};
+
+}  // namespace kiln

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kiln/makefile.h"
+#include "kiln/pipeline.h"
+#include "kiln/stage_state.h"
+
+namespace kiln {
+
+/// The rules of every asset of the pipeline, those of one asset together and in order.
+std::vector<MakeRule> make_rules(const Pipeline& pipeline);
+
+/// What makes the command of a run give another result: its words, the version, and the programs by content, so that a
+/// moved build does not make all anew and a changed one does. `programs` are the hashes of the folder of the stages'
+/// executables. Throws MachineLacks where one is not there.
+std::string stamp_text(const StageRun& run, FileHashes& programs);
+
+}  // namespace kiln

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+#include <yaml-cpp/yaml.h>
+
+namespace kiln {
+
+/// A YAML file of one document, and what refuses its nodes with file and line.
+class YamlFile {
+ public:
+  /// Reads and parses it. Throws BadInput for what is no YAML, for tabs that indent, and for a second document.
+  explicit YamlFile(std::filesystem::path file);
+
+  const std::filesystem::path& file() const { return file_; }
+  const YAML::Node& root() const { return root_; }
+
+  /// "FILE:LINE" of a node.
+  std::string place(const YAML::Node& node) const { return place(node.Mark()); }
+  std::string place(const YAML::Mark& mark) const;
+
+  /// Throws BadInput at the node where `good` does not hold.
+  void require(bool good, const YAML::Node& node, const std::string& found, const std::string& expected) const;
+
+  /// Holds for a map whose keys are scalars, each there once, and each one of `known` (empty: any).
+  void check_keys(const YAML::Node& map, const std::vector<std::string>& known) const;
+
+  /// The text of one value that is not empty.
+  std::string scalar(const YAML::Node& node, const std::string& expected) const;
+
+  /// A finite number, as it is written; nothing where the node is not there.
+  std::string number(const YAML::Node& node) const;
+
+  /// A path as it is written: any bytes but NUL.
+  std::filesystem::path path(const YAML::Node& node) const;
+
+ private:
+  YAML::Node only_document(const std::string& text) const;
+  std::filesystem::path file_;
+  YAML::Node root_;
+};
+
+}  // namespace kiln
