@@ -69,9 +69,11 @@ TEST(LightSpec, SumsAndWindowsLights) {
   const std::vector<LightSpec> specs = {parse_light_spec("0,90,2,0,0"), parse_light_spec("ambient:0,3,0")};
   const LightCoefficients plain = light_coefficients(specs, 3, LightWindow::none);
   const LightCoefficients hann = light_coefficients(specs, 3, LightWindow::hann);
-  // Red: pi * 2 * Y_1^-1(+Y); green: 3 * sqrt(4 pi) in band 0 alone, which no window changes.
-  EXPECT_NEAR(plain.channels[0][1], 2 * M_PI * 0.488603, 1e-5);
-  EXPECT_NEAR(hann.channels[0][1], 2 * M_PI * 0.488603 * 0.75, 1e-5);  // (1 + cos(pi / 3)) / 2
+  // Red: pi * 2 * Y_1^-1(+Y) over what a surface that faces it would have, the sum of w_l A_l (2l + 1) / 4 pi, which is
+  // 1/4 + w_1 / 2 + 5 w_2 / 16; hann's w_1 is (1 + cos(pi / 3)) / 2 and its w_2 (1 + cos(2 pi / 3)) / 2.
+  EXPECT_NEAR(plain.channels[0][1], 2 * M_PI * 0.488603 / (0.25 + 0.5 + 0.3125), 1e-5);
+  EXPECT_NEAR(hann.channels[0][1], 2 * M_PI * 0.488603 * 0.75 / (0.25 + 0.375 + 0.078125), 1e-5);
+  // Green: 3 * sqrt(4 pi) in band 0 alone, which no window changes.
   EXPECT_NEAR(plain.channels[1][0], 3 * std::sqrt(4 * M_PI), 1e-5);
   EXPECT_EQ(hann.channels[1][0], plain.channels[1][0]);
   EXPECT_EQ(plain.channels[2], std::vector<float>(9, 0.f));
@@ -83,14 +85,13 @@ TEST(Environment, OfOneRadianceIsAmbientLight) {
   write_exr(file, Image<float>(64, 32, 3, 0.75f));
   const LightCoefficients light = load_environment(file, 5, 33);
   const LightCoefficients expected = constant_light(5, std::array<float, 3>{0.75f, 0.75f, 0.75f});
-  // Each row's pixels are weighted by their exact solid angle, but higher bands are sampled at 64 x 32 pixels.
   for (int c = 0; c < 3; ++c)
-    for (int i = 0; i < 25; ++i) EXPECT_NEAR(light.channels[c][i], expected.channels[c][i], i == 0 ? 1e-5 : 3e-3) << i;
+    for (int i = 0; i < 25; ++i) EXPECT_NEAR(light.channels[c][i], expected.channels[c][i], 1e-6) << i;
 }
 
 TEST(Environment, TurnsByAzimuth) {
   const Scratch scratch;
-  // A spot at +X (azimuth 90): u = 1/2, v = 1/2. Turned by 60 degrees it is at azimuth 150. Large enough to be reduced.
+  // A spot at +X (azimuth 90): u = 1/2, v = 1/2. Turned by 60 degrees it is at azimuth 150.
   Image<float> picture(2048, 1024, 3, 0.f);
   for (int j = 508; j < 516; ++j)
     for (int i = 1020; i < 1028; ++i) picture.at(i, j, 1) = 1000;
@@ -109,13 +110,38 @@ TEST(Environment, TurnsByAzimuth) {
   }
 }
 
+TEST(Environment, TurnsPicturesOfFewPixels) {
+  // Two halves of the sky, z < 0 and z > 0; by a quarter turn the bright one, around +Z, comes around +X.
+  const Scratch scratch;
+  const fs::path file = scratch.folder() / "halves.exr";
+  Image<float> picture(2, 1, 3, 0.f);
+  for (int c = 0; c < 3; ++c) picture.at(1, 0, c) = 2;
+  write_exr(file, picture);
+  const LightCoefficients light = load_environment(file, 6, 90);
+  const LightCoefficients expected = cone_light(6, Eigen::Vector3f::UnitX(), M_PI / 2, std::array<float, 3>{2, 2, 2});
+  for (int i = 0; i < 36; ++i) EXPECT_NEAR(light.channels[1][i], expected.channels[1][i], 2e-6) << i;
+}
+
 TEST(Environment, RefusesWhatIsNoRadiance) {
   const Scratch scratch;
   const fs::path file = scratch.folder() / "bad.exr";
-  Image<float> picture(8, 4, 3, 1.f);
-  picture.at(3, 2, 1) = std::numeric_limits<float>::quiet_NaN();
-  write_exr(file, picture);
-  EXPECT_THROW(load_environment(file, 3, 0), BadInput);
+  const auto refusal = [&](float value) -> std::string {
+    Image<float> picture(8, 4, 3, 1.f);
+    picture.at(3, 2, 1) = value;  // the second row from the top
+    write_exr(file, picture);
+    try {
+      load_environment(file, 3, 0);
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  EXPECT_NE(refusal(std::numeric_limits<float>::quiet_NaN()).find("nan in channel G of pixel (3, 1)"),
+            std::string::npos);
+  EXPECT_NE(refusal(std::numeric_limits<float>::infinity()).find("inf in channel G of pixel (3, 1)"),
+            std::string::npos);
+  EXPECT_NE(refusal(-0.25f).find("has -0.25 in channel G of pixel (3, 1)"), std::string::npos) << refusal(-0.25f);
+  EXPECT_EQ(refusal(0), "none");
   EXPECT_THROW(load_environment(scratch.folder() / "none.hdr", 3, 0), BadInput);
 }
 

@@ -162,8 +162,7 @@ TEST(Reference, LightNearTheMeshIsThatOfEveryPoint) {
       const Eigen::Vector3f direction = view.camera.pixel_direction(i, j, view.width, view.height);
       const Eigen::Vector3f point =
           view.camera.position + scene.first_hit(view.camera.position, direction, 0, 100).distance * direction;
-      LightCoefficients light = light_coefficients(ball, 5, point.cast<double>());
-      apply_window(light, LightWindow::hann);
+      const LightCoefficients light = windowed_light(ball, 5, LightWindow::hann, point.cast<double>());
       const double expected = dot_product(unoccluded_transfer(basis, point.normalized()), light.channels[0]);
       largest = std::max(largest, std::abs(picture.at(i, j, 0) - expected));
       nearest = std::max(nearest, expected);
