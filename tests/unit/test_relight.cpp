@@ -488,22 +488,22 @@ TEST(Picture, ExrKeepsTheRadiance) {
 TEST(RenderSettings, DefaultsAreTheCameras) {
   const TriangleMesh mesh = shapes::cube_sphere(2);
   const RenderSettings settings;
-  const SceneView view = views_of(settings, bounding_box(mesh)).front();
-  const Camera expected = make_camera(bounding_box(mesh), CameraSettings{}, view.width, view.height);
+  const SceneView view = views_of(settings, mesh.positions).front();
+  const Camera expected = make_camera(mesh.positions, CameraSettings{}, view.width, view.height);
   EXPECT_EQ(view.camera.position, expected.position);
   EXPECT_EQ(view.camera.half_height, expected.half_height);
 }
 
 TEST(RenderSettings, RefusesWhatIsNoView) {
-  const BoundingBox box = bounding_box(shapes::plane(1));
+  const std::vector<Eigen::Vector3f> shape = shapes::plane(1).positions;
   for (const char* camera : {"", "20", "20,91", "20,12,3", "a,b"}) {
     RenderSettings settings;
     settings.camera = camera;
-    EXPECT_THROW(views_of(settings, box), WrongUsage) << camera;
+    EXPECT_THROW(views_of(settings, shape), WrongUsage) << camera;
   }
   RenderSettings settings;
   settings.albedo = "1.5";
-  EXPECT_THROW(views_of(settings, box), WrongUsage);
+  EXPECT_THROW(views_of(settings, shape), WrongUsage);
   settings.background = "0.1,0.2";
   EXPECT_THROW(picture_of(settings), WrongUsage);
   LightSettings lights;
@@ -512,6 +512,31 @@ TEST(RenderSettings, RefusesWhatIsNoView) {
   EXPECT_EQ(light_specs(lights).size(), 1u);
   lights.ambient = "much";
   EXPECT_THROW(light_specs(lights), WrongUsage);
+}
+
+TEST(RenderSettings, TurntableKeepsTargetAndDistanceAndShowsAll) {
+  std::vector<Eigen::Vector3f> corners;
+  for (int k = 0; k < 8; ++k)
+    corners.emplace_back((k & 1) != 0 ? 4.f : 0.f, (k & 2) != 0 ? 1.f : 0.f, (k & 4) != 0 ? 2.f : 0.f);
+  RenderSettings settings;
+  settings.frames = 12;
+  double most = 0;
+  std::vector<SceneView> views = views_of(settings, corners);
+  ASSERT_EQ(views.size(), 12u);
+  const double distance = (views[0].camera.position.cast<double>() - views[0].camera.target).norm();
+  for (const SceneView& view : views) {
+    EXPECT_LT((view.camera.target - Eigen::Vector3d(2, 0.5, 1)).norm(), 1e-6);
+    EXPECT_NEAR((view.camera.position.cast<double>() - view.camera.target).norm(), distance, 1e-5);
+    for (const Eigen::Vector3f& vertex : corners) {
+      const Eigen::Vector4f clip = view.camera.clip_from_object() * vertex.homogeneous();
+      most = std::max<double>({most, std::abs(clip.x() / clip.w()), std::abs(clip.y() / clip.w())});
+    }
+  }
+  EXPECT_NEAR(most, 1 / 1.05, 1e-3) << "the frame that needs the most just fits";
+  settings.framing.distance = "20";
+  settings.framing.target = "1,0,0";
+  for (const SceneView& view : views_of(settings, corners))
+    EXPECT_NEAR((view.camera.position - Eigen::Vector3f(1, 0, 0)).norm(), 20, 1e-4);
 }
 
 }  // namespace
