@@ -482,8 +482,10 @@ TEST(Screen, ADifferenceIsThatOfThePictures) {
   const Image<std::uint8_t> same = shown.picture(how);
   EXPECT_GT(count(same, covered), 1000);
   EXPECT_EQ(count(same, is_nothing), count(same, covered));
-  // One band of three: too dark where the light comes from, which is where the camera stands, too bright behind.
+  // One band of three of a hemisphere, which is the one light that is not scaled to what faces it: too dark where the
+  // sky is, which is where the camera stands, too bright behind.
   shown.state.bands = 1;
+  shown.state.light.preset = LightPreset::hemisphere;
   shown.state.orbit.azimuth_degrees = 60;
   const auto is_below = [](const auto& pixel) { return pixel[2] > pixel[0] + 100; };
   const auto is_above = [](const auto& pixel) { return pixel[0] > pixel[2] + 100; };
