@@ -83,7 +83,9 @@ std::vector<Eigen::Vector3f> sample_directions(Sampling sampling, int count, std
 }
 
 std::int64_t directions_for_bands(Sampling sampling, int bands) {
-  const std::int64_t per_coefficient = sampling == Sampling::fibonacci ? 4 : sampling == Sampling::progressive ? 16 : 32;
+  const std::int64_t per_coefficient = sampling == Sampling::fibonacci     ? 4
+                                       : sampling == Sampling::progressive ? 16
+                                                                           : 32;
   return per_coefficient * bands * bands;
 }
 
