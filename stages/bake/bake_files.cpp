@@ -203,6 +203,18 @@ void BakeScene::add_warnings(const std::vector<std::string>& further) {
   warnings.insert(warnings.end(), further.begin(), further.end());
 }
 
+std::vector<std::string> direction_warnings(const BakeSettings& settings) {
+  const bool by_error = settings.max_error != "none";  // of progressive directions as many as it takes
+  const int most = by_error ? settings.max_directions : settings.directions;
+  const std::int64_t needed =
+      directions_for_bands(by_error ? Sampling::progressive : settings.sampling, settings.bands);
+  if (most >= needed) return {};
+  return {std::to_string(settings.bands) + " bands need " + std::to_string(needed) +
+          " directions of this sampling or more, " + std::to_string(most) +
+          " do not keep their functions apart, so that the upper bands hold light of others; allow more directions, or "
+          "bake fewer bands"};
+}
+
 BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) {
   subsurface_profiles(settings.subsurface);  // says what does not go together before anything is baked
   if (settings.subsurface.wanted() && settings.bake_albedo)

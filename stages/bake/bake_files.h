@@ -36,6 +36,9 @@ struct BakeScene {
   Json vertex_metrics;
 };
 
+/// What is wrong with the number of directions: fewer than the bands need (directions_for_bands), or none.
+std::vector<std::string> direction_warnings(const BakeSettings& settings);
+
 /// Loads what a bake needs. Throws WrongUsage where settings and paths do not go together, BadInput for bad files.
 BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings);
 

@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
     const kiln::BakeScene scene = kiln::load_bake_scene(paths, settings);
     command.also_read(scene.further_files);
     command.warn(scene.warnings, scene.said_warnings);
+    command.warn(kiln::direction_warnings(settings));
     const kiln::BakeResult result = kiln::run_bake(outputs, paths, scene, settings, run, command);
     const kiln::Json metrics = run.is_shard() ? kiln::describe_bake(scene, result)
                                               : kiln::save_bake(outputs, paths, scene, result, settings, command);

@@ -51,10 +51,13 @@ Eigen::MatrixXf first_means(const Eigen::MatrixXf& vectors, int clusters, int se
   return means;
 }
 
-/// Squared distance of x to a subspace with an orthonormal basis.
-float subspace_distance(const Eigen::VectorXf& x, const PcaModel& model, std::size_t cluster) {
-  const Eigen::VectorXf centred = x - model.means[cluster];
-  return centred.squaredNorm() - (model.bases[cluster].transpose() * centred).squaredNorm();
+/// Squared distance of x to a subspace with an orthonormal basis; the others are room to work in.
+float subspace_distance(Eigen::Ref<const Eigen::VectorXf> x, const PcaModel& model, std::size_t cluster,
+                        Eigen::VectorXf& centred, Eigen::VectorXf& weights) {
+  centred = x - model.means[cluster];
+  const float squared = centred.squaredNorm();
+  weights.noalias() = model.bases[cluster].transpose() * centred;
+  return squared - weights.squaredNorm();
 }
 
 /// Gives each column the nearest subspace among those with the nearest means and its present one; returns the sum of
@@ -65,6 +68,7 @@ double assign(const Eigen::MatrixXf& vectors, const PcaModel& model, std::span<s
   const int tried = std::min(tried_subspaces, model.clusters());
   const Eigen::MatrixXf distances = mean_distances(vectors, means);
   std::vector<std::pair<float, int>> nearest(static_cast<std::size_t>(tried));  // nearest first; of equals the first
+  Eigen::VectorXf centred(vectors.rows()), weights(model.components);
   double sum = 0;
   for (Eigen::Index k = 0; k < vectors.cols(); ++k) {
     std::size_t found = 0;
@@ -75,12 +79,12 @@ double assign(const Eigen::MatrixXf& vectors, const PcaModel& model, std::span<s
       for (; place > 0 && distance < nearest[place - 1].first; --place) nearest[place] = nearest[place - 1];
       nearest[place] = {distance, c};
     }
-    const Eigen::VectorXf x = vectors.col(k);
     std::uint8_t& id = ids[static_cast<std::size_t>(k)];
-    float least = has_present ? subspace_distance(x, model, id) : std::numeric_limits<float>::infinity();
+    float least = has_present ? subspace_distance(vectors.col(k), model, id, centred, weights)
+                              : std::numeric_limits<float>::infinity();
     for (int t = 0; t < tried; ++t) {
       const auto cluster = static_cast<std::size_t>(nearest[static_cast<std::size_t>(t)].second);
-      const float distance = subspace_distance(x, model, cluster);
+      const float distance = subspace_distance(vectors.col(k), model, cluster, centred, weights);
       if (distance < least) {
         least = distance;
         id = static_cast<std::uint8_t>(cluster);

@@ -78,7 +78,11 @@ class Search {
     CompressCandidate candidate;
     candidate.components = static_cast<int>(asset_.planes.size());
     candidate.bits = bits;
-    candidate.error = bits < asset_.bits ? relighting_error(with_eight_bits(asset_), source_) : 0;
+    if (bits < asset_.bits) {
+      const ErrorSpread spread = spread_of_decoded(with_eight_bits(asset_), source_);
+      candidate.error = spread.mean;
+      candidate.texel_error = spread.texel;
+    }
     candidate.bytes = size_of(encode_planes(asset_, bits, PngEffort::quick));
     candidate.lookups = candidate.lookups_at_borders =
         (candidate.components + planes_per_lookup - 1) / planes_per_lookup;
@@ -87,7 +91,7 @@ class Search {
 
   /// Notes a candidate, and `model` with it if it is the cheapest so far; says whether its bytes are the least.
   bool consider(CompressCandidate candidate, const TexelModel* model) {
-    candidate.feasible = candidate.error <= result_.target_error;
+    candidate.feasible = candidate.error <= result_.target_error && (is_fixed() || is_bounded(candidate));
     result_.tried.push_back(candidate);
     if (!candidate.feasible || (best_ && best_->bytes <= candidate.bytes)) return false;
     best_ = candidate;
@@ -95,11 +99,28 @@ class Search {
     return true;
   }
 
+  /// Whether the settings leave no choice of a model: then its worst is told of and not bounded.
+  bool is_fixed() const { return settings_.clusters > 0 && settings_.components > 0; }
+
+  static bool is_bounded(const CompressCandidate& candidate) {
+    return candidate.texel_error <= most_texel_error && candidate.border_jump <= most_border_jump;
+  }
+
+  /// Whether a model leaves so much at its worst that rounding cannot be borne. Of one basis a sample tells.
+  bool leaves_worse(const TexelModel& model) const {
+    if (is_fixed()) return false;
+    const TexelErrors errors = stored_errors(source_, model, 0);
+    const ErrorSpread left = model.model.clusters() == 1
+                                 ? error_spread(source_, errors, std::span<const std::uint32_t>(sample_))
+                                 : error_spread(source_, errors, std::span<const std::uint8_t>(model.ids));
+    return left.texel > reach * most_texel_error || left.border > reach * most_border_jump;
+  }
+
   /// The largest step that stays within the target, on the sample; 0 where none does.
   double step_for(const TexelModel& model, double target) const {
     const auto error_at = [&](double step) {
       const TexelModel rounded{rounded_model(model.model, source_, all_, step), model.ids, {}};
-      return error_of(stored_residual(source_, rounded, sample_, step));
+      return error_spread(source_, stored_errors(source_, rounded, step), std::span<const std::uint32_t>(sample_)).mean;
     };
     const double room = target * std::sqrt(source_.squared_norm() / static_cast<double>(source_.covered().size()));
     // All the error a step's rounding can make is step^2 / 12 per component; start from there, in steps of factors.
@@ -120,16 +141,29 @@ class Search {
   }
 
   /// Tries a model: as coarse as the target allows, measured on all texels. Says whether it is the cheapest so far.
-  bool attempt(const TexelModel& model, CompressScheme scheme) { return attempt(model, scheme, result_.target_error); }
+  bool attempt(const TexelModel& model, CompressScheme scheme) {
+    return attempt(model, scheme, result_.target_error, !is_fixed());
+  }
 
-  bool attempt(const TexelModel& model, CompressScheme scheme, double target) {
+  bool attempt(const TexelModel& model, CompressScheme scheme, double target, bool bounds_worst) {
     double step = step_for(model, target);
     if (step == 0) return false;
-    for (int k = 0; k < 8; ++k, step *= 0.98) {
+    constexpr int most_tries = 12;
+    for (int k = 0; k < most_tries; ++k) {
       const StoredPca stored = store_pca(source_, model, all_, step);
       CompressCandidate candidate = describe(stored, scheme, step);
-      candidate.error = error_of(stored_residual(source_, stored.decoded, source_.covered(), step));
-      if (candidate.error > target && k < 7) continue;  // the sample was too kind
+      const std::vector<std::uint8_t>& ids = stored.decoded.ids;
+      const ErrorSpread spread =
+          error_spread(source_, stored_errors(source_, stored.decoded, step),
+                       candidate.clusters > 1 ? std::span<const std::uint8_t>(ids) : std::span<const std::uint8_t>());
+      candidate.error = spread.mean;
+      candidate.texel_error = spread.texel;
+      candidate.border_jump = spread.border;
+      const bool is_worse = bounds_worst && !is_bounded(candidate);
+      if ((candidate.error > target || is_worse) && k + 1 < most_tries) {
+        step *= is_worse ? 0.85 : 0.98;  // else the sample was too kind
+        continue;
+      }
       candidate.bytes = size_of(encode_pca(stored, source_, PngEffort::quick));
       return consider(candidate, &model);
     }
@@ -152,7 +186,7 @@ class Search {
   /// A model that leaves more than the target: tried as coarse as fits what it leaves, to show what more error would
   /// save.
   void attempt_lacking(const TexelModel& model, CompressScheme scheme, double left) {
-    attempt(model, scheme, rounding_allowance * left);
+    attempt(model, scheme, rounding_allowance * left, false);
   }
 
   void note_lacking(double error) { least_error_ = std::min(least_error_.value_or(error), error); }
@@ -163,7 +197,8 @@ class Search {
     const auto feasible = [&](int n) {
       const double error = error_of(all_.residual[static_cast<std::size_t>(n)]);
       if (error > reach * result_.target_error) note_lacking(error);
-      return error <= reach * result_.target_error;
+      return error <= reach * result_.target_error &&
+             (n == length || !leaves_worse(texel_model(source_, all_.model(n), owners_)));
     };
     if (settings_.components > 0) {
       raise_target(error_of(all_.residual[static_cast<std::size_t>(settings_.components)]));
@@ -191,8 +226,7 @@ class Search {
   /// Where the settings fix the model and leave the error open, the error is what the model leaves, and a quarter more
   /// for rounding.
   void raise_target(double left) {
-    const bool fixed = settings_.clusters > 0 && settings_.components > 0;
-    if (fixed && settings_.max_error == "auto")
+    if (is_fixed() && settings_.max_error == "auto")
       result_.target_error = std::max(result_.target_error, rounding_allowance * left);
   }
 
@@ -203,8 +237,8 @@ class Search {
     const double left = error_of(clustered.residual);
     raise_target(left);
     const TexelModel model = texel_model(source_, clustered, owners_);
-    if (left > reach * result_.target_error) {
-      note_lacking(left);
+    if (left > reach * result_.target_error || leaves_worse(model)) {
+      if (left > reach * result_.target_error) note_lacking(left);
       attempt_lacking(model, CompressScheme::clustered_pca, left);
       return Outcome::lacks;
     }
@@ -261,10 +295,17 @@ class Search {
   }
 
   [[noreturn]] void fail() const {
+    if (!least_error_)
+      throw WrongUsage(fmt::format(
+          "{}: leaves texels or borders of clusters that show, errors beyond {} of 999 in 1,000 texels or jumps "
+          "beyond {} at borders; expected more, or auto",
+          settings_.clusters > 0 ? fmt::format("clusters: found {}, which", settings_.clusters)
+                                 : fmt::format("pca: found {}, which", settings_.components),
+          most_texel_error, most_border_jump));
     throw WrongUsage(
         fmt::format("max-error: found {}; expected at least {:.3g}, which --clusters and --pca as they are "
                     "leave; allow more error, clusters or components",
-                    settings_.max_error, least_error_.value_or(result_.target_error) / reach));
+                    settings_.max_error, *least_error_ / reach));
   }
 
   /// Encodes the cheapest candidate as small as can be.
@@ -278,6 +319,13 @@ class Search {
       result_.files = encode_planes(asset_, best_->bits, PngEffort::thorough);
     }
     result_.chosen.bytes = size_of(result_.files);
+    if (!is_bounded(*best_))
+      result_.warnings.push_back(
+          fmt::format("{} clusters of {} components leave errors that show: 1 in 1,000 texels is off by more than "
+                      "{:.3f} (bound {}), "
+                      "or jumps at clusters' borders by more than {:.3f} (bound {}); take more of either, or auto",
+                      best_->clusters, best_->components, best_->texel_error, most_texel_error, best_->border_jump,
+                      most_border_jump));
     progress_(1);
   }
 
@@ -320,6 +368,8 @@ Json CompressCandidate::to_json() const {
           {"bits", bits},
           {"step", step},
           {"error", error},
+          {"texel_error", texel_error},
+          {"border_jump", border_jump},
           {"bytes", bytes},
           {"lookups", lookups},
           {"lookups_at_borders", lookups_at_borders},

@@ -21,6 +21,10 @@ enum class CompressScheme {
 /// "planes", "pca", "clustered-pca".
 std::string scheme_name(CompressScheme scheme);
 
+/// Bounds of the worst, whatever error is asked for (README.md, "The worst", says how they were chosen).
+inline constexpr double most_texel_error = 0.05;
+inline constexpr double most_border_jump = 0.08;
+
 /// One way to store an asset, and what it costs.
 struct CompressCandidate {
   CompressScheme scheme = CompressScheme::planes;
@@ -29,10 +33,12 @@ struct CompressCandidate {
   int bits = 8;                ///< the most that a plane has
   double step = 0;             ///< of weights, in the weighted space of TransferSource; 0: planes
   double error = 0;            ///< expected relighting error against the input, over covered texels
+  double texel_error = 0;      ///< which 999 of 1,000 covered texels stay under (ErrorSpread)
+  double border_jump = 0;      ///< which 999 of 1,000 jumps across cluster borders stay under (ErrorSpread)
   std::uint64_t bytes = 0;     ///< of all files but the mesh, the normal map and the records
   int lookups = 0;             ///< texture lookups per shaded sample, four planes to each (shaders/common_prt*.glsl)
   int lookups_at_borders = 0;  ///< where four neighbouring texels are of several clusters
-  bool feasible = true;        ///< error is under the target
+  bool feasible = true;        ///< error is under the target, and the worst under their bounds
 
   Json to_json() const;
 };
@@ -44,6 +50,7 @@ struct CompressResult {
                             ///< step^2 / 12
   std::vector<CompressCandidate> tried;  ///< sizes by PngEffort::quick
   CompressCandidate chosen;              ///< with its files' true size
+  std::vector<std::string> warnings;     ///< of bounds that settings miss which leave no choice
   double border_share = 0;  ///< of covered texels, those with a neighbour above or right in another cluster
   std::vector<std::pair<std::string, std::string>> files;  ///< name and bytes, the describing JSON last
 };

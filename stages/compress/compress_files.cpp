@@ -177,19 +177,25 @@ Json save_compressed(OutputSet& outputs, const fs::path& input, const PrtAsset& 
 
   // Measure what was written.
   const TransferSource source(asset);
-  const double error = relighting_error(load_prt_asset(outputs.staging()), source);
+  const ErrorSpread spread = spread_of_decoded(load_prt_asset(outputs.staging()), source);
   std::uint64_t bytes_in = fs::file_size(asset.ranges_file);
   for (const PrtPlane& plane : asset.planes) bytes_in += fs::file_size(input / plane.file);
   const auto texels = static_cast<double>(source.covered().size());
   Json tried = Json::array();
   for (const CompressCandidate& candidate : result.tried) tried.push_back(candidate.to_json());
   Json chosen = result.chosen.to_json();
-  chosen["error"] = error;
+  chosen["error"] = spread.mean;
+  chosen["texel_error"] = spread.texel;
+  chosen["border_jump"] = spread.border;
   return {{"width", asset.width},
           {"height", asset.height},
           {"texels", source.covered().size()},
           {"target_error", result.target_error},
-          {"error", error},
+          {"error", spread.mean},
+          {"texel_error", spread.texel},
+          {"texel_error_bound", most_texel_error},
+          {"border_jump", spread.border},
+          {"border_jump_bound", most_border_jump},
           {"bytes_in", bytes_in},
           {"bytes_out", result.chosen.bytes},
           {"bytes_per_texel_in", static_cast<double>(bytes_in) / texels},

@@ -9,9 +9,12 @@ namespace kiln {
 OptionSet compress_options(CompressSettings& settings) {
   OptionSet options;
   options
-      .text("max-error", settings.max_error,
-            "Expected relighting error against the input that the result stays under, 1e-6 to 1, or auto: what planes "
-            "of 8 bits have against planes of more")
+      .text(
+          "max-error", settings.max_error,
+          "Expected relighting error against the input that the result stays under, 1e-6 to 1, or auto: what planes "
+          "of 8 bits have against planes of more. Whatever it is, 999 of 1,000 texels stay under an error of 0.05, and "
+          "999 of 1,000 jumps of it where clusters meet under 0.08, so that no blotch and no border shows; where "
+          "--clusters and --pca leave no choice, a miss is warned of")
       .integer_or_auto("clusters", settings.clusters, 1, 256,
                        "Clusters of texels, each with a basis of its own; 1: one basis for all; auto: what is cheapest")
       .integer_or_auto("pca", settings.components, 1, 256,

@@ -27,6 +27,8 @@ int main(int argc, char** argv) {
     // Run.
     const CompressResult result = compress(asset, settings, command.progress("compress"));
 
+    command.warn(result.warnings);
+
     // Save, and measure what was saved.
     const Json metrics = save_compressed(outputs, input, asset, result);
     command.finish(outputs, command.result(result.seconds, metrics));

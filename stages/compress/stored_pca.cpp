@@ -127,25 +127,19 @@ PcaModel rounded_model(const PcaModel& model, const TransferSource& source, cons
   return rounded;
 }
 
-double stored_residual(const TransferSource& source, const TexelModel& decoded,
-                       const std::vector<std::uint32_t>& texels, double step) {
-  const std::vector<Eigen::MatrixXf> fits = fitting_matrices(decoded.model);
-  const auto unit = static_cast<float>(step);
-  const double sum = sum_of_chunks(texels.size(), [&](std::size_t first, std::size_t count) {
-    const std::span<const std::uint32_t> part = std::span(texels).subspan(first, count);
-    const Eigen::MatrixXf vectors = source.vectors(part);
-    const Eigen::MatrixXf weights = fitted_weights(decoded, fits, vectors, part);
-    double squares = 0;
-    Eigen::VectorXf difference(source.length());
-    for (Eigen::Index k = 0; k < vectors.cols(); ++k) {
-      const std::size_t cluster = decoded.ids[part[static_cast<std::size_t>(k)]];
-      difference = vectors.col(k) - decoded.model.means[cluster];
-      difference.noalias() -= decoded.model.bases[cluster] * (unit * (weights.col(k).array() / unit).round()).matrix();
-      squares += difference.squaredNorm();
+TexelErrors stored_errors(const TransferSource& source, const TexelModel& decoded, double step) {
+  return [&source, &decoded, fits = fitting_matrices(decoded.model),
+          unit = static_cast<float>(step)](std::span<const std::uint32_t> texels) {
+    Eigen::MatrixXf errors = source.vectors(texels);
+    Eigen::MatrixXf weights = fitted_weights(decoded, fits, errors, texels);
+    if (unit > 0) weights = unit * (weights.array() / unit).round();
+    for (Eigen::Index k = 0; k < errors.cols(); ++k) {
+      const std::size_t cluster = decoded.ids[texels[static_cast<std::size_t>(k)]];
+      errors.col(k) -= decoded.model.means[cluster];
+      errors.col(k).noalias() -= decoded.model.bases[cluster] * weights.col(k);
     }
-    return squares;
-  });
-  return sum * static_cast<double>(source.covered().size()) / static_cast<double>(texels.size());
+    return errors;
+  };
 }
 
 StoredPca store_pca(const TransferSource& source, const TexelModel& model, const PrincipalComponents& all,

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "compress/clustered_pca.h"
+#include "compress/error_spread.h"
 
 namespace kiln {
 
@@ -49,10 +50,9 @@ struct StoredPca {
 PcaModel rounded_model(const PcaModel& model, const TransferSource& source, const PrincipalComponents& all, double step,
                        StoredPca* stored = nullptr);
 
-/// The squared error, summed over `texels` (covered ones) and scaled to all covered texels, of weights that are stored
-/// in steps of `step`. In chunks; the same for any number of threads.
-double stored_residual(const TransferSource& source, const TexelModel& decoded,
-                       const std::vector<std::uint32_t>& texels, double step);
+/// The errors of covered texels whose weights are stored in steps of `step`, fitted to the means and bases of
+/// `decoded`, which must outlive it; `step` 0: not rounded.
+TexelErrors stored_errors(const TransferSource& source, const TexelModel& decoded, double step);
 
 /// Weights fitted by least squares to the rounded bases, in equal steps of `step` in all planes: of all ways to spend
 /// bits on orthogonal components the one of least error (reverse water-filling; Cover and Thomas, 10.3.3). A plane

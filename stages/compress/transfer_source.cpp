@@ -71,13 +71,4 @@ Eigen::MatrixXf TransferSource::vectors(std::span<const std::uint32_t> texels) c
   return result;
 }
 
-double relighting_error(const PrtAsset& a, const TransferSource& b) {
-  const TransferSource other(a, b.coverage());
-  const double squares = sum_of_chunks(b.covered().size(), [&](std::size_t first, std::size_t count) {
-    const std::span<const std::uint32_t> texels = std::span(b.covered()).subspan(first, count);
-    return (other.vectors(texels) - b.vectors(texels)).cast<double>().squaredNorm();
-  });
-  return b.squared_norm() > 0 ? std::sqrt(squares / b.squared_norm()) : 0;
-}
-
 }  // namespace kiln

@@ -49,7 +49,4 @@ inline constexpr std::size_t chunk_texels = 4096;
 /// The sum over chunks, in their order, of what `body(first, count)` gives.
 double sum_of_chunks(std::size_t size, const std::function<double(std::size_t first, std::size_t count)>& body);
 
-/// Expected relighting error of `a` against `b` over the covered texels of `b`; same size, bands and channels.
-double relighting_error(const PrtAsset& a, const TransferSource& b);
-
 }  // namespace kiln

@@ -9,20 +9,22 @@ namespace {
 Json describe(const SceneAsset& drawn) {
   const PrtAsset& asset = drawn.renderer->asset();
   const GpuMemory memory = drawn.renderer->memory(drawn.technique);
-  return {{"technique", technique_name(drawn.technique)},
-          {"incident_samples", drawn.renderer->samples().count()},
-          {"bands", asset.bands},
-          {"channels", asset.channels},
-          {"bits", asset.bits},
-          {"planes", asset.planes.size()},
-          {"clusters", asset.clusters ? asset.clusters->count : 0},
-          {"atlas_width", asset.width},
-          {"atlas_height", asset.height},
-          {"triangles", asset.mesh.triangles.size()},
-          {"vertices", asset.mesh.positions.size()},
-          {"gpu_bytes_per_mesh", memory.per_mesh},
-          {"gpu_bytes_per_vertex", memory.per_vertex},
-          {"gpu_bytes_indices", memory.indices}};
+  return {
+      {"technique", technique_name(drawn.technique)},
+      {"incident_samples", drawn.renderer->samples().count()},
+      {"place", {drawn.placement.translation.x(), drawn.placement.translation.y(), drawn.placement.translation.z()}},
+      {"bands", asset.bands},
+      {"channels", asset.channels},
+      {"bits", asset.bits},
+      {"planes", asset.planes.size()},
+      {"clusters", asset.clusters ? asset.clusters->count : 0},
+      {"atlas_width", asset.width},
+      {"atlas_height", asset.height},
+      {"triangles", asset.mesh.triangles.size()},
+      {"vertices", asset.mesh.positions.size()},
+      {"gpu_bytes_per_mesh", memory.per_mesh},
+      {"gpu_bytes_per_vertex", memory.per_vertex},
+      {"gpu_bytes_indices", memory.indices}};
 }
 
 }  // namespace

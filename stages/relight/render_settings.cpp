@@ -1,5 +1,6 @@
 #include "relight/render_settings.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -29,8 +30,13 @@ OptionSet render_options(RenderSettings& settings) {
               "another")
       .number("specular", settings.specular, 0, 1, "Reflectance of the highlight of phong and normal-map")
       .number("shininess", settings.shininess, 1, 10000, "Power of its cosine")
-      .text("camera", settings.camera, "Where the camera stands: AZIMUTH,ELEVATION in degrees (0,0 is +Z; 90,0 is +X)")
-      .number("field-of-view", settings.field_of_view_degrees, 1, 120, "Of the camera, vertical, degrees")
+      .text("camera", settings.camera,
+            "Where the camera stands: AZIMUTH,ELEVATION in degrees (0,0 is +Z, which is the front whatever --up was; "
+            "90,0 "
+            "is +X)")
+      .number("field-of-view", settings.field_of_view_degrees, 1, 120, "Of the camera, vertical, degrees");
+  add_framing_options(options, settings.framing);
+  options
       .integer("frames", settings.frames, 1, 3600,
                "More than 1: a turntable of so many pictures, NAME_000.png and so on, the camera once around")
       .integer("width", settings.width, 1, 8192, "Of the picture, pixels")
@@ -58,31 +64,42 @@ CameraSettings camera_settings_of(const RenderSettings& settings) {
   camera.azimuth_degrees = angles[0];
   camera.elevation_degrees = angles[1];
   camera.field_of_view_degrees = settings.field_of_view_degrees;
+  camera.zoom = settings.framing.zoom;
+  if (const auto place = settings.framing.target_place()) camera.target = Eigen::Vector3d(place->data());
+  camera.distance = settings.framing.target_distance();
   return camera;
 }
 
-std::vector<SceneView> views_of(const RenderSettings& settings, const BoundingBox& box) {
+std::vector<SceneView> views_of(const RenderSettings& settings, std::span<const Eigen::Vector3f> shape) {
   CameraSettings camera = camera_settings_of(settings);
-  const double first_azimuth_degrees = camera.azimuth_degrees;
   SceneView view;
   view.width = settings.width;
   view.height = settings.height;
   view.supersample = settings.supersample;
   view.look = look_of(settings);
   view.shading = settings.shading;
+  if (settings.frames == 1) {
+    view.camera = make_camera(shape, camera, settings.width, settings.height);
+    return {view};
+  }
+  if (!camera.target) {
+    Eigen::AlignedBox3d box;
+    for (const Eigen::Vector3f& vertex : shape) box.extend(vertex.cast<double>());
+    camera.target = box.center();
+  }
+  const double first_azimuth_degrees = camera.azimuth_degrees;
   std::vector<SceneView> views;
   // Twice, so that the frame that needs the most distance sets that of all.
-  for (int pass = settings.frames > 1 ? 0 : 1; pass < 2; ++pass) {
+  double distance = camera.distance;
+  for (int pass = distance > 0 ? 1 : 0; pass < 2; ++pass) {
     views.clear();
+    if (pass == 1) camera.distance = distance;
     for (int frame = 0; frame < settings.frames; ++frame) {
       camera.azimuth_degrees = first_azimuth_degrees + 360.0 * frame / settings.frames;
-      view.camera = make_camera(box, camera, settings.width, settings.height);
+      view.camera = make_camera(shape, camera, settings.width, settings.height);
       views.push_back(view);
+      if (pass == 0) distance = std::max(distance, (view.camera.position.cast<double>() - *camera.target).norm());
     }
-    for (const SceneView& each : views)
-      if (settings.frames > 1)
-        camera.least_distance =
-            std::max(camera.least_distance, static_cast<double>((each.camera.position - box.centre()).norm()));
   }
   return views;
 }

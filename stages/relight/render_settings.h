@@ -1,9 +1,11 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "asset/prt_asset.h"
+#include "base/framing_options.h"
 #include "base/options.h"
 #include "mesh/camera.h"
 #include "relight/draw/scene_renderer.h"
@@ -22,8 +24,9 @@ struct RenderSettings {
   Shading shading = Shading::forward;
   double specular = 0;  ///< of the Phong techniques: reflectance of the highlight
   double shininess = 32;
-  std::string camera = "20,12";  ///< azimuth and elevation, degrees
+  std::string camera = "20,12";  ///< azimuth and elevation, degrees; the front is +Z
   double field_of_view_degrees = 30;
+  FramingSettings framing;
   int frames = 1;               ///< of a turntable
   int width = 768;              ///< pixels
   int height = 768;             ///< pixels
@@ -45,9 +48,9 @@ OptionSet render_options(RenderSettings& settings);
 /// Where the camera stands. Throws WrongUsage.
 CameraSettings camera_settings_of(const RenderSettings& settings);
 
-/// How to draw what that box holds, one view for each frame: the camera goes around +Y, always as far away. Throws
-/// WrongUsage.
-std::vector<SceneView> views_of(const RenderSettings& settings, const BoundingBox& box);
+/// How to draw a shape, given by its vertices, one view for each frame. Of several the camera goes around +Y and around
+/// the target, that of `auto` being the middle of the vertices' box, always as far away. Throws WrongUsage.
+std::vector<SceneView> views_of(const RenderSettings& settings, std::span<const Eigen::Vector3f> shape);
 
 /// The surface. Throws WrongUsage.
 SurfaceLook look_of(const RenderSettings& settings);

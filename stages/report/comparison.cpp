@@ -9,6 +9,7 @@
 #include "import/import_mesh.h"
 #include "material/load_albedo.h"
 #include "material/surroundings.h"
+#include "mesh/camera_record.h"
 #include "mesh/draco_file.h"
 #include "report/reference.h"
 #include "sh/directions.h"
@@ -82,6 +83,9 @@ Json render(const fs::path& folder, const std::string& light, double albedo, con
                    fmt::format("--camera={},{}", settings.camera_azimuth_degrees, settings.camera_elevation_degrees),
                    "--field-of-view",
                    fmt::format("{}", field_of_view_degrees),
+                   fmt::format("--zoom={}", settings.framing.zoom),
+                   "--target=" + settings.framing.target,
+                   "--distance=" + settings.framing.distance,
                    "--width",
                    size,
                    "--height",
@@ -162,10 +166,12 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
 
   // The asset, by the program that draws it from its files alone.
   const Stopwatch render_watch;
+  Json camera;
   for (std::size_t k = 0; k < lights.size(); ++k) {
     const fs::path file = run.scratch / fmt::format("light_{}.exr", k);
     const Json said = render(asset.prt(), lights[k], albedo, settings, run, file);
     comparison.renderer = said.at("renderer").get<std::string>();
+    camera = said.at("camera");
     comparison.software_renderer = said.at("software_renderer").get<bool>();
     LightComparison& light = comparison.lights.emplace_back();
     light.light = lights[k];
@@ -178,19 +184,15 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   }
   comparison.render_seconds = render_watch.seconds();
 
-  // The high mesh, by rays from the same camera: that of the asset's own box.
+  // The high mesh, by rays from the very camera that kiln-render had.
   const Stopwatch reference_watch;
   const TriangleMesh atlas = load_atlas(asset.prt() / "atlas.drc");
   const ImportSettings how = import_settings_of(asset.record("simplify").value("settings", Json::object()));
   const ImportedMesh imported = import_mesh(high_file, how, atlas.frame);  // as in the stages before
   const TriangleMesh& high = imported.mesh;
-  CameraSettings camera;
-  camera.azimuth_degrees = settings.camera_azimuth_degrees;
-  camera.elevation_degrees = settings.camera_elevation_degrees;
-  camera.field_of_view_degrees = field_of_view_degrees;
   ReferenceView view;
   view.width = view.height = settings.picture_size;
-  view.camera = make_camera(bounding_box(atlas), camera, view.width, view.height);
+  view.camera = camera_of_json(camera);
   view.supersample = supersample;
   view.albedo = static_cast<float>(albedo);
   view.surface_albedo = high_albedo(asset, imported);

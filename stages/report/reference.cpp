@@ -54,13 +54,6 @@ TriangleMesh joined(const TriangleMesh& first, const TriangleMesh& second) {
   return both;
 }
 
-/// What comes in at a point.
-LightCoefficients incident_light(const LightSpec& light, const ReferenceView& view, const Eigen::Vector3f& point) {
-  LightCoefficients incident = light_coefficients(light, view.bands, point.cast<double>());
-  apply_window(incident, view.window);
-  return incident;
-}
-
 }  // namespace
 
 std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
@@ -83,9 +76,10 @@ std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const Ref
     const TransferVectors transfer = transfer_by_rays(scene, receivers, directions, view.bands, ray_offset);
     for (std::size_t light = 0; light < lights.size(); ++light) {
       const bool local = lights[light].kind == LightSpec::Kind::sphere;
-      LightCoefficients incident = incident_light(lights[light], view, Eigen::Vector3f::Zero());
+      LightCoefficients incident = windowed_light(lights[light], view.bands, view.window);
       for (std::size_t r = 0; r < size; ++r) {
-        if (local) incident = incident_light(lights[light], view, receivers.positions[r]);
+        if (local)
+          incident = windowed_light(lights[light], view.bands, view.window, receivers.positions[r].cast<double>());
         const std::size_t pixel = points.pixels[begin + r];
         const std::span<float> values =
             pictures[light].pixel(static_cast<int>(pixel % view.width), static_cast<int>(pixel / view.width));

@@ -33,9 +33,10 @@ OptionSet report_options(ReportSettings& settings) {
       "Lights to show the asset under, as kiln-render takes them, separated by ';': AZIMUTH,ELEVATION in degrees, "
       "ambient:RADIANCE, or an environment picture");
   options.number("camera-azimuth", settings.camera_azimuth_degrees, -360, 360,
-                 "Where the camera stands, in degrees: 0 is +Z, 90 is +X");
+                 "Where the camera stands, in degrees: 0 is +Z, which is the front whatever --up was; 90 is +X");
   options.number("camera-elevation", settings.camera_elevation_degrees, -90, 90,
                  "Of the camera above the horizon, in degrees");
+  add_framing_options(options, settings.framing);
   options.integer("picture-size", settings.picture_size, 64, 2048, "Of the rendered pictures, pixels a side");
   options.integer("directions", settings.directions, 16, 65536, "Directions of the reference's transfer integral");
   options.checked_text("albedo", settings.albedo, "auto or 0 to 1",

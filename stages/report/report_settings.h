@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/framing_options.h"
 #include "base/options.h"
 
 namespace kiln {
@@ -12,6 +13,7 @@ struct ReportSettings {
   std::string lights = "45,30; -60,20; ambient:1";  ///< as kiln-render takes them, separated by semicolons
   double camera_azimuth_degrees = 20;               ///< where the camera stands: 0 is +Z, 90 is +X
   double camera_elevation_degrees = 12;
+  FramingSettings framing;
   int picture_size = 512;       ///< pixels a side
   int directions = 1024;        ///< of the reference's transfer integral
   std::string albedo = "auto";  ///< auto, or a number that the surface's own is multiplied by

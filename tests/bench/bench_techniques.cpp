@@ -48,11 +48,11 @@ FrameTime time_frames(int rounds, Draw draw) {
   return {times.front(), times[times.size() / 2]};
 }
 
-SceneView view_of(const Arguments& arguments, const BoundingBox& box) {
+SceneView view_of(const Arguments& arguments, const std::vector<Eigen::Vector3f>& shape) {
   RenderSettings settings;
   settings.width = arguments.width;
   settings.height = arguments.height;
-  return views_of(settings, box).front();
+  return views_of(settings, shape).front();
 }
 
 void compare_techniques(const Arguments& arguments, const PrtAsset& asset, const std::optional<PrtAsset>& compressed) {
@@ -74,7 +74,7 @@ void compare_techniques(const Arguments& arguments, const PrtAsset& asset, const
       const PrtAsset& source = technique == Technique::compressed ? *compressed : asset;
       AssetRenderer renderer(source, samples);
       const std::vector<SceneAsset> assets = {{&renderer, {}, technique}};
-      const SceneView view = view_of(arguments, scene_box(assets));
+      const SceneView view = view_of(arguments, scene_shape(assets));
       const SceneLights& lights = samples > 1 ? local : distant;
       light_scene(assets, lights, view.look);
       const auto draw = [&] {

@@ -117,7 +117,7 @@ inline SceneView small_view(const TriangleMesh& mesh, double azimuth, double ele
   settings.height = 120;
   settings.supersample = supersample;
   settings.camera = std::to_string(azimuth) + "," + std::to_string(elevation);
-  return views_of(settings, bounding_box(mesh)).front();
+  return views_of(settings, mesh.positions).front();
 }
 
 /// One asset under a distant light, without a window.

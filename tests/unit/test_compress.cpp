@@ -174,7 +174,7 @@ TEST(Pca, OfTheRightRankLosesNothing) {
   for (const int n : {0, 2, 3, 4, 9}) {
     const TexelModel model = texel_model(source, all.model(n), gutter_owners(source, 4));
     if (n == 0) continue;
-    const double measured = error_of(source, stored_residual(source, model, source.covered(), 1e-7));
+    const double measured = error_spread(source, stored_errors(source, model, 1e-7), std::span(source.covered())).mean;
     EXPECT_NEAR(measured, error_of(source, all.residual[static_cast<std::size_t>(n)]), 3e-5) << n;
   }
 }
@@ -215,6 +215,52 @@ TEST(ClusteredPca, MoreClustersThanTexelsThatDiffer) {
   EXPECT_LT(error_of(source, clustered.residual), 1e-5);
 }
 
+// ---- the worst ----
+
+TEST(ErrorSpread, IsThatOfTheErrorsItIsGiven) {
+  // 32 x 32 texels of squared length 4 x 0.01 before weights; errors are made up.
+  const PrtAsset asset =
+      make_asset(32, 32, 1, 1, [](int, int) { return Eigen::VectorXd(Eigen::VectorXd::Constant(1, 0.1)); });
+  const TransferSource source(asset, std::vector<std::uint8_t>(32 * 32, 1));
+  // 0.001 everywhere, 0.01 in two texels of 1,024: more than 1 in 1,000. Clusters meet between columns 15 and 16, where
+  // the error steps from 0.001 to -0.001 in most rows.
+  const TexelErrors errors = [](std::span<const std::uint32_t> texels) {
+    Eigen::MatrixXf values(1, static_cast<Eigen::Index>(texels.size()));
+    for (std::size_t k = 0; k < texels.size(); ++k) {
+      const float magnitude = texels[k] == 5 || texels[k] == 700 ? 0.01f : 0.001f;
+      values(0, static_cast<Eigen::Index>(k)) = texels[k] % 32 < 16 ? magnitude : -magnitude;
+    }
+    return values;
+  };
+  std::vector<std::uint8_t> ids(32 * 32, 0);
+  for (std::size_t texel = 0; texel < ids.size(); ++texel) ids[texel] = texel % 32 >= 16;
+  const ErrorSpread spread = error_spread(source, errors, std::span<const std::uint8_t>(ids));
+  EXPECT_NEAR(spread.mean, std::sqrt((1022 * 1e-6 + 2 * 1e-4) / 1024) / 0.1, 1e-5);
+  EXPECT_NEAR(spread.texel, 0.1, 1e-5);
+  EXPECT_NEAR(spread.border, 0.02, 1e-5) << "all 32 jumps are 0.002";
+  const ErrorSpread without = error_spread(source, errors, std::span<const std::uint8_t>());
+  EXPECT_EQ(without.border, 0);
+  EXPECT_EQ(without.texel, spread.texel);
+  const std::vector<std::uint32_t> some = {1, 2, 40};
+  EXPECT_NEAR(error_spread(source, errors, std::span<const std::uint32_t>(some)).texel, 0.01, 1e-5);
+}
+
+TEST(ErrorSpread, JumpsUpwardsCountToo) {
+  // Clusters by rows, over more rows than a strip has: the step of every fourth row is one up.
+  const PrtAsset asset =
+      make_asset(8, 64, 1, 1, [](int, int) { return Eigen::VectorXd(Eigen::VectorXd::Constant(1, 0.1)); });
+  const TransferSource source(asset, std::vector<std::uint8_t>(8 * 64, 1));
+  std::vector<std::uint8_t> ids(8 * 64);
+  for (std::size_t texel = 0; texel < ids.size(); ++texel) ids[texel] = texel / 8 >= 16;
+  const TexelErrors errors = [&](std::span<const std::uint32_t> texels) {
+    Eigen::MatrixXf values(1, static_cast<Eigen::Index>(texels.size()));
+    for (std::size_t k = 0; k < texels.size(); ++k)
+      values(0, static_cast<Eigen::Index>(k)) = ids[texels[k]] != 0 ? 0.003f : 0.001f;
+    return values;
+  };
+  EXPECT_NEAR(error_spread(source, errors, std::span<const std::uint8_t>(ids)).border, 0.02, 1e-5);
+}
+
 // ---- stored weights ----
 
 TEST(StoredPca, RoundingCostsWhatItShould) {
@@ -226,8 +272,8 @@ TEST(StoredPca, RoundingCostsWhatItShould) {
   for (const double step : {2e-4, 4e-4}) {
     const TexelModel model = texel_model(source, all.model(4), gutter_owners(source, 4));
     const TexelModel rounded{rounded_model(model.model, source, all, step), model.ids, {}};
-    const double per_texel =
-        stored_residual(source, rounded, source.covered(), step) / static_cast<double>(source.covered().size());
+    const double error = error_spread(source, stored_errors(source, rounded, step), std::span(source.covered())).mean;
+    const double per_texel = error * error * source.squared_norm() / static_cast<double>(source.covered().size());
     EXPECT_NEAR(per_texel / (4 * step * step / 12), 1, 0.06) << step;
   }
 }
@@ -271,7 +317,7 @@ TEST(Compress, KeepsItsErrorAndSaysItsBytes) {
     const CompressResult result = compress(asset, settings);
     Json metrics;
     const PrtAsset read = written(scratch.folder(), asset, result, &metrics);
-    const double error = relighting_error(read, TransferSource(asset));
+    const double error = spread_of_decoded(read, TransferSource(asset)).mean;
     EXPECT_LE(error, result.target_error) << c.error;
     // The search rounds in float32 as the reader does, in another order.
     EXPECT_NEAR(error, result.chosen.error, 1e-3 * error + 1e-6);
@@ -312,7 +358,7 @@ TEST(Compress, ShowsWhatMoreErrorWouldSave) {
   settings.clusters = 1;
   settings.max_error = "0.003";
   const CompressResult result = compress(asset, settings);
-  EXPECT_NEAR(result.plain.error, relighting_error(with_eight_bits(asset), TransferSource(asset)),
+  EXPECT_NEAR(result.plain.error, spread_of_decoded(with_eight_bits(asset), TransferSource(asset)).mean,
               1e-6 * result.plain.error);
   const PrincipalComponents all = principal_components(TransferSource(asset));
   int beyond = 0;
@@ -439,7 +485,7 @@ TEST(PcaAsset, GpuAndCpuAgree) {
     render.height = 120;
     render.supersample = 1;
     render.camera = "10,60";
-    SceneView view = views_of(render, bounding_box(read.mesh)).front();
+    SceneView view = views_of(render, read.mesh.positions).front();
     view.look.albedo = albedo;
     const Image<float> gpu = test::drawn(read, light, view);
     const Image<float> cpu = relight_texels(read, light, albedo);

@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -589,6 +590,24 @@ TEST_F(MeshFile, TrianglesOnALineAreNoMesh) {
   // Far apart in one direction and all but nothing in the others.
   EXPECT_THROW(load_mesh(write("line.obj", "v 0 0 0\nv 1 0 0\nv 2 1e-20 0\nv 3 0 1e-20\nf 1 2 3\nf 2 3 4\n")),
                BadInput);
+}
+
+TEST(ImportSettings, UpComesUpAndTheFrontToTheCamera) {
+  // docs/import.md, "Up and front": up, the side that becomes +Z.
+  struct Case {
+    UpAxis up;
+    Eigen::Vector3d axis, front;
+  };
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
+  for (const auto& [up, axis, front] :
+       {Case{UpAxis::plus_y, y, z}, Case{UpAxis::minus_y, -y, -z}, Case{UpAxis::plus_z, z, -y},
+        Case{UpAxis::minus_z, -z, y}, Case{UpAxis::plus_x, x, z}, Case{UpAxis::minus_x, -x, z}}) {
+    ImportSettings settings;
+    settings.up = up;
+    EXPECT_EQ(settings.turned(axis), y);
+    EXPECT_EQ(settings.turned(front), z);
+    EXPECT_EQ(settings.turned(axis.cross(front)), x) << "no mirror";
+  }
 }
 
 }  // namespace

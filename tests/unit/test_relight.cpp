@@ -69,9 +69,11 @@ TEST(LightSpec, SumsAndWindowsLights) {
   const std::vector<LightSpec> specs = {parse_light_spec("0,90,2,0,0"), parse_light_spec("ambient:0,3,0")};
   const LightCoefficients plain = light_coefficients(specs, 3, LightWindow::none);
   const LightCoefficients hann = light_coefficients(specs, 3, LightWindow::hann);
-  // Red: pi * 2 * Y_1^-1(+Y); green: 3 * sqrt(4 pi) in band 0 alone, which no window changes.
-  EXPECT_NEAR(plain.channels[0][1], 2 * M_PI * 0.488603, 1e-5);
-  EXPECT_NEAR(hann.channels[0][1], 2 * M_PI * 0.488603 * 0.75, 1e-5);  // (1 + cos(pi / 3)) / 2
+  // Red: pi * 2 * Y_1^-1(+Y) over what a surface that faces it would have, the sum of w_l A_l (2l + 1) / 4 pi, which is
+  // 1/4 + w_1 / 2 + 5 w_2 / 16; hann's w_1 is (1 + cos(pi / 3)) / 2 and its w_2 (1 + cos(2 pi / 3)) / 2.
+  EXPECT_NEAR(plain.channels[0][1], 2 * M_PI * 0.488603 / (0.25 + 0.5 + 0.3125), 1e-5);
+  EXPECT_NEAR(hann.channels[0][1], 2 * M_PI * 0.488603 * 0.75 / (0.25 + 0.375 + 0.078125), 1e-5);
+  // Green: 3 * sqrt(4 pi) in band 0 alone, which no window changes.
   EXPECT_NEAR(plain.channels[1][0], 3 * std::sqrt(4 * M_PI), 1e-5);
   EXPECT_EQ(hann.channels[1][0], plain.channels[1][0]);
   EXPECT_EQ(plain.channels[2], std::vector<float>(9, 0.f));
@@ -83,14 +85,13 @@ TEST(Environment, OfOneRadianceIsAmbientLight) {
   write_exr(file, Image<float>(64, 32, 3, 0.75f));
   const LightCoefficients light = load_environment(file, 5, 33);
   const LightCoefficients expected = constant_light(5, std::array<float, 3>{0.75f, 0.75f, 0.75f});
-  // Each row's pixels are weighted by their exact solid angle, but higher bands are sampled at 64 x 32 pixels.
   for (int c = 0; c < 3; ++c)
-    for (int i = 0; i < 25; ++i) EXPECT_NEAR(light.channels[c][i], expected.channels[c][i], i == 0 ? 1e-5 : 3e-3) << i;
+    for (int i = 0; i < 25; ++i) EXPECT_NEAR(light.channels[c][i], expected.channels[c][i], 1e-6) << i;
 }
 
 TEST(Environment, TurnsByAzimuth) {
   const Scratch scratch;
-  // A spot at +X (azimuth 90): u = 1/2, v = 1/2. Turned by 60 degrees it is at azimuth 150. Large enough to be reduced.
+  // A spot at +X (azimuth 90): u = 1/2, v = 1/2. Turned by 60 degrees it is at azimuth 150.
   Image<float> picture(2048, 1024, 3, 0.f);
   for (int j = 508; j < 516; ++j)
     for (int i = 1020; i < 1028; ++i) picture.at(i, j, 1) = 1000;
@@ -109,13 +110,38 @@ TEST(Environment, TurnsByAzimuth) {
   }
 }
 
+TEST(Environment, TurnsPicturesOfFewPixels) {
+  // Two halves of the sky, z < 0 and z > 0; by a quarter turn the bright one, around +Z, comes around +X.
+  const Scratch scratch;
+  const fs::path file = scratch.folder() / "halves.exr";
+  Image<float> picture(2, 1, 3, 0.f);
+  for (int c = 0; c < 3; ++c) picture.at(1, 0, c) = 2;
+  write_exr(file, picture);
+  const LightCoefficients light = load_environment(file, 6, 90);
+  const LightCoefficients expected = cone_light(6, Eigen::Vector3f::UnitX(), M_PI / 2, std::array<float, 3>{2, 2, 2});
+  for (int i = 0; i < 36; ++i) EXPECT_NEAR(light.channels[1][i], expected.channels[1][i], 2e-6) << i;
+}
+
 TEST(Environment, RefusesWhatIsNoRadiance) {
   const Scratch scratch;
   const fs::path file = scratch.folder() / "bad.exr";
-  Image<float> picture(8, 4, 3, 1.f);
-  picture.at(3, 2, 1) = std::numeric_limits<float>::quiet_NaN();
-  write_exr(file, picture);
-  EXPECT_THROW(load_environment(file, 3, 0), BadInput);
+  const auto refusal = [&](float value) -> std::string {
+    Image<float> picture(8, 4, 3, 1.f);
+    picture.at(3, 2, 1) = value;  // the second row from the top
+    write_exr(file, picture);
+    try {
+      load_environment(file, 3, 0);
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  EXPECT_NE(refusal(std::numeric_limits<float>::quiet_NaN()).find("nan in channel G of pixel (3, 1)"),
+            std::string::npos);
+  EXPECT_NE(refusal(std::numeric_limits<float>::infinity()).find("inf in channel G of pixel (3, 1)"),
+            std::string::npos);
+  EXPECT_NE(refusal(-0.25f).find("has -0.25 in channel G of pixel (3, 1)"), std::string::npos) << refusal(-0.25f);
+  EXPECT_EQ(refusal(0), "none");
   EXPECT_THROW(load_environment(scratch.folder() / "none.hdr", 3, 0), BadInput);
 }
 
@@ -300,10 +326,12 @@ TEST(Relight, DirectionalLightIsTheTruncatedCosine) {
         continue;
       }
       const Eigen::Vector3f normal = from - (half_b + std::sqrt(determinant)) * ray;
-      // Ramamoorthi and Hanrahan 2001: sum of A_l (2l+1)/(4 pi) P_l with A = pi, 2 pi/3, pi/4, 0, -pi/24.
+      // Ramamoorthi and Hanrahan 2001: sum of A_l (2l+1)/(4 pi) P_l with A = pi, 2 pi/3, pi/4, 0, -pi/24; over what
+      // faces the light, which then has radiance 1.
+      constexpr double facing = 0.25 + 0.5 + 5.0 / 16 - 3.0 / 32;
       const double x = normal.dot(towards);
       const double legendre2 = (3 * x * x - 1) / 2, legendre4 = (35 * x * x * x * x - 30 * x * x + 3) / 8;
-      const double expected = 0.8 * (0.25 + 0.5 * x + 5.0 / 16 * legendre2 - 3.0 / 32 * legendre4);
+      const double expected = 0.8 * (0.25 + 0.5 * x + 5.0 / 16 * legendre2 - 3.0 / 32 * legendre4) / facing;
       ASSERT_EQ(picture.at(i, j, 3), 1);
       // A facet spans 0.04 radians, so that its middle lies 2e-4 too deep, which at a slant of 1:4 shifts the point by
       // 1e-3; the slope of the cosine is about 1. At the charts' borders (the cube's edges) half of a lookup is gutter,
@@ -462,22 +490,22 @@ TEST(Picture, ExrKeepsTheRadiance) {
 TEST(RenderSettings, DefaultsAreTheCameras) {
   const TriangleMesh mesh = shapes::cube_sphere(2);
   const RenderSettings settings;
-  const SceneView view = views_of(settings, bounding_box(mesh)).front();
-  const Camera expected = make_camera(bounding_box(mesh), CameraSettings{}, view.width, view.height);
+  const SceneView view = views_of(settings, mesh.positions).front();
+  const Camera expected = make_camera(mesh.positions, CameraSettings{}, view.width, view.height);
   EXPECT_EQ(view.camera.position, expected.position);
   EXPECT_EQ(view.camera.half_height, expected.half_height);
 }
 
 TEST(RenderSettings, RefusesWhatIsNoView) {
-  const BoundingBox box = bounding_box(shapes::plane(1));
+  const std::vector<Eigen::Vector3f> shape = shapes::plane(1).positions;
   for (const char* camera : {"", "20", "20,91", "20,12,3", "a,b"}) {
     RenderSettings settings;
     settings.camera = camera;
-    EXPECT_THROW(views_of(settings, box), WrongUsage) << camera;
+    EXPECT_THROW(views_of(settings, shape), WrongUsage) << camera;
   }
   RenderSettings settings;
   settings.albedo = "1.5";
-  EXPECT_THROW(views_of(settings, box), WrongUsage);
+  EXPECT_THROW(views_of(settings, shape), WrongUsage);
   settings.background = "0.1,0.2";
   EXPECT_THROW(picture_of(settings), WrongUsage);
   LightSettings lights;
@@ -486,6 +514,31 @@ TEST(RenderSettings, RefusesWhatIsNoView) {
   EXPECT_EQ(light_specs(lights).size(), 1u);
   lights.ambient = "much";
   EXPECT_THROW(light_specs(lights), WrongUsage);
+}
+
+TEST(RenderSettings, TurntableKeepsTargetAndDistanceAndShowsAll) {
+  std::vector<Eigen::Vector3f> corners;
+  for (int k = 0; k < 8; ++k)
+    corners.emplace_back((k & 1) != 0 ? 4.f : 0.f, (k & 2) != 0 ? 1.f : 0.f, (k & 4) != 0 ? 2.f : 0.f);
+  RenderSettings settings;
+  settings.frames = 12;
+  double most = 0;
+  std::vector<SceneView> views = views_of(settings, corners);
+  ASSERT_EQ(views.size(), 12u);
+  const double distance = (views[0].camera.position.cast<double>() - views[0].camera.target).norm();
+  for (const SceneView& view : views) {
+    EXPECT_LT((view.camera.target - Eigen::Vector3d(2, 0.5, 1)).norm(), 1e-6);
+    EXPECT_NEAR((view.camera.position.cast<double>() - view.camera.target).norm(), distance, 1e-5);
+    for (const Eigen::Vector3f& vertex : corners) {
+      const Eigen::Vector4f clip = view.camera.clip_from_object() * vertex.homogeneous();
+      most = std::max<double>({most, std::abs(clip.x() / clip.w()), std::abs(clip.y() / clip.w())});
+    }
+  }
+  EXPECT_NEAR(most, 1 / 1.05, 1e-3) << "the frame that needs the most just fits";
+  settings.framing.distance = "20";
+  settings.framing.target = "1,0,0";
+  for (const SceneView& view : views_of(settings, corners))
+    EXPECT_NEAR((view.camera.position - Eigen::Vector3f(1, 0, 0)).norm(), 20, 1e-4);
 }
 
 }  // namespace

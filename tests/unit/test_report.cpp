@@ -125,7 +125,7 @@ TEST(Reference, SphereInAFurnaceHasItsAlbedo) {
   const TriangleMesh mesh = sphere(64);
   ReferenceView view;
   view.width = view.height = 24;
-  view.camera = make_camera(bounding_box(mesh), {}, view.width, view.height);
+  view.camera = make_camera(mesh.positions, {}, view.width, view.height);
   view.albedo = 0.6f;
   view.bands = 3;
   const LightSpec lights[] = {{.kind = LightSpec::Kind::ambient}};
@@ -148,7 +148,7 @@ TEST(Reference, LightNearTheMeshIsThatOfEveryPoint) {
   ReferenceView view;
   view.width = view.height = 24;
   view.supersample = 1;
-  view.camera = make_camera(bounding_box(mesh), {}, view.width, view.height);
+  view.camera = make_camera(mesh.positions, {}, view.width, view.height);
   view.albedo = 1;
   const LightSpec ball = parse_light_spec("sphere:0.5,1,2,0.1");
   const auto directions = sample_directions(Sampling::fibonacci, 2048, 1);
@@ -162,8 +162,7 @@ TEST(Reference, LightNearTheMeshIsThatOfEveryPoint) {
       const Eigen::Vector3f direction = view.camera.pixel_direction(i, j, view.width, view.height);
       const Eigen::Vector3f point =
           view.camera.position + scene.first_hit(view.camera.position, direction, 0, 100).distance * direction;
-      LightCoefficients light = light_coefficients(ball, 5, point.cast<double>());
-      apply_window(light, LightWindow::hann);
+      const LightCoefficients light = windowed_light(ball, 5, LightWindow::hann, point.cast<double>());
       const double expected = dot_product(unoccluded_transfer(basis, point.normalized()), light.channels[0]);
       largest = std::max(largest, std::abs(picture.at(i, j, 0) - expected));
       nearest = std::max(nearest, expected);
@@ -181,7 +180,7 @@ TEST(Reference, SurfacesHaveTheirOwnAlbedo) {
   for (const Eigen::Vector3f& p : mesh.positions) colors.push_back(color_at(p));
   ReferenceView view;
   view.width = view.height = 24;
-  view.camera = make_camera(bounding_box(mesh), {}, view.width, view.height);
+  view.camera = make_camera(mesh.positions, {}, view.width, view.height);
   view.supersample = 1;
   view.albedo = 0.5f;
   view.surface_albedo = SurfaceAlbedo::of_vertices(colors, mesh.triangles);

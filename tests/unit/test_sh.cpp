@@ -265,9 +265,7 @@ TEST(Lights, LatitudeLongitudeOfOneIsTheConstantLight) {
   const std::vector<float> pixels(64 * 32, 1.f);
   const float one[] = {1};
   const LightCoefficients projected = latitude_longitude_light(5, 64, 32, 1, pixels), constant = constant_light(5, one);
-  // The solid angles are exact, so band 0 is; what is left elsewhere is the midpoint rule in elevation over 32 rows.
-  EXPECT_NEAR(projected.channels[0][0], constant.channels[0][0], 1e-5);
-  for (int i = 1; i < 25; ++i) EXPECT_NEAR(projected.channels[0][i], 0, 6e-3);
+  for (int i = 0; i < 25; ++i) EXPECT_NEAR(projected.channels[0][i], constant.channels[0][i], 1e-6);
 }
 
 TEST(Lights, LatitudeLongitudePixelPointsWhereThreeJsHasIt) {
@@ -279,14 +277,15 @@ TEST(Lights, LatitudeLongitudePixelPointsWhereThreeJsHasIt) {
   const double azimuth = 2 * std::numbers::pi * (48.5 / 64 - 0.5), elevation = std::numbers::pi * (20.5 / 32 - 0.5);
   const Eigen::Vector3d expected(std::cos(elevation) * std::cos(azimuth), std::sin(elevation),
                                  std::cos(elevation) * std::sin(azimuth));
-  EXPECT_LT((seen - expected).norm(), 1e-5);
+  // The mean over the pixel lies off its centre by its height squared times the tangent of the elevation over 12.
+  EXPECT_LT((seen - expected).norm(), 4e-4);
 }
 
 TEST(Lights, HannWindowLeavesTheMeanAndTamesTheRest) {
   const float one[] = {1};
   LightCoefficients light = directional_light(4, Eigen::Vector3f(0, 0, 1), one);
   const LightCoefficients before = light;
-  apply_window(light, LightWindow::hann);
+  apply_window(light, hann_window(4));
   EXPECT_EQ(light.channels[0][0], before.channels[0][0]);
   EXPECT_NEAR(light.channels[0][coefficient_index(2, 0)], 0.5 * before.channels[0][coefficient_index(2, 0)], 1e-6);
 }

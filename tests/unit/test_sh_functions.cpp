@@ -1,3 +1,4 @@
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -232,6 +233,38 @@ TEST(ShLights, IrradianceIsTheClampedCosineIntegral) {
                 dot_product(light.channels[0], unoccluded_transfer(ShBasis(24), normal)), 1e-5);
   const LightCoefficients doubled = scale_light(add_lights(light, light), 0.5);
   EXPECT_EQ(doubled.channels, light.channels);
+}
+
+/// How far sums over directions are from telling the basis' functions apart: the largest eigenvalue of
+/// G - 1, G the Gram matrix.
+double gram_error(Sampling sampling, int count, int bands) {
+  const ShBasis basis(bands);
+  Eigen::MatrixXd values(basis.size(), count);
+  std::vector<double> column(basis.size());
+  const std::vector<Eigen::Vector3f> directions = sample_directions(sampling, count, 1);
+  for (int k = 0; k < count; ++k) {
+    basis.evaluate<double>(directions[k].cast<double>().normalized(), column);
+    values.col(k) = Eigen::Map<const Eigen::VectorXd>(column.data(), basis.size());
+  }
+  const Eigen::MatrixXd error = values * values.transpose() * (4 * std::numbers::pi / count) -
+                                Eigen::MatrixXd::Identity(basis.size(), basis.size());
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(error, Eigen::EigenvaluesOnly)
+      .eigenvalues()
+      .cwiseAbs()
+      .maxCoeff();
+}
+
+TEST(Directions, AsManyAsBandsNeedKeepTheirFunctionsApart) {
+  for (const Sampling sampling : {Sampling::fibonacci, Sampling::progressive, Sampling::stratified})
+    for (const int bands : {2, 4, 5, 8, 10}) {
+      const auto count = static_cast<int>(directions_for_bands(sampling, bands));
+      // A tenth, and a third more for the luck of one seed.
+      EXPECT_LT(gram_error(sampling, count, bands), 0.13) << static_cast<int>(sampling) << ", " << bands;
+      // A quarter of them do not; of progressive ones some powers of two do, which are whole lattices.
+      if (sampling != Sampling::progressive) {
+        EXPECT_GT(gram_error(sampling, count / 4, bands), 0.13) << static_cast<int>(sampling) << ", " << bands;
+      }
+    }
 }
 
 TEST(ShWindows, DeringingLeavesNothingNegativeAndNoMoreThanNeeded) {

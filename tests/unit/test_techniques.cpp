@@ -171,7 +171,7 @@ TEST(Technique, DeferredIsForwardOfSeveralAssets) {
   RenderSettings settings;
   settings.width = 160;
   settings.height = 120;
-  SceneView view = views_of(settings, scene_box(assets)).front();
+  SceneView view = views_of(settings, scene_shape(assets)).front();
   const Image<float> forward = render_scene(assets, lights, view);
   view.shading = Shading::deferred;
   const Image<float> deferred = render_scene(assets, lights, view);

@@ -7,11 +7,11 @@
 #include <set>
 #include <thread>
 
-#include "base/stopwatch.h"
 #include "base/errors.h"
 #include "base/outputs.h"
 #include "base/process.h"
 #include "base/progress.h"
+#include "base/stopwatch.h"
 #include "kiln/file_checks.h"
 #include "kiln/index_page.h"
 #include "kiln/make_process.h"

@@ -1,5 +1,6 @@
 #include "kiln/commands.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -18,10 +18,12 @@ int main(int argc, char** argv) {
     command.output(file, "The picture: .png, or .exr for linear float radiance as it is");
     command.input_option("compressed", paths.compressed,
                          "The only asset as kiln-compress made it, for --technique compressed and all");
-    command.list_option(
-        "place", paths.places, "Picture",
-        "Where an asset stands, once for each in their order: X,Y,Z[,AZIMUTH[,SCALE]], object units and "
-        "degrees about +Y (default the origin)");
+    command.list_option("place", paths.places, "Picture",
+                        "Where an asset stands, once for each in their order: X,Y,Z[,AZIMUTH[,SCALE]], object units "
+                        "and degrees about +Y "
+                        "(default: the first where it is, the others side by side to its right as the camera sees "
+                        "them, on its ground line, a "
+                        "tenth of their width apart)");
     add_light_options(command, lights, paths.light_file);
     command.input_option("probes", paths.probes,
                          "Folder of kiln-probes: the light around the first asset, which stands at the origin, for the "
@@ -35,6 +37,7 @@ int main(int argc, char** argv) {
 
     // Load.
     const RenderScene scene = load_render_scene(paths, lights, settings);
+    if (!scene.note.empty()) command.say(scene.note);
     OutputSet outputs(folder_of(file));
 
     // Run, and save picture after picture.

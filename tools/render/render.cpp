@@ -1,11 +1,15 @@
 #include "render/render.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <memory>
+#include <numbers>
 
 #include "base/errors.h"
 #include "image/image_file.h"
+#include "mesh/camera_record.h"
 #include "relight/draw/scene_renderer.h"
 #include "relight/light/light_command.h"
 #include "relight/output/contact_sheet.h"
@@ -80,7 +84,7 @@ Json write_sheet(OutputSet& outputs, const std::string& name, const RenderScene&
   for (const Cell& cell : cells_of(scene, settings)) {
     Uploaded uploaded;
     uploaded.add(*cell.asset, cell.placement, cell.technique, samples);
-    const SceneView view = views_of(settings, scene_box(uploaded.assets)).front();
+    const SceneView view = views_of(settings, scene_shape(uploaded.assets)).front();
     const Image<float> radiance = render_scene(uploaded.assets, scene.lights, view);
     const GpuMemory memory = uploaded.renderers.front()->memory(cell.technique);
     pictures.push_back({picture_from_radiance(radiance, picture),
@@ -89,6 +93,7 @@ Json write_sheet(OutputSet& outputs, const std::string& name, const RenderScene&
     metrics = render_metrics(uploaded.assets, scene.specs, radiance, context);
     drawn.push_back(metrics["assets"][0]);
     drawn.back()["mean_radiance"] = metrics["mean_radiance"];
+    drawn.back()["camera"] = to_json(view.camera);
   }
   write_png(outputs.add(name), contact_sheet(pictures));
   metrics["assets"] = drawn;
@@ -99,6 +104,46 @@ Json write_sheet(OutputSet& outputs, const std::string& name, const RenderScene&
 std::string name_of(const fs::path& folder) {
   const fs::path whole = fs::absolute(folder / "x").lexically_normal().parent_path();
   return whole.filename() == "prt" ? (whole.parent_path().filename() / "prt").string() : whole.filename().string();
+}
+
+std::string text_of(const Eigen::Vector3d& place) {
+  return fmt::format("{:.4g},{:.4g},{:.4g}", place.x(), place.y(), place.z());
+}
+
+/// The box of a placed asset along three axes, the rows of `axes`.
+Eigen::AlignedBox3d box_along(const PrtAsset& asset, const Placement& placement, const Eigen::Matrix3d& axes) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3f& vertex : asset.mesh.positions)
+    box.extend(Eigen::Vector3d(axes * placement.to_scene(vertex.cast<double>())));
+  return box;
+}
+
+/// Stands assets that have no place side by side as the camera sees them: the first where it is, each other to the
+/// right of all before it with a tenth of its width between, on the ground line of the first and as far away.
+void place_the_rest(RenderScene& scene, double camera_azimuth_degrees) {
+  const double azimuth = camera_azimuth_degrees * std::numbers::pi / 180;
+  Eigen::Matrix3d axes;  // to the right, up, towards the camera
+  axes << std::cos(azimuth), 0, -std::sin(azimuth), 0, 1, 0, std::sin(azimuth), 0, std::cos(azimuth);
+  const std::size_t given = scene.placements.size();
+  std::string told;
+  Eigen::AlignedBox3d first, all;
+  for (std::size_t k = 0; k < scene.assets.size(); ++k) {
+    if (k >= given) {
+      Placement& placement = scene.placements.emplace_back();
+      const Eigen::AlignedBox3d own = box_along(scene.assets[k], placement, axes);
+      if (k > 0) {
+        const Eigen::Vector3d move(all.max().x() + 0.1 * own.sizes().x() - own.min().x(),
+                                   first.min().y() - own.min().y(), first.center().z() - own.center().z());
+        placement.translation = axes.transpose() * move;
+      }
+      told += (told.empty() ? "" : "; ") + scene.names[k] + " at " + text_of(placement.translation);
+    }
+    const Eigen::AlignedBox3d placed = box_along(scene.assets[k], scene.placements[k], axes);
+    if (k == 0) first = placed;
+    all.extend(placed);
+  }
+  if (scene.assets.size() > 1 && !told.empty())
+    scene.note = "assets without --place stand side by side on one ground line: " + told;
 }
 
 }  // namespace
@@ -122,14 +167,17 @@ RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& lig
 
   RenderScene scene;
   scene.specs = light_specs(given);
-  for (std::size_t k = 0; k < paths.assets.size(); ++k)
-    scene.placements.push_back(k < paths.places.size() ? parse_placement("place", paths.places[k]) : Placement{});
+  for (const std::string& place : paths.places) scene.placements.push_back(parse_placement("place", place));
   int bands = 0;
   for (const fs::path& folder : paths.assets) {
     scene.assets.push_back(load_prt_asset(folder));
     scene.names.push_back(name_of(folder));
     bands = std::max(bands, scene.assets.back().bands);
   }
+  if (is_sheet(settings))
+    scene.placements.resize(scene.assets.size());
+  else
+    place_the_rest(scene, camera_settings_of(settings).azimuth_degrees);
   if (!paths.compressed.empty()) scene.compressed = load_other_form(paths.compressed, scene.assets.front());
   if (!paths.probes.empty()) scene.probes = load_probes(paths.probes);
   scene.lights = scene_lights(given, std::max(bands, scene.probes ? scene.probes->bands : 0));
@@ -148,13 +196,16 @@ Json render_to_files(OutputSet& outputs, const std::string& name, const RenderSc
     uploaded.add(asset, scene.placements[k], technique_of(settings, asset), samples, probed ? &*scene.probes : nullptr);
   }
   const PictureSettings picture = picture_of(settings);
-  const std::vector<SceneView> views = views_of(settings, scene_box(uploaded.assets));
+  const std::vector<SceneView> views = views_of(settings, scene_shape(uploaded.assets));
   Json metrics;
   for (std::size_t frame = 0; frame < views.size(); ++frame) {
     const Image<float> radiance = render_scene(uploaded.assets, scene.lights, views[frame]);
     const std::string file = views.size() > 1 ? frame_name(name, static_cast<int>(frame)) : name;
     write_picture(outputs.add(file), radiance, picture);
-    if (frame == 0) metrics = render_metrics(uploaded.assets, scene.specs, radiance, context);
+    if (frame == 0) {
+      metrics = render_metrics(uploaded.assets, scene.specs, radiance, context);
+      metrics["camera"] = to_json(views[frame].camera);
+    }
     progress(static_cast<double>(frame + 1) / static_cast<double>(views.size()));
   }
   metrics["frames"] = views.size();

@@ -21,7 +21,7 @@ namespace kiln {
 struct RenderPaths {
   std::vector<std::filesystem::path> assets;
   std::filesystem::path compressed;  ///< of the only asset; empty: none
-  std::vector<std::string> places;   ///< of the assets, in their order; those without one stand at the origin
+  std::vector<std::string> places;   ///< of the assets, in their order; those without one stand side by side
   std::filesystem::path light_file;  ///< empty: none
   std::filesystem::path probes;      ///< of the first asset; empty: none
 };
@@ -30,6 +30,7 @@ struct RenderScene {
   std::vector<PrtAsset> assets;
   std::vector<std::string> names;  ///< of their folders
   std::vector<Placement> placements;
+  std::string note;                    ///< where assets without a place were stood; empty: all have one
   std::optional<PrtAsset> compressed;  ///< another form of the only asset
   std::optional<ProbeSet> probes;      ///< of the first asset, for the others, or for the only one
   std::vector<LightSpec> specs;

@@ -58,7 +58,7 @@ ViewState first_state(const ViewScene& scene, const LightSettings& lights, const
   ViewState state;
   state.technique = technique_of(look, main);
   require_technique(state.technique, scene.forms.of(state.technique));
-  views_of(look, scene.lights.box);  // refuses what is no look
+  views_of(look, main.mesh.positions);  // refuses what is no look
   picture_of(look);
   state.orbit = home_orbit(camera_settings_of(look));
   state.shading = look.shading;
@@ -78,7 +78,7 @@ Viewer::Viewer(const ViewerSetup& setup, ViewScene scene, int software_threads)
   window_.listen({[this](char key) { press_key(key); },
                   [this](Drag what, double right, double down) {
                     const Extent size = window_.framebuffer();
-                    drag(state_, what, right, down, asset_->box(), std::max(1, size.width), std::max(1, size.height));
+                    drag(state_, what, right, down, asset_->shape(), std::max(1, size.width), std::max(1, size.height));
                     has_to_draw_ = true;
                   },
                   [this](double steps) {
@@ -120,7 +120,7 @@ void Viewer::do_step(const ScriptStep& step) {
       break;
     case Kind::drag: {
       const Extent size = window_.framebuffer();
-      drag(state_, step.what, step.x, step.y, asset_->box(), size.width, size.height);
+      drag(state_, step.what, step.x, step.y, asset_->shape(), size.width, size.height);
       break;
     }
     case Kind::wheel:
@@ -230,7 +230,7 @@ void Viewer::wait_for_reload() {
   }
 }
 
-Camera Viewer::camera(int width, int height) const { return camera_of(state_.orbit, asset_->box(), width, height); }
+Camera Viewer::camera(int width, int height) const { return camera_of(state_.orbit, asset_->shape(), width, height); }
 
 void Viewer::draw() {
   const Extent size = window_.framebuffer();

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace kiln {
@@ -28,7 +29,43 @@ Eigen::Matrix4f Camera::clip_from_object() const {
   return projection * view;
 }
 
-Camera make_camera(const BoundingBox& box, const CameraSettings& settings, int width, int height) {
+namespace {
+
+/// A shape along an axis of the picture and along the view, about the middle of its box: the places of the two planes
+/// through its outermost vertices that are inclined as the picture's sides.
+struct Wedge {
+  double slope;  ///< of the sides, across over along
+  double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+
+  /// A side leans on the vertex whose distance across, less what the slope gives it, is the most.
+  void add(double across, double along) {
+    lowest = std::min(lowest, across + slope * along);
+    highest = std::max(highest, across - slope * along);
+  }
+  /// The farthest forwards that an eye in the middle may stand, and how far across that is.
+  double eye_along() const { return (lowest - highest) / (2 * slope); }
+  double eye_across() const { return 0.5 * (lowest + highest); }
+  /// The same of an eye that stands at `across`.
+  double eye_along(double across) const { return std::min(lowest - across, across - highest) / slope; }
+};
+
+/// The depths of a shape from a camera, those behind it left out.
+void set_depths(Camera& camera, std::span<const Eigen::Vector3f> shape) {
+  double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
+  for (const Eigen::Vector3f& vertex : shape) {
+    const double depth = (vertex - camera.position).cast<double>().dot(camera.forward.cast<double>());
+    if (depth > 0) nearest = std::min(nearest, depth);
+    farthest = std::max(farthest, depth);
+  }
+  if (farthest <= 0) farthest = 1;  // all of it is behind
+  // Depth is stored in floats: a thousandth of the farthest is as near as can be told apart.
+  camera.near_distance = static_cast<float>(std::max(0.99 * std::min(nearest, farthest), 1e-3 * farthest));
+  camera.far_distance = static_cast<float>(1.01 * farthest);
+}
+
+}  // namespace
+
+Camera make_camera(std::span<const Eigen::Vector3f> shape, const CameraSettings& settings, int width, int height) {
   const double degree = std::numbers::pi / 180;
   const double azimuth = settings.azimuth_degrees * degree;
   // Straight above or below, "up" would be undefined.
@@ -37,27 +74,38 @@ Camera make_camera(const BoundingBox& box, const CameraSettings& settings, int w
                                  std::cos(elevation) * std::cos(azimuth));
   const double half_height = std::tan(settings.field_of_view_degrees * degree / 2);
   const double half_width = half_height * width / height;
-  const double radius = std::max(0.5 * static_cast<double>(box.diagonal()), 1e-30);
 
   Camera camera;
   camera.forward = (-outwards).cast<float>();
   camera.right = camera.forward.cross(Eigen::Vector3f::UnitY()).normalized();
   camera.up = camera.right.cross(camera.forward);
-  // The nearest place from which every corner of the box is in the picture, but not inside its bounding sphere.
-  double distance = std::max(1.05 * radius, settings.least_distance);
-  for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3f sign((corner & 1) != 0 ? 1.f : -1.f, (corner & 2) != 0 ? 1.f : -1.f,
-                               (corner & 4) != 0 ? 1.f : -1.f);
-    const Eigen::Vector3f from_centre = 0.5f * sign.cwiseProduct(box.highest - box.lowest);
-    const double nearer = -from_centre.dot(camera.forward);
-    distance = std::max({distance, nearer + settings.margin * std::abs(from_centre.dot(camera.right)) / half_width,
-                         nearer + settings.margin * std::abs(from_centre.dot(camera.up)) / half_height});
+  const Eigen::Vector3d forward = camera.forward.cast<double>(), right = camera.right.cast<double>(),
+                        up = camera.up.cast<double>();
+
+  // Fit the silhouette.
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3f& vertex : shape) box.extend(vertex.cast<double>());
+  const Eigen::Vector3d middle = settings.target.value_or(box.center());
+  Wedge across{half_width / settings.margin}, upwards{half_height / settings.margin};
+  for (const Eigen::Vector3f& vertex : shape) {
+    const Eigen::Vector3d place = vertex.cast<double>() - middle;
+    across.add(place.dot(right), place.dot(forward));
+    upwards.add(place.dot(up), place.dot(forward));
   }
-  camera.position = (box.centre().cast<double>() + distance * outwards).cast<float>();
-  camera.half_height = static_cast<float>(half_height);
-  camera.half_width = static_cast<float>(half_width);
-  camera.near_distance = static_cast<float>(std::max(distance - 1.01 * radius, 0.01 * radius));
-  camera.far_distance = static_cast<float>(distance + 1.01 * radius);
+  const double least = 1e-6 * std::max(box.diagonal().norm(), 1e-24);  // of a single point
+  Eigen::Vector3d eye;                                                 // from the middle, along right, up and forward
+  if (settings.target)
+    eye = {0, 0, std::min(across.eye_along(0), upwards.eye_along(0))};
+  else
+    eye = {across.eye_across(), upwards.eye_across(), std::min(across.eye_along(), upwards.eye_along())};
+  eye.z() = std::min(eye.z(), -least);
+  if (settings.distance > 0) eye.z() = -settings.distance;
+
+  camera.target = middle + eye.x() * right + eye.y() * up;
+  camera.position = (camera.target + eye.z() * forward).cast<float>();
+  camera.half_height = static_cast<float>(half_height / settings.zoom);
+  camera.half_width = static_cast<float>(half_width / settings.zoom);
+  set_depths(camera, shape);
   return camera;
 }
 

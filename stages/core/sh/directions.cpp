@@ -82,6 +82,13 @@ std::vector<Eigen::Vector3f> sample_directions(Sampling sampling, int count, std
   return directions;
 }
 
+std::int64_t directions_for_bands(Sampling sampling, int bands) {
+  const std::int64_t per_coefficient = sampling == Sampling::fibonacci     ? 4
+                                       : sampling == Sampling::progressive ? 16
+                                                                           : 32;
+  return per_coefficient * bands * bands;
+}
+
 std::vector<Eigen::Vector3f> progressive_directions(std::int64_t first, int count, std::uint64_t seed) {
   // The multiplier: a search digit by digit for lattices whose dual lattice, at all heights of the sphere and all sizes
   // 2^5 to 2^30, has the least sum of |k|^-3 (the spectrum of caps); of the best two hundred, the one whose prefixes up

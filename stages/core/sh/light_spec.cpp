@@ -151,10 +151,36 @@ LightCoefficients light_coefficients(const LightSpec& spec, int bands, const Eig
   return constant_light(bands, spec.colour);
 }
 
+std::vector<double> window_weights(const LightSpec& spec, int bands, LightWindow window,
+                                   const Eigen::Vector3d& viewpoint) {
+  const std::vector<double> as_it_is(static_cast<std::size_t>(bands), 1.0);
+  switch (spec.kind) {
+    case LightSpec::Kind::directional:
+      return axial_weights(cone_bands(bands, 0), window, 1);
+    case LightSpec::Kind::cone:
+      return axial_weights(cone_bands(bands, spec.half_angle_degrees * std::numbers::pi / 180), window, 1);
+    case LightSpec::Kind::sphere: {
+      const double distance = (Eigen::Vector3d(spec.position.data()) - viewpoint).norm();
+      if (distance <= spec.radius) return as_it_is;
+      return axial_weights(cone_bands(bands, std::asin(spec.radius / distance)), window, 1);
+    }
+    case LightSpec::Kind::hemisphere:
+    case LightSpec::Kind::ambient:
+      break;
+  }
+  return as_it_is;
+}
+
+LightCoefficients windowed_light(const LightSpec& spec, int bands, LightWindow window,
+                                 const Eigen::Vector3d& viewpoint) {
+  LightCoefficients light = light_coefficients(spec, bands, viewpoint);
+  apply_window(light, window_weights(spec, bands, window, viewpoint));
+  return light;
+}
+
 LightCoefficients light_coefficients(std::span<const LightSpec> specs, int bands, LightWindow window) {
   LightCoefficients sum = constant_light(bands, std::array<float, 3>{0, 0, 0});
-  for (const LightSpec& spec : specs) sum = add_lights(sum, light_coefficients(spec, bands));
-  apply_window(sum, window);
+  for (const LightSpec& spec : specs) sum = add_lights(sum, windowed_light(spec, bands, window));
   return sum;
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sh/lights.h"
 #include "sh/windows.h"
@@ -48,7 +49,18 @@ std::string to_text(const LightSpec& spec);
 LightCoefficients light_coefficients(const LightSpec& spec, int bands,
                                      const Eigen::Vector3d& viewpoint = Eigen::Vector3d::Zero());
 
-/// The sum of the lights, three channels, `window` applied.
+/// What the bands of that light are multiplied with under `window`: the window's weights, scaled so that a white
+/// surface which faces the light has the radiance that LightSpec says, for every window and number of bands
+/// (axial_weights; each light by itself, so that light stays a sum). Ambient light, of band 0 alone, and hemispheres,
+/// which have two bands and do not ring, stay as they are.
+std::vector<double> window_weights(const LightSpec& spec, int bands, LightWindow window,
+                                   const Eigen::Vector3d& viewpoint = Eigen::Vector3d::Zero());
+
+/// light_coefficients times these.
+LightCoefficients windowed_light(const LightSpec& spec, int bands, LightWindow window,
+                                 const Eigen::Vector3d& viewpoint = Eigen::Vector3d::Zero());
+
+/// The sum of the lights, three channels, each windowed.
 LightCoefficients light_coefficients(std::span<const LightSpec> specs, int bands, LightWindow window);
 
 }  // namespace kiln

@@ -19,7 +19,9 @@ LightCoefficients directional_light(int bands, const Eigen::Vector3f& direction,
 /// The same radiance from everywhere (a furnace).
 LightCoefficients constant_light(int bands, std::span<const float> radiance);
 
-/// A latitude-longitude picture of radiance, each pixel weighted by its solid angle. `pixels` has rows from the bottom
+/// A latitude-longitude picture of radiance, every pixel even over its area: the basis is integrated over pixels,
+/// exactly in azimuth and to rounding in elevation, so that a picture of one pixel is an even sky. `pixels` has rows
+/// from the bottom
 /// (-Y first), channels interleaved; u = atan2(z, x) / 2 pi + 1/2 runs to the right, v = elevation / pi + 1/2 upwards
 /// (three.js' convention).
 LightCoefficients latitude_longitude_light(int bands, int width, int height, int channels,
@@ -31,6 +33,10 @@ LightCoefficients latitude_longitude_light(int bands, int width, int height, int
 LightCoefficients cone_light(int bands, const Eigen::Vector3f& direction, double half_angle,
                              std::span<const float> colour);
 
+/// z_l of a cone light of colour 1, whose coefficients are z_l Y_lm(direction); of half-angle 0 those of a directional
+/// light.
+std::vector<double> cone_bands(int bands, double half_angle);
+
 /// A glowing ball of `radius` around `position`, as seen from the origin (object units): the cone light of the cap that
 /// it covers of the sky. Where the origin is inside the ball the light comes from everywhere.
 LightCoefficients sphere_light(int bands, const Eigen::Vector3f& position, double radius,
@@ -40,7 +46,8 @@ LightCoefficients sphere_light(int bands, const Eigen::Vector3f& position, doubl
 LightCoefficients hemisphere_light(int bands, const Eigen::Vector3f& up, std::span<const float> sky,
                                    std::span<const float> ground);
 
-/// A cube map of radiance, each texel weighted by its exact solid angle and looked up at its centre. `faces` are +X,
+/// A cube map of radiance, every texel even over its area: the basis is integrated over texels by products of
+/// Gauss-Legendre rules, to 1e-6 of a texel's radiance or better. `faces` are +X,
 /// -X, +Y, -Y, +Z, -Z, each size x size texels with channels interleaved, rows and columns as OpenGL lays out cube maps
 /// (OpenGL 4.5 core, table 8.19), the first row being t = 0.
 LightCoefficients cube_map_light(int bands, int size, int channels, std::span<const std::span<const float>, 6> faces);

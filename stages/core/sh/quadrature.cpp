@@ -8,12 +8,8 @@ namespace kiln {
 
 namespace {
 
-struct Node {
-  double z, weight;
-};
-
 /// Node `index` of `count` on [-1, 1], by Newton's iteration on the Legendre polynomial.
-Node gauss_legendre(int index, int count) {
+LineNode line_node(int index, int count) {
   double z = std::cos(std::numbers::pi * (index + 0.75) / (count + 0.5)), derivative = 1;
   for (int step = 0; step < 100; ++step) {
     double before = 1, p = z;
@@ -32,16 +28,21 @@ Node gauss_legendre(int index, int count) {
 
 }  // namespace
 
+std::vector<LineNode> gauss_legendre(int count) {
+  std::vector<LineNode> nodes;
+  for (int k = 0; k < count; ++k) nodes.push_back(line_node(k, count));
+  return nodes;
+}
+
 SphereQuadrature exact_quadrature(int degree) {
   assert(degree >= 0 && degree <= 1000);
   const int nodes = degree / 2 + 1, azimuths = degree + 1;
   SphereQuadrature quadrature;
-  for (int k = 0; k < nodes; ++k) {
-    const Node node = gauss_legendre(k, nodes);
-    const double radius = std::sqrt(1 - node.z * node.z);
+  for (const LineNode& node : gauss_legendre(nodes)) {
+    const double radius = std::sqrt(1 - node.place * node.place);
     for (int a = 0; a < azimuths; ++a) {
       const double phi = 2 * std::numbers::pi * a / azimuths;
-      quadrature.directions.emplace_back(radius * std::cos(phi), radius * std::sin(phi), node.z);
+      quadrature.directions.emplace_back(radius * std::cos(phi), radius * std::sin(phi), node.place);
       quadrature.weights.push_back(node.weight * 2 * std::numbers::pi / azimuths);
     }
   }

@@ -5,6 +5,14 @@
 
 namespace kiln {
 
+/// A place on [-1, 1] and what it stands for.
+struct LineNode {
+  double place, weight;
+};
+
+/// `count` >= 1 nodes with which sums over [-1, 1] are integrals, of polynomials up to degree 2 count - 1 exactly.
+std::vector<LineNode> gauss_legendre(int count);
+
 /// Directions and weights with which sums over the sphere are integrals.
 struct SphereQuadrature {
   std::vector<Eigen::Vector3d> directions;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <utility>
 
@@ -85,6 +86,79 @@ std::vector<double> laplacian_window(int bands, double strength) {
   return window;
 }
 
+/// The least strength, at least `weakest`, at which nothing rings, to a thousandth of it.
+double least_strength(double weakest, const std::function<bool(double)>& rings) {
+  if (!rings(weakest)) return weakest;
+  double weak = weakest, strong = std::max(1e-3, weakest);
+  while (rings(strong)) weak = std::exchange(strong, 2 * strong);
+  while (strong - weak > 1e-3 * strong) {
+    const double middle = 0.5 * (weak + strong);
+    (rings(middle) ? weak : strong) = middle;
+  }
+  return strong;
+}
+
+/// Sum over l of terms_l P_l(x).
+double legendre_sum(std::span<const double> terms, double x) {
+  double sum = 0, before = 0, p = 1;  // P_(l-1) and P_l
+  for (std::size_t l = 0; l < terms.size(); ++l) {
+    sum += terms[l] * p;
+    const auto order = static_cast<double>(l);
+    before = std::exchange(p, ((2 * order + 1) * x * p - order * before) / (order + 1));
+  }
+  return sum;
+}
+
+/// The least value of a function around an axis: of many places on a meridian, and between the best's neighbours.
+double least_on_meridian(std::span<const double> terms) {
+  const auto places = 32 * terms.size() + 32;  // the shortest wave takes more than 32 of them
+  const double step = std::numbers::pi / static_cast<double>(places);
+  const auto value = [&](double angle) { return legendre_sum(terms, std::cos(angle)); };
+  double least = value(0), best = 0;
+  for (std::size_t k = 1; k <= places; ++k)
+    if (const double here = value(step * static_cast<double>(k)); here < least) {
+      least = here;
+      best = step * static_cast<double>(k);
+    }
+  double low = best - step, high = best + step;
+  for (int round = 0; round < 40; ++round) {  // by thirds, to 1e-7 of a step
+    const double third = (high - low) / 3;
+    if (value(low + third) < value(high - third))
+      high -= third;
+    else
+      low += third;
+  }
+  return std::min(least, value(0.5 * (low + high)));
+}
+
+/// deringing_window of a light around an axis.
+std::vector<double> axial_deringing_window(std::span<const double> zonal) {
+  const int bands = static_cast<int>(zonal.size());
+  std::vector<double> terms(zonal.size());
+  const auto least = [&](double strength) {
+    const std::vector<double> window = laplacian_window(bands, strength);
+    for (std::size_t l = 0; l < terms.size(); ++l) terms[l] = window[l] * zonal[l] * (2 * static_cast<double>(l) + 1);
+    return least_on_meridian(terms);
+  };
+  const double tolerance = 1e-6 * zonal[0];
+  return laplacian_window(bands, least_strength(0, [&](double strength) { return least(strength) < -tolerance; }));
+}
+
+/// The window of a number of bands; `dering` where it has to be looked for.
+std::vector<double> chosen_window(LightWindow window, int bands, const std::function<std::vector<double>()>& dering) {
+  switch (window) {
+    case LightWindow::hann:
+      return hann_window(bands);
+    case LightWindow::lanczos:
+      return lanczos_window(bands);
+    case LightWindow::dering:
+      return dering();
+    case LightWindow::none:
+      break;
+  }
+  return std::vector<double>(static_cast<std::size_t>(bands), 1.0);
+}
+
 }  // namespace
 
 std::vector<double> hann_window(int bands) {
@@ -114,14 +188,7 @@ std::vector<double> deringing_window(const LightCoefficients& light) {
     const auto rings = [&](double strength) {
       return function.minimum(laplacian_window(light.bands, strength)) < -tolerance;
     };
-    if (!rings(needed)) continue;
-    double weak = needed, strong = std::max(1e-3, needed);
-    while (rings(strong)) weak = std::exchange(strong, 2 * strong);
-    while (strong - weak > 1e-3 * strong) {
-      const double middle = 0.5 * (weak + strong);
-      (rings(middle) ? weak : strong) = middle;
-    }
-    needed = strong;
+    needed = least_strength(needed, rings);
   }
   return laplacian_window(light.bands, needed);
 }
@@ -133,17 +200,25 @@ void apply_window(LightCoefficients& light, std::span<const double> window) {
       channel[i] = static_cast<float>(channel[i] * window[static_cast<std::size_t>(band_of(static_cast<int>(i)))]);
 }
 
-void apply_window(LightCoefficients& light, LightWindow window) {
-  switch (window) {
-    case LightWindow::none:
-      return;
-    case LightWindow::hann:
-      return apply_window(light, hann_window(light.bands));
-    case LightWindow::lanczos:
-      return apply_window(light, lanczos_window(light.bands));
-    case LightWindow::dering:
-      return apply_window(light, deringing_window(light));
-  }
+double facing_radiance(std::span<const double> zonal) {
+  const std::vector<double> cosine = clamped_cosine_bands(static_cast<int>(zonal.size()));
+  double sum = 0;
+  for (std::size_t l = 0; l < zonal.size(); ++l) sum += zonal[l] * cosine[l] * (2 * static_cast<double>(l) + 1);
+  return sum / (4 * std::numbers::pi * std::numbers::pi);
+}
+
+std::vector<double> axial_weights(std::span<const double> zonal, LightWindow window, double facing) {
+  std::vector<double> weights =
+      chosen_window(window, static_cast<int>(zonal.size()), [&] { return axial_deringing_window(zonal); });
+  std::vector<double> left(zonal.begin(), zonal.end());
+  for (std::size_t l = 0; l < left.size(); ++l) left[l] *= weights[l];
+  const double scale = facing / facing_radiance(left);
+  for (double& weight : weights) weight *= scale;
+  return weights;
+}
+
+std::vector<double> window_weights(const LightCoefficients& light, LightWindow window) {
+  return chosen_window(window, light.bands, [&] { return deringing_window(light); });
 }
 
 }  // namespace kiln

@@ -45,14 +45,12 @@ bool has_several_samples(const std::vector<SceneAsset>& assets) {
 
 }  // namespace
 
-BoundingBox scene_box(const std::vector<SceneAsset>& assets) {
-  BoundingBox box;
-  for (const SceneAsset& asset : assets) {
-    const BoundingBox placed = placed_box(bounding_box(asset.renderer->asset().mesh), asset.placement);
-    box.lowest = box.lowest.cwiseMin(placed.lowest);
-    box.highest = box.highest.cwiseMax(placed.highest);
-  }
-  return box;
+std::vector<Eigen::Vector3f> scene_shape(const std::vector<SceneAsset>& assets) {
+  std::vector<Eigen::Vector3f> shape;
+  for (const SceneAsset& asset : assets)
+    for (const Eigen::Vector3f& vertex : asset.renderer->asset().mesh.positions)
+      shape.push_back(asset.placement.to_scene(vertex.cast<double>()).cast<float>());
+  return shape;
 }
 
 void light_scene(const std::vector<SceneAsset>& assets, const SceneLights& lights, const SurfaceLook& look) {

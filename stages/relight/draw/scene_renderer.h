@@ -34,8 +34,8 @@ struct SceneView {
   Shading shading = Shading::forward;
 };
 
-/// The box around all assets.
-BoundingBox scene_box(const std::vector<SceneAsset>& assets);
+/// The vertices of all assets where they stand.
+std::vector<Eigen::Vector3f> scene_shape(const std::vector<SceneAsset>& assets);
 
 /// Gives every asset the light of its place.
 void light_scene(const std::vector<SceneAsset>& assets, const SceneLights& lights, const SurfaceLook& look);

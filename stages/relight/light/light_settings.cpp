@@ -10,13 +10,17 @@ OptionSet light_options(LightSettings& settings) {
   options.text("ambient", settings.ambient, "Radiance from everywhere (a furnace): one number or R,G,B")
       .number("environment-rotation", settings.environment_rotation_degrees, -360, 360,
               "Turns the environment about +Y, degrees: what was at azimuth a comes to a + this")
-      .choice("window", settings.window,
-              {{"hann", LightWindow::hann},
-               {"lanczos", LightWindow::lanczos},
-               {"dering", LightWindow::dering},
-               {"none", LightWindow::none}},
-              "Weights the bands of all lights, which tames ringing and blurs a little; ambient light stays as it is. "
-              "dering is the weakest that leaves no negative light");
+      .choice(
+          "window", settings.window,
+          {{"hann", LightWindow::hann},
+           {"lanczos", LightWindow::lanczos},
+           {"dering", LightWindow::dering},
+           {"none", LightWindow::none}},
+          "Weights the bands of each light, which tames ringing and blurs; what faces the light keeps its radiance, "
+          "and "
+          "ambient light stays as it is. With 5 bands the edge of a shadow takes 33 degrees under none (which rings by "
+          "10 %), 51 under lanczos, 63 under hann and 93 under dering, the weakest of its family that leaves no "
+          "negative light");
   return options;
 }
 

@@ -48,16 +48,20 @@ bool SceneLights::is_local() const {
 }
 
 LightCoefficients SceneLights::incident(int bands, const Eigen::Vector3d& viewpoint) const {
-  if (probes != nullptr) {
-    const SceneLights unhindered{specs, environment, window};
-    return first_bands(
-        light_at(*probes, viewpoint.cast<float>(), unhindered.incident(std::max(bands, probes->bands), viewpoint)),
-        bands);
-  }
+  // Windows come last, so that what they even out is the light that arrives.
+  const int source_bands = probes != nullptr ? std::max(bands, probes->bands) : bands,
+            carried_bands = probes != nullptr ? std::min(bands, probes->bands) : bands;
   LightCoefficients sum = constant_light(bands, std::array<float, 3>{0, 0, 0});
-  for (const LightSpec& spec : specs) sum = add_lights(sum, light_coefficients(spec, bands, viewpoint));
-  if (environment) sum = add_lights(sum, first_bands(*environment, bands));
-  apply_window(sum, window);
+  const auto add = [&](LightCoefficients light, std::span<const double> weights) {
+    if (probes != nullptr) light = light_at(*probes, viewpoint.cast<float>(), light);
+    light = first_bands(light, carried_bands);
+    apply_window(light, weights);
+    sum = add_lights(sum, first_bands(light, bands));
+  };
+  for (const LightSpec& spec : specs)
+    add(light_coefficients(spec, source_bands, viewpoint), window_weights(spec, carried_bands, window, viewpoint));
+  if (environment)
+    add(first_bands(*environment, source_bands), window_weights(first_bands(*environment, carried_bands), window));
   return sum;
 }
 

@@ -24,7 +24,7 @@ struct SceneLights {
   /// Whether the light depends on the place.
   bool is_local() const;
 
-  /// What comes in at `viewpoint`, windowed, three channels.
+  /// What comes in at `viewpoint`, three channels, every light windowed (window_weights).
   LightCoefficients incident(int bands, const Eigen::Vector3d& viewpoint) const;
 };
 

@@ -25,7 +25,8 @@ class AssetView {
 
   const ViewScene& scene() const { return scene_; }
   const ViewLimits& limits() const { return limits_; }
-  const BoundingBox& box() const { return scene_.lights.box; }
+  /// The vertices that cameras look at.
+  const std::vector<Eigen::Vector3f>& shape() const { return scene_.forms.main().mesh.positions; }
 
   /// Draws the picture of the canvas; its reference where the state shows a difference; its edges where it has them.
   void draw(const ViewState& state, const Camera& camera, Canvas& canvas);

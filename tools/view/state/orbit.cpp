@@ -10,11 +10,6 @@ namespace {
 constexpr double degrees_per_pixel = 0.4;
 constexpr double nearest_zoom = 0.02, farthest_zoom = 20;
 
-double distance_of(const Orbit& orbit, const BoundingBox& box, int width, int height) {
-  const Camera home = make_camera(box, orbit.home, width, height);
-  return orbit.zoom * static_cast<double>((home.position - box.centre()).norm());
-}
-
 }  // namespace
 
 Orbit home_orbit(const CameraSettings& home) {
@@ -30,9 +25,11 @@ void turn_orbit(Orbit& orbit, double right_pixels, double down_pixels) {
   orbit.elevation_degrees = std::clamp(orbit.elevation_degrees + degrees_per_pixel * down_pixels, -90.0, 90.0);
 }
 
-void pan_orbit(Orbit& orbit, const BoundingBox& box, double right_pixels, double down_pixels, int width, int height) {
-  const Camera camera = camera_of(orbit, box, width, height);
-  const double units_per_pixel = 2.0 * camera.half_height * distance_of(orbit, box, width, height) / height;
+void pan_orbit(Orbit& orbit, std::span<const Eigen::Vector3f> shape, double right_pixels, double down_pixels, int width,
+               int height) {
+  const Camera camera = camera_of(orbit, shape, width, height);
+  const double distance = (camera.position.cast<double>() - camera.target).norm();
+  const double units_per_pixel = 2.0 * camera.half_height * distance / height;
   orbit.pan += units_per_pixel * (down_pixels * camera.up.cast<double>() - right_pixels * camera.right.cast<double>());
 }
 
@@ -40,21 +37,17 @@ void zoom_orbit(Orbit& orbit, double steps) {
   orbit.zoom = std::clamp(orbit.zoom * std::pow(0.9, steps), nearest_zoom, farthest_zoom);
 }
 
-Camera camera_of(const Orbit& orbit, const BoundingBox& box, int width, int height) {
+Camera camera_of(const Orbit& orbit, std::span<const Eigen::Vector3f> shape, int width, int height) {
+  const Camera home = make_camera(shape, orbit.home, width, height);
+  const bool is_home = orbit.zoom == 1 && orbit.pan.isZero(0) && orbit.azimuth_degrees == orbit.home.azimuth_degrees &&
+                       orbit.elevation_degrees == orbit.home.elevation_degrees;
+  if (is_home) return home;  // kiln-render's, to the bit
   CameraSettings settings = orbit.home;
   settings.azimuth_degrees = orbit.azimuth_degrees;
   settings.elevation_degrees = orbit.elevation_degrees;
-  Camera camera = make_camera(box, settings, width, height);
-  const bool is_home = orbit.zoom == 1 && orbit.pan.isZero(0) && orbit.azimuth_degrees == orbit.home.azimuth_degrees &&
-                       orbit.elevation_degrees == orbit.home.elevation_degrees;
-  if (is_home) return camera;  // kiln-render's, to the bit
-  const Eigen::Vector3d forward = camera.forward.cast<double>();
-  const double distance = distance_of(orbit, box, width, height), radius = 0.505 * static_cast<double>(box.diagonal());
-  camera.position = (box.centre().cast<double>() + orbit.pan - distance * forward).cast<float>();
-  const double centre_distance = distance - orbit.pan.dot(forward);
-  camera.near_distance = static_cast<float>(std::max(centre_distance - radius, 0.002 * radius));
-  camera.far_distance = static_cast<float>(std::max(centre_distance + radius, 0.004 * radius));
-  return camera;
+  settings.target = home.target + orbit.pan;
+  settings.distance = orbit.zoom * (home.position.cast<double>() - home.target).norm();
+  return make_camera(shape, settings, width, height);
 }
 
 }  // namespace kiln

@@ -1,18 +1,20 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 
 #include "mesh/camera.h"
 
 namespace kiln {
 
-/// A camera that goes around a box. As it starts (zoom 1, no pan, the angles of `home`) it is kiln-render's camera.
+/// A camera that goes around a shape, which is given by its vertices. As it starts (zoom 1, no pan, the angles of
+/// `home`) it is kiln-render's camera.
 struct Orbit {
-  CameraSettings home;  ///< angles at which the whole box is just in the picture; they set the distance
+  CameraSettings home;  ///< at its angles all of the shape is just in the picture; they set the target and the distance
   double azimuth_degrees = 20;
   double elevation_degrees = 12;
   double zoom = 1;                                ///< the distance over that of `home`
-  Eigen::Vector3d pan = Eigen::Vector3d::Zero();  ///< of the point looked at from the box' centre, object units
+  Eigen::Vector3d pan = Eigen::Vector3d::Zero();  ///< of the point looked at from the target of `home`, object units
 };
 
 /// An orbit that stands at its home.
@@ -22,13 +24,13 @@ Orbit home_orbit(const CameraSettings& home);
 void turn_orbit(Orbit& orbit, double right_pixels, double down_pixels);
 
 /// The point under the pointer stays under it, where it is as far away as the point looked at.
-void pan_orbit(Orbit& orbit, const BoundingBox& box, double right_pixels, double down_pixels, int width, int height);
+void pan_orbit(Orbit& orbit, std::span<const Eigen::Vector3f> shape, double right_pixels, double down_pixels, int width,
+               int height);
 
 /// One step of the wheel, forwards above 0, goes a tenth nearer; never nearer or farther than makes sense.
 void zoom_orbit(Orbit& orbit, double steps);
 
-/// The camera for a picture of width x height pixels. Everything in the box' bounding sphere in front of the camera
-/// lies between its near and far distances.
-Camera camera_of(const Orbit& orbit, const BoundingBox& box, int width, int height);
+/// The camera for a picture of width x height pixels.
+Camera camera_of(const Orbit& orbit, std::span<const Eigen::Vector3f> shape, int width, int height);
 
 }  // namespace kiln

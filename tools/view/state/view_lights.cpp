@@ -142,10 +142,11 @@ SceneLights lights_of(const LightChoice& choice, const GivenLights& given) {
 
 AssetLight light_for_asset(const SceneLights& lights, int bands, const PrtAsset& asset,
                            const IncidentSamples& samples) {
-  AssetLight light = light_asset(lights, asset.bands, {}, samples.points);
-  for (LightCoefficients& sample : light.samples)
-    for (std::vector<float>& channel : sample.channels)
-      std::fill(channel.begin() + coefficient_count(bands), channel.end(), 0.f);
+  AssetLight light = light_asset(lights, bands, {}, samples.points);
+  for (LightCoefficients& sample : light.samples) {
+    sample.bands = asset.bands;
+    for (std::vector<float>& channel : sample.channels) channel.resize(coefficient_count(asset.bands), 0.f);
+  }
   return light;
 }
 

@@ -27,7 +27,7 @@ SceneLights lights_of(const LightChoice& choice, const GivenLights& given);
 /// How far about +Y a choice turns the environment from where it was given; 0 where the main light is another.
 double environment_turn_degrees(const LightChoice& choice, const GivenLights& given);
 
-/// What they are to an asset at the origin, windowed, of which only the first `bands` bands are left.
+/// What they are to an asset at the origin in the first `bands` bands, windowed for as many; its others are 0.
 AssetLight light_for_asset(const SceneLights& lights, int bands, const PrtAsset& asset, const IncidentSamples& samples);
 
 /// The light under which exit radiance is one transfer coefficient, in the colour of its channel where the asset has

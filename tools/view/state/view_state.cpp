@@ -23,15 +23,15 @@ bool can_defer(Technique technique) {
   return technique == Technique::textured_prt || technique == Technique::compressed;
 }
 
-void drag(ViewState& state, Drag what, double right_pixels, double down_pixels, const BoundingBox& box, int width,
-          int height) {
+void drag(ViewState& state, Drag what, double right_pixels, double down_pixels, std::span<const Eigen::Vector3f> shape,
+          int width, int height) {
   constexpr double light_degrees_per_pixel = 0.4;
   switch (what) {
     case Drag::orbit:
       turn_orbit(state.orbit, right_pixels, down_pixels);
       break;
     case Drag::pan:
-      pan_orbit(state.orbit, box, right_pixels, down_pixels, width, height);
+      pan_orbit(state.orbit, shape, right_pixels, down_pixels, width, height);
       break;
     case Drag::light:
       state.light.azimuth_degrees =

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -78,8 +79,8 @@ bool can_defer(Technique technique);
 /// What the pointer's buttons drag.
 enum class Drag { orbit, pan, light };
 
-/// Drags by pixels of a picture of width x height pixels.
-void drag(ViewState& state, Drag what, double right_pixels, double down_pixels, const BoundingBox& box, int width,
-          int height);
+/// Drags by pixels of a picture of width x height pixels of a shape.
+void drag(ViewState& state, Drag what, double right_pixels, double down_pixels, std::span<const Eigen::Vector3f> shape,
+          int width, int height);
 
 }  // namespace kiln
