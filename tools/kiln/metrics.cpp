@@ -61,7 +61,8 @@ constexpr const char* of_adaptive =
     "adaptive.share_saved";
 
 constexpr const char* of_compress =
-    "width height texels target_error error texel_error border_jump bytes_in bytes_out bytes_per_texel_in "
+    "width height texels target_error error texel_error texel_error_bound border_jump border_jump_bound bytes_in "
+    "bytes_out bytes_per_texel_in "
     "bytes_per_texel_out lookups_in lookups_out border_share plain.clusters plain.components plain.bits "
     "plain.step plain.error plain.texel_error plain.border_jump plain.bytes plain.lookups "
     "plain.lookups_at_borders plain.feasible chosen.clusters chosen.components chosen.bits chosen.step "

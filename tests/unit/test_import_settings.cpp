@@ -1,0 +1,28 @@
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "import/import_settings.h"
+
+namespace kiln {
+namespace {
+
+TEST(ImportSettings, UpComesUpAndTheFrontToTheCamera) {
+  // docs/import.md, "Up and front": up, the side that becomes +Z.
+  struct Case {
+    UpAxis up;
+    Eigen::Vector3d axis, front;
+  };
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
+  for (const auto& [up, axis, front] :
+       {Case{UpAxis::plus_y, y, z}, Case{UpAxis::minus_y, -y, -z}, Case{UpAxis::plus_z, z, -y},
+        Case{UpAxis::minus_z, -z, y}, Case{UpAxis::plus_x, x, z}, Case{UpAxis::minus_x, -x, z}}) {
+    ImportSettings settings;
+    settings.up = up;
+    EXPECT_EQ(settings.turned(axis), y);
+    EXPECT_EQ(settings.turned(front), z);
+    EXPECT_EQ(settings.turned(axis.cross(front)), x) << "no mirror";
+  }
+}
+
+}  // namespace
+}  // namespace kiln
