@@ -9,8 +9,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "base/stopwatch.h"
 #include "base/errors.h"
+#include "base/stopwatch.h"
 #include "image/gutter.h"
 #include "image/srgb.h"
 #include "mesh/uv_raster.h"

@@ -10,6 +10,7 @@
 
 #include "normals/bilinear_fit.h"
 #include "normals/chart_ring.h"
+#include "normals/own_parts.h"
 #include "normals/surface_walk.h"
 #include "normals/texel_samples.h"
 
@@ -25,6 +26,10 @@ constexpr float largest_step_texels = 4;
 
 /// Samples in a band of rows that is rasterised at once.
 constexpr int band_samples = 1 << 20;
+
+/// Simplification leaves a surface within about so many mean distances: where two parts are that close, the nearer one
+/// may be the wrong one.
+constexpr float usual_distances = 8;
 
 /// Weight of a texel's centre, as a fraction of a texel's samples: holds texels that hardly any sample sees.
 constexpr float keep_centre = 0.02f;
@@ -57,9 +62,8 @@ RowSums match_centres(int j, const HighSurface& high, const TriangleMesh& atlas,
             : match.way == MatchWay::ray_inwards ? TexelWay::ray_inwards
                                                  : TexelWay::nearest_point;
     matches.way.at(i, j) = static_cast<std::uint8_t>(way);
-    if (!triangles.empty())
-      triangles[static_cast<std::size_t>(j) * static_cast<std::size_t>(raster.width) + static_cast<std::size_t>(i)] =
-          match.point.triangle;
+    triangles[static_cast<std::size_t>(j) * static_cast<std::size_t>(raster.width) + static_cast<std::size_t>(i)] =
+        match.point.triangle;
     const double apart = (high_point - low_point).cast<double>().norm();
     sums.distance += apart;
     sums.largest_distance = std::max(sums.largest_distance, apart);
@@ -218,7 +222,7 @@ TexelMatches match_texels(const HighSurface& high, const TriangleMesh& atlas, co
   matches.way = Image<std::uint8_t>(width, height, 1);
   matches.known = raster;
   std::vector<std::uint32_t> triangles;  // that centres found
-  if (samples > 1) triangles.resize(raster.texels.size(), SurfacePoint::none);
+  triangles.resize(raster.texels.size(), SurfacePoint::none);
 
   // Centres, in groups of rows so that progress can be told.
   const double centres_part = samples > 1 ? 0.5 : 1;
@@ -237,6 +241,9 @@ TexelMatches match_texels(const HighSurface& high, const TriangleMesh& atlas, co
   }
   matches.mean_distance /= static_cast<double>(std::max<std::int64_t>(1, raster.covered_texels));
 
+  keep_to_own_parts(high, atlas, raster,
+                    usual_distances * static_cast<float>(matches.mean_distance) + limits.surface_tolerance, matches,
+                    triangles);
   match_ring(high, atlas, raster, limits, matches);
   if (samples <= 1) {
     if (fit_one) sharpen(matches.normal_object, raster, matches.known);

@@ -402,6 +402,26 @@ TEST(Normals, TheBunnysEarsKeepTheirSides) {
   }
 }
 
+TEST(Normals, ASphereThroughABoxKeepsToItself) {
+  // Beside the line where they meet the box is as close as the sphere; its normals are 34 degrees and more from it.
+  TriangleMesh high = shapes::joined(shapes::icosphere(5, 0.6f), shapes::cube(8), {0, 0, 0});
+  compute_vertex_normals(high);
+  const TriangleMesh low = shapes::cube_sphere(6, 0.6f);
+  const NormalsResult result = make_normals(high, low, {.size = 192});
+  const Image<float> normal = dequantise_normals(result.normal);
+  int covered = 0;
+  for (int j = 0; j < 192; ++j)
+    for (int i = 0; i < 192; ++i) {
+      if (result.coverage.at(i, j) == 0) continue;
+      ++covered;
+      const Eigen::Vector3f n(normal.at(i, j, 0), normal.at(i, j, 1), normal.at(i, j, 2));
+      const Eigen::Vector3f p(result.position.at(i, j, 0), result.position.at(i, j, 1), result.position.at(i, j, 2));
+      // 1.8 degrees between facets of the sphere, and what equalising seams turns.
+      EXPECT_GT(n.dot(p.normalized()), 0.995f) << "texel " << i << ", " << j;
+    }
+  EXPECT_GT(covered, 10000);
+}
+
 TEST(Normals, ThePictureOfWaysAgreesWithTheShares) {
   const TriangleMesh high = dented_sphere(), low = shapes::cube_sphere(6);
   const NormalsResult result = make_normals(high, low, {.size = 96, .cage = 0.004});

@@ -1,0 +1,79 @@
+#include "normals/own_parts.h"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+
+#include "mesh/hard_edges.h"
+#include "mesh/mesh_components.h"
+
+namespace kiln {
+
+namespace {
+
+/// The part of the high mesh that most texels of each part of the low mesh stand for.
+std::vector<std::uint32_t> most_voted(const Components& low, const Components& high, const UvRaster& raster,
+                                      const std::vector<std::uint32_t>& triangles) {
+  std::vector<std::map<std::uint32_t, std::size_t>> votes(low.count);
+  for (std::size_t texel = 0; texel < triangles.size(); ++texel)
+    if (raster.texels[texel].covered())
+      ++votes[low.of_triangle[raster.texels[texel].triangle]][high.of_triangle[triangles[texel]]];
+  std::vector<std::uint32_t> own(low.count, 0);
+  for (std::size_t part = 0; part < low.count; ++part) {
+    std::size_t most = 0;
+    for (const auto& [candidate, count] : votes[part]) {
+      if (count <= most) continue;
+      most = count;
+      own[part] = candidate;
+    }
+  }
+  return own;
+}
+
+/// One part of a mesh, and which triangle of the mesh each of its own is.
+struct Part {
+  std::vector<std::uint32_t> sources;
+  std::unique_ptr<RayScene> scene;
+
+  Part(const TriangleMesh& mesh, const Components& components, std::uint32_t which) {
+    std::vector<Triangle> own;
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (components.of_triangle[t] != which) continue;
+      sources.push_back(t);
+      own.push_back(mesh.triangles[t]);
+    }
+    scene = std::make_unique<RayScene>(mesh.positions, own);
+  }
+};
+
+}  // namespace
+
+void keep_to_own_parts(const HighSurface& high, const TriangleMesh& atlas, const UvRaster& raster, float farthest,
+                       TexelMatches& matches, std::vector<std::uint32_t>& triangles) {
+  const Components high_parts = find_components(high.mesh);
+  if (high_parts.count < 2) return;
+  const Components low_parts = find_components(join_at_places(atlas));
+  const std::vector<std::uint32_t> own = most_voted(low_parts, high_parts, raster, triangles);
+  std::map<std::uint32_t, Part> parts;  // those that are asked
+  for (std::size_t texel = 0; texel < triangles.size(); ++texel) {
+    const TexelSource& source = raster.texels[texel];
+    if (!source.covered()) continue;
+    const std::uint32_t part = own[low_parts.of_triangle[source.triangle]];
+    if (high_parts.of_triangle[triangles[texel]] == part) continue;
+    const Part& asked = parts.try_emplace(part, high.mesh, high_parts, part).first->second;
+    SurfacePoint point = asked.scene->closest_facing_point(interpolate(atlas, atlas.positions, source),
+                                                           interpolate(atlas, atlas.normals, source), farthest);
+    if (!point.found()) continue;
+    point.triangle = asked.sources[point.triangle];
+    triangles[texel] = point.triangle;
+    const auto pixel = [&](Image<float>& image) {
+      return Eigen::Map<Eigen::Vector3f>(image.values().data() + 3 * texel);
+    };
+    pixel(matches.position) = position_at(high.mesh, point);
+    pixel(matches.normal_object) = normal_at(high.mesh, point);
+    if (!high.albedo.is_constant()) pixel(matches.albedo) = high.albedo.at(point.triangle, point.u, point.v);
+    matches.way.values()[texel] = static_cast<std::uint8_t>(TexelWay::nearest_point);
+  }
+}
+
+}  // namespace kiln
