@@ -102,7 +102,7 @@ void compare_shading(const Arguments& arguments, const PrtAsset& asset) {
   const SceneLights lights{{LightSpec{}}, std::nullopt, LightWindow::hann};
   AssetRenderer renderer(asset);
   const BoundingBox box = bounding_box(asset.mesh);
-  const SceneView view = view_of(arguments, box);
+  const SceneView view = view_of(arguments, asset.mesh.positions);
   for (const int depth : {1, 2, 4, 8, 16}) {
     std::vector<SceneAsset> assets;
     for (int k = depth - 1; k >= 0; --k) {
