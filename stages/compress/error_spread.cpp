@@ -38,7 +38,7 @@ ErrorSpread spread_of(Lengths& lengths, const TransferSource& source) {
           std::sqrt(nearly_largest(lengths.texels)) / unit, std::sqrt(nearly_largest(lengths.borders)) / unit};
 }
 
-/// Of the covered texels of rows `first` to `last` - 1, and of their jumps to the right and upwards.
+/// Errors of the covered texels of rows `first` to `last` - 1, and of their jumps to the right and upwards.
 Lengths lengths_of_rows(const TransferSource& source, const TexelErrors& errors, std::span<const std::uint8_t> ids,
                         int first, int last) {
   const auto width = static_cast<std::uint32_t>(source.asset().width);

@@ -17,6 +17,7 @@
 #include "kiln/make_process.h"
 #include "kiln/output_lock.h"
 #include "kiln/summary.h"
+#include "kiln/text_file.h"
 
 namespace kiln {
 
@@ -25,15 +26,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int missed_budget = static_cast<int>(ExitCode::budget_missed);
-
-/// Leaves a file that holds the text already as it is, with its time.
-void write_if_changed(const fs::path& file, const std::string& text) {
-  std::error_code error;
-  if (fs::is_regular_file(file, error) && read_text(file) == text) return;
-  OutputSet outputs(folder_of(file));
-  outputs.add_text(file.filename().string(), text);
-  outputs.commit();
-}
 
 /// The metrics of an asset that has a report; else null.
 Json metrics_of_asset(const fs::path& folder) {
@@ -104,7 +96,7 @@ class Build {
       const MakeRule& rule = rules_[k];
       plans_[k] = {rule.asset, rule.run, stamp_text(rule.run, programs), rule.state};
     }
-    // Those it needs come before a rule: `wanted_` is in that order.
+    // A rule stands behind those it needs: `wanted_` is in that order.
     for (const std::size_t k : wanted_) {
       states_[k] = load_state(pipeline_.folder / rules_[k].state);
       reasons_[k] = settings_.force ? "it is forced" : reason_to_run(plans_[k], states_[k], hashes);

@@ -8,6 +8,7 @@
 #include "base/errors.h"
 #include "base/file_names.h"
 #include "base/outputs.h"
+#include "kiln/text_file.h"
 
 namespace kiln {
 
@@ -55,15 +56,6 @@ std::vector<std::string> words_of(const Json& json) {
   std::vector<std::string> words;
   for (const Json& text : json) words.push_back(path_of_text(text.get<std::string>()).string());
   return words;
-}
-
-/// Leaves a file that holds the text already as it is.
-void write_if_changed(const fs::path& file, const std::string& text) {
-  std::error_code error;
-  if (fs::is_regular_file(file, error) && read_text(file) == text) return;
-  OutputSet outputs(folder_of(file));
-  outputs.add_text(file.filename().string(), text);
-  outputs.commit();
 }
 
 /// The record of a stage; null where there is none.

@@ -31,7 +31,7 @@ class FileHashes {
   /// The stamp of a file as it is now; nothing where there is no such file. `earlier` may be null.
   std::optional<FileStamp> stamp(const std::filesystem::path& file, const FileStamp* earlier = nullptr);
 
-  /// Of files that had to be read.
+  /// Bytes of all files that had to be read.
   std::int64_t bytes_read() const { return bytes_read_; }
 
  private:

@@ -90,7 +90,7 @@ ProcessEnd run_command(const StagePlan& plan, std::vector<std::string> command, 
   command.push_back("--resume");
   const ProcessEnd end = run_process(command, settings);
   if (end.exit_status != static_cast<int>(ExitCode::bad_input)) return end;
-  // Of another backend, or damaged.
+  // The checkpoint is damaged, or of another backend.
   std::fprintf(stderr, "[%s] %s begins anew\n", plan.asset.c_str(), plan.run.name.c_str());
   std::error_code ignored;
   fs::remove_all(plan.run.checkpoint, ignored);

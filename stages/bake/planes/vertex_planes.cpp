@@ -41,7 +41,7 @@ std::vector<std::uint32_t> write_vertex_planes(OutputSet& outputs, const std::ve
       IntegerAttribute& attribute = attributes.back();
       const std::span<const float> values = channels[channel].plane(i);
       const PlaneRange range = range_of(values);
-      std::vector<float> plane(mesh.positions.size(), range.lowest);
+      std::vector<float> plane(mesh.positions.size(), 0.f);  // dark where nothing fills a buried vertex
       for (std::size_t r = 0; r < values.size(); ++r) plane[receivers.texels[r]] = values[r];
       receivers.fills.apply(plane);
       for (std::size_t v = 0; v < plane.size(); ++v)

@@ -57,7 +57,7 @@ class OptionSet {
   /// "automatic".
   OptionSet& number(std::string name, double& value, double lowest, double highest, std::string help);
 
-  /// The same, or "auto", which is kept as nothing.
+  /// A number as above, or "auto", which is kept as nothing.
   OptionSet& number_or_auto(std::string name, std::optional<double>& value, double lowest, double highest,
                             std::string help);
 

@@ -107,18 +107,7 @@ struct BuriedTest::Implementation {
 };
 
 bool BuriedTest::Implementation::is_free(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const {
-  RTCRay ray = {origin.x(),
-                origin.y(),
-                origin.z(),
-                0,
-                direction.x(),
-                direction.y(),
-                direction.z(),
-                0,
-                std::numeric_limits<float>::infinity(),
-                ~0u,
-                0,
-                0};
+  RTCRay ray = make_ray(origin, direction);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcOccluded1(embree.scene(), &context, &ray);
@@ -132,18 +121,7 @@ Crossings BuriedTest::Implementation::crossings(const Eigen::Vector3f& origin, c
   rtcInitIntersectContext(&context.base);
   context.crossings = &found;
   RTCRayHit query = {};
-  query.ray = {origin.x(),
-               origin.y(),
-               origin.z(),
-               nearest,
-               direction.x(),
-               direction.y(),
-               direction.z(),
-               0,
-               std::numeric_limits<float>::infinity(),
-               ~0u,
-               0,
-               0};
+  query.ray = make_ray(origin, direction, nearest);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(embree.scene(), &context.base, &query);
   return found;

@@ -2,11 +2,28 @@
 
 #include <Eigen/Core>
 #include <embree3/rtcore.h>
+#include <limits>
 #include <span>
 
 #include "mesh/triangle_mesh.h"
 
 namespace kiln {
+
+/// A ray as Embree has it, from `nearest` to `farthest` times the direction.
+inline RTCRay make_ray(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest = 0,
+                       float farthest = std::numeric_limits<float>::infinity()) {
+  RTCRay ray = {};
+  ray.org_x = origin.x();
+  ray.org_y = origin.y();
+  ray.org_z = origin.z();
+  ray.tnear = nearest;
+  ray.dir_x = direction.x();
+  ray.dir_y = direction.y();
+  ray.dir_z = direction.z();
+  ray.tfar = farthest;
+  ray.mask = ~0u;
+  return ray;
+}
 
 /// An Embree device with one scene, of one mesh. Only for sources of this room: it shows Embree's own types.
 class EmbreeScene {

@@ -142,8 +142,7 @@ RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 SurfacePoint RayScene::first_hit(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest,
                                  float farthest) const {
   RTCRayHit query = {};
-  query.ray = {origin.x(), origin.y(), origin.z(), nearest, direction.x(), direction.y(), direction.z(), 0,
-               farthest,   ~0u,        0,          0};
+  query.ray = make_ray(origin, direction, nearest, farthest);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -211,21 +210,7 @@ void RayScene::occluded(std::span<const Eigen::Vector3f> origins, const Eigen::V
   std::array<RTCRay, stream_rays> rays;
   for (std::size_t begin = 0; begin < origins.size(); begin += stream_rays) {
     const std::size_t count = std::min(stream_rays, origins.size() - begin);
-    for (std::size_t k = 0; k < count; ++k) {
-      const Eigen::Vector3f& o = origins[begin + k];
-      rays[k] = {o.x(),
-                 o.y(),
-                 o.z(),
-                 nearest,
-                 direction.x(),
-                 direction.y(),
-                 direction.z(),
-                 0,
-                 std::numeric_limits<float>::infinity(),
-                 ~0u,
-                 0,
-                 0};
-    }
+    for (std::size_t k = 0; k < count; ++k) rays[k] = make_ray(origins[begin + k], direction, nearest);
     rtcOccluded1M(implementation_->scene, &context, rays.data(), static_cast<unsigned>(count), sizeof(RTCRay));
     // Embree marks an occluded ray by setting its far end to minus infinity.
     for (std::size_t k = 0; k < count; ++k) occluded[begin + k] = rays[k].tfar < 0 ? 1 : 0;
