@@ -77,7 +77,9 @@ BeamSavings add_transfer_by_beams(const BeamScene& scene, const BeamReceivers& r
                                   const ProgressFunction& progress) {
   const auto coefficients = static_cast<std::size_t>(sums.coefficients);
   const std::vector<float> rows = sh_rows(directions, band_of(sums.coefficients - 1) + 1);
-  static_assert(sizeof(Eigen::Vector3f) == 3 * sizeof(float));
+  std::vector<BeamBlock> blocks;
+  for (std::size_t d = 0; d < directions.size(); d += block_directions)
+    blocks.emplace_back(directions.subspan(d, std::min<std::size_t>(block_directions, directions.size() - d)));
   struct alignas(64) Lanes {
     std::int64_t value[beam_lanes];
   };
@@ -98,7 +100,7 @@ BeamSavings add_transfer_by_beams(const BeamScene& scene, const BeamReceivers& r
     for (std::size_t d = 0; d < directions.size(); d += block_directions) {
       const auto block = directions.subspan(d, std::min<std::size_t>(block_directions, directions.size() - d));
       BeamWeights weights;
-      worker.tracer.trace(reinterpret_cast<const float(*)[3]>(block.data()), static_cast<int>(block.size()), weights);
+      worker.tracer.trace(blocks[d / block_directions], weights);
       const auto facing = static_cast<std::size_t>(std::popcount(weights.facing));
       worker.savings.behind += count * (block.size() - facing);
       worker.savings.lit += count * static_cast<std::size_t>(std::popcount(weights.lit));

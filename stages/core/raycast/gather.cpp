@@ -57,6 +57,9 @@ void add_gathered(const RayScene& scene, const BeamScene* beams, const BeamRecei
                   const ProgressFunction& progress) {
   const std::size_t width = radiance.width;
   assert(static_cast<std::size_t>(sums.coefficients) == width);
+  std::vector<BeamBlock> blocks;
+  for (std::size_t d = 0; d < directions.size(); d += block_directions)
+    blocks.emplace_back(directions.subspan(d, std::min<std::size_t>(block_directions, directions.size() - d)));
   tbb::enumerable_thread_specific<Worker> workers([&] {
     Worker worker{{}, std::vector<float>(beam_lanes * width, 0.f), std::vector<std::int64_t>(beam_lanes * width)};
     if (beams != nullptr) worker.tracer.emplace_back(*beams);
@@ -76,8 +79,7 @@ void add_gathered(const RayScene& scene, const BeamScene* beams, const BeamRecei
       BeamWeights weights;
       std::uint32_t wanted = ~0u;
       if (beams != nullptr) {
-        worker.tracer[0].trace(reinterpret_cast<const float(*)[3]>(block.data()), static_cast<int>(block.size()),
-                               weights);
+        worker.tracer[0].trace(blocks[begin / block_directions], weights);
         wanted = weights.facing & ~weights.lit;
       }
       std::uint32_t hit_lanes = 0;
