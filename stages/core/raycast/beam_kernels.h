@@ -35,7 +35,21 @@ struct BeamShaft {
   float direction_lower[3], direction_upper[3];
   float inverse_lower[3], inverse_upper[3];  ///< 1 / direction_lower and _upper
   float cone_axis[3];                        ///< a cone that holds the directions
-  float cone_sine;                           ///< of its half-angle; 2: nothing is left out for its normals
+  float cone_sine;                           ///< of its half-angle
+  bool outside;                              ///< only triangles that face the rays count
+};
+
+/// What a packet's tangent planes and box say of 16 boxes, a bit for each.
+struct BeamPlaces {
+  std::uint16_t above;  ///< rises above the plane of at least one receiver
+  std::uint16_t whole;  ///< lies wholly above one
+  std::uint16_t apart;  ///< does not meet the box of the packet's origins
+};
+
+/// What a shaft says of 16 boxes of triangles, a bit for each.
+struct BeamMeetings {
+  std::uint32_t met;     ///< some ray meets it, and its triangles may face that ray
+  std::uint32_t sheets;  ///< of these, all its triangles and their neighbours face all rays, or turn away from all
 };
 
 /// One direction, and what may stand before it.
@@ -53,20 +67,23 @@ struct BeamKernels {
   /// The cosines of all directions, 0 for those behind a receiver; returns the bits of directions before one.
   std::uint32_t (*face)(const BeamPacket&, const float (*direction)[3], int count, BeamWeights&);
 
-  /// Bit i: box i rises above the plane of at least one receiver; bit 16 + i: it lies wholly above one.
-  std::uint32_t (*boxes_above)(const BeamPacket&, const BeamSpan&, const BeamBoxes&, int count);
+  BeamPlaces (*places_of)(const BeamPacket&, const BeamSpan&, const BeamBoxes&, int count);
 
   /// The cluster's triangles with a corner above the plane of at least one receiver; their number. `lower` and `upper`
   /// become their box.
   int (*keep_above)(const BeamPacket&, const BeamSpan&, const BeamScene::Cluster&, BeamScene::Cluster& local,
                     float* lower, float* upper);
 
-  /// Bits of the boxes that some ray of the shaft meets, and whose triangles may face it.
-  std::uint32_t (*boxes_in)(const BeamShaft&, const BeamBoxes&);
+  BeamMeetings (*meet)(const BeamShaft&, const BeamBoxes&);
+
+  /// Whether the ray from the span's centre along `direction` hits a triangle of the cluster.
+  bool (*hits)(const BeamSpan&, const float* direction, bool outside, const BeamScene::Cluster&);
 
   /// Clears the weights of the receivers that a candidate hides from one direction; returns whether any triangle was
   /// near enough to be tested. `first` is the candidate to begin with, and becomes the one that hid the last receivers.
   bool (*shade)(const BeamPacket&, const BeamSpan&, const BeamRay&, int& first, float* weight);
+  /// The same bits, faster where triangles are small beside the beam.
+  bool (*shade_crowded)(const BeamPacket&, const BeamSpan&, const BeamRay&, int& first, float* weight);
 
   /// Adds to winding[r] how often the ray of receiver r leaves the cluster's triangles less how often it enters them,
   /// and to doubt[r] where it meets an edge.
@@ -77,7 +94,8 @@ struct BeamKernels {
   void (*add_products)(const BeamWeights&, const float* basis, int coefficients, std::int64_t (*sums)[beam_lanes]);
 };
 
-/// Those for the widest vectors that this machine has. All give the same bits: multiplications and additions stay apart.
+/// Those for the widest vectors that this machine has. All give the same bits: multiplications and additions stay
+/// apart.
 const BeamKernels& beam_kernels();
 
 }  // namespace kiln

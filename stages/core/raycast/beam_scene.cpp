@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 #include <tuple>
 
 #include "raycast/exact_side.h"
@@ -13,26 +15,58 @@ namespace kiln {
 
 namespace {
 
-bool is_closed(std::span<const Eigen::Vector3f> positions, std::span<const std::array<std::uint32_t, 3>> triangles) {
-  // Step 1: one number for each place.
+constexpr std::uint32_t no_neighbour = std::numeric_limits<std::uint32_t>::max();
+
+/// One number for each place, by vertex.
+std::vector<std::uint32_t> places_of(std::span<const Eigen::Vector3f> positions) {
   std::vector<std::uint32_t> by_place(positions.size()), place(positions.size());
   std::iota(by_place.begin(), by_place.end(), 0u);
   const auto key = [&](std::uint32_t v) { return std::tuple(positions[v].x(), positions[v].y(), positions[v].z()); };
-  std::sort(by_place.begin(), by_place.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  tbb::parallel_sort(by_place.begin(), by_place.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
   for (std::size_t k = 1; k < by_place.size(); ++k)
     place[by_place[k]] = place[by_place[k - 1]] + (key(by_place[k - 1]) < key(by_place[k]) ? 1 : 0);
+  return place;
+}
 
-  // Step 2: the same edges both ways.
-  std::vector<std::uint64_t> edges, opposite;
-  for (const auto& triangle : triangles)
+/// The triangles across the sides of each, corner 0 to 1 first; none where a side does not have just two, which run
+/// through it in opposite ways.
+struct Neighbours {
+  std::vector<std::array<std::uint32_t, 3>> across;
+  bool closed = true;  // every edge is run through as often one way as the other
+};
+
+Neighbours neighbours_of(std::span<const Eigen::Vector3f> positions,
+                         std::span<const std::array<std::uint32_t, 3>> triangles) {
+  struct Side {
+    std::uint64_t edge;  // its places, the lower first
+    std::uint32_t side;  // 2 * (3 * triangle + corner), 1 more where it is run through backwards
+  };
+  const std::vector<std::uint32_t> place = places_of(positions);
+  std::vector<Side> sides(3 * triangles.size());
+  tbb::parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t t) {
     for (int k = 0; k < 3; ++k) {
-      const std::uint64_t from = place[triangle[k]], to = place[triangle[(k + 1) % 3]];
-      edges.push_back(from << 32 | to);
-      opposite.push_back(to << 32 | from);
+      const std::uint64_t from = place[triangles[t][k]], to = place[triangles[t][(k + 1) % 3]];
+      sides[3 * t + k] = {std::min(from, to) << 32 | std::max(from, to),
+                          static_cast<std::uint32_t>(2 * (3 * t + k) + (from > to ? 1 : 0))};
     }
-  std::sort(edges.begin(), edges.end());
-  std::sort(opposite.begin(), opposite.end());
-  return edges == opposite;
+  });
+  tbb::parallel_sort(sides.begin(), sides.end(),
+                     [](const Side& a, const Side& b) { return a.edge != b.edge ? a.edge < b.edge : a.side < b.side; });
+  Neighbours neighbours;
+  neighbours.across.assign(triangles.size(), {no_neighbour, no_neighbour, no_neighbour});
+  for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
+    std::int64_t surplus = 0;
+    for (; last < sides.size() && sides[last].edge == sides[first].edge; ++last)
+      surplus += (sides[last].side & 1) == 0 ? 1 : -1;
+    if (sides[first].edge >> 32 == (sides[first].edge & 0xffffffffu)) continue;
+    if (surplus != 0) neighbours.closed = false;
+    if (surplus != 0 || last - first != 2) continue;
+    const std::uint32_t a = sides[first].side / 2, b = sides[first + 1].side / 2;
+    neighbours.across[a / 3][a % 3] = b / 3;
+    neighbours.across[b / 3][b % 3] = a / 3;
+  }
+  return neighbours;
 }
 
 /// Builds the tree from the top: ranges of triangles are halved, at whole clusters, until a node has 16 children.
@@ -40,13 +74,23 @@ class Builder {
  public:
   Builder(BeamScene& scene, std::span<const Eigen::Vector3f> positions,
           std::span<const std::array<std::uint32_t, 3>> triangles)
-      : scene_(scene), positions_(positions), triangles_(triangles), order_(triangles.size()) {
+      : scene_(scene),
+        positions_(positions),
+        triangles_(triangles),
+        neighbours_(neighbours_of(positions, triangles)),
+        order_(triangles.size()),
+        centres_(triangles.size()),
+        normals_(triangles.size()) {
     std::iota(order_.begin(), order_.end(), 0u);
-    for (const auto& t : triangles) {
-      centres_.push_back((positions[t[0]] + positions[t[1]] + positions[t[2]]) / 3);
+    tbb::parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t k) {
+      const auto& t = triangles[k];
+      centres_[k] = (positions[t[0]] + positions[t[1]] + positions[t[2]]) / 3;
       const Eigen::Vector3d a = positions[t[0]].cast<double>();
-      normals_.push_back((positions[t[1]].cast<double>() - a).cross(positions[t[2]].cast<double>() - a));
-    }
+      const Eigen::Vector3d across = (positions[t[1]].cast<double>() - a).cross(positions[t[2]].cast<double>() - a);
+      normals_[k] = across.squaredNorm() > 0 ? Eigen::Vector3f(across.normalized().cast<float>())
+                                             : Eigen::Vector3f(Eigen::Vector3f::Zero());
+    });
+    scene.closed = neighbours_.closed;
     if (!triangles.empty()) node({0, triangles.size()});
   }
 
@@ -73,20 +117,30 @@ class Builder {
     return {Range{range.first, middle}, Range{middle, range.last}};
   }
 
-  void set_cone(const Range& range, int i, BeamBoxes& boxes) const {
-    boxes.cone_sine[i] = 2;
+  void set_cones(const Range& range, int i, BeamBoxes& boxes) const {
+    boxes.cone_sine[i] = boxes.sheet_sine[i] = 2;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (std::size_t k = range.first; k < range.last; ++k) sum += normals_[order_[k]].normalized();
+    for (std::size_t k = range.first; k < range.last; ++k) sum += normals_[order_[k]].cast<double>();
     if (!(sum.squaredNorm() > 0)) return;
     const Eigen::Vector3f axis = sum.normalized().cast<float>();
-    double least_cosine = 1;
-    for (std::size_t k = range.first; k < range.last; ++k)
-      if (normals_[order_[k]].squaredNorm() > 0)  // without area nothing is hit
-        least_cosine = std::min(least_cosine, normals_[order_[k]].normalized().dot(axis.cast<double>()));
+    float least_cosine = 1, least_around = 1;
+    for (std::size_t k = range.first; k < range.last; ++k) {
+      const Eigen::Vector3f& normal = normals_[order_[k]];
+      const bool flat = normal.isZero(0);  // without area nothing is hit
+      const float cosine = flat ? 1 : normal.dot(axis);
+      least_cosine = std::min(least_cosine, cosine);
+      least_around = std::min(least_around, flat ? -1 : cosine);
+      for (std::uint32_t neighbour : neighbours_.across[order_[k]])
+        least_around =
+            std::min(least_around,
+                     neighbour == no_neighbour || normals_[neighbour].isZero(0) ? -1 : normals_[neighbour].dot(axis));
+    }
     if (least_cosine <= 0) return;
     for (int k = 0; k < 3; ++k) boxes.cone_axis[k][i] = axis[k];
-    constexpr double rounding = 1e-4;  // with room for corners that the tracer moves by a rounding
-    boxes.cone_sine[i] = static_cast<float>(std::sqrt(std::max(0.0, 1 - least_cosine * least_cosine)) + rounding);
+    constexpr float rounding = 1e-4f;  // with room for corners that the tracer moves by a rounding
+    const auto sine_of = [&](float cosine) { return std::sqrt(std::max(0.f, 1 - cosine * cosine)) + rounding; };
+    boxes.cone_sine[i] = sine_of(least_cosine);
+    if (least_around > 0) boxes.sheet_sine[i] = sine_of(least_around);
   }
 
   std::uint32_t cluster(const Range& range) {
@@ -132,7 +186,7 @@ class Builder {
       } else {
         box.extend(Eigen::Vector3f::Zero());
       }
-      if (i < made.count) set_cone(parts[i], i, made.boxes);
+      if (i < made.count) set_cones(parts[i], i, made.boxes);
       for (int axis = 0; axis < 3; ++axis) {
         made.boxes.lower[axis][i] = box.min()[axis];
         made.boxes.upper[axis][i] = box.max()[axis];
@@ -145,9 +199,9 @@ class Builder {
   BeamScene& scene_;
   std::span<const Eigen::Vector3f> positions_;
   std::span<const std::array<std::uint32_t, 3>> triangles_;
+  Neighbours neighbours_;
   std::vector<std::uint32_t> order_;
-  std::vector<Eigen::Vector3f> centres_;
-  std::vector<Eigen::Vector3d> normals_;
+  std::vector<Eigen::Vector3f> centres_, normals_;
 };
 
 }  // namespace
@@ -155,7 +209,6 @@ class Builder {
 BeamScene::BeamScene(std::span<const Eigen::Vector3f> positions,
                      std::span<const std::array<std::uint32_t, 3>> triangles) {
   Builder(*this, positions, triangles);
-  closed = is_closed(positions, triangles);
   float largest = 0;
   Eigen::AlignedBox3f box;
   for (const auto& triangle : triangles)

@@ -10,9 +10,11 @@ namespace kiln {
 namespace {
 
 constexpr std::int32_t unknown = -1, none = -2;
-constexpr std::uint32_t unknown_children = 0x10000;  // a box wholly above a plane also rises above it
+constexpr BeamPlaces unknown_places = {0, 1, 0};  // what lies wholly above a plane also rises above it
 constexpr std::uint32_t all_lanes = (1u << beam_lanes) - 1;
 constexpr std::size_t most_of_block = 128, most_of_quarter = 128;
+constexpr float direction_rounding = 1e-6f;  // of unit vectors in float32, with room
+constexpr int few_clusters = 64;             // tested rather than searched
 constexpr std::size_t all_of_them = std::numeric_limits<std::size_t>::max();
 
 /// 1 / x, of a tiny number instead of 0; the number's sign is x's.
@@ -20,6 +22,34 @@ float inverse(float& x) {
   constexpr float tiny = 1e-12f;
   if (std::abs(x) < tiny) x = x > 0 ? tiny : -tiny;
   return 1 / x;
+}
+
+/// The first `count` bits, 1 to 32 of them.
+std::uint32_t first_bits(int count) { return (2u << (count - 1)) - 1; }
+
+/// The bits of a group of 16 of `count` entries.
+std::uint32_t own_lanes(std::size_t count, std::size_t group) {
+  return first_bits(static_cast<int>(std::min<std::size_t>(beam_lanes, count - group * beam_lanes)));
+}
+
+Eigen::Vector3f at_lane(const float (&lanes)[3][beam_lanes], int lane) {
+  return {lanes[0][lane], lanes[1][lane], lanes[2][lane]};
+}
+
+/// The shaft from the zero point, for boxes less that of the packet's origins.
+BeamShaft from_zero(BeamShaft shaft) {
+  for (int axis = 0; axis < 3; ++axis) shaft.origin_lower[axis] = shaft.origin_upper[axis] = 0;
+  return shaft;
+}
+
+void copy_box(const BeamBoxes& from, int i, BeamBoxes& to, std::size_t lane) {
+  for (int axis = 0; axis < 3; ++axis) {
+    to.lower[axis][lane] = from.lower[axis][i];
+    to.upper[axis][lane] = from.upper[axis][i];
+    to.cone_axis[axis][lane] = from.cone_axis[axis][i];
+  }
+  to.cone_sine[lane] = from.cone_sine[i];
+  to.sheet_sine[lane] = from.sheet_sine[i];
 }
 
 /// Halves the directions whose bit is set across the longest side of their box.
@@ -36,8 +66,7 @@ std::array<std::uint32_t, 2> halves(const float (*direction)[3], std::uint32_t w
   int longest = 0;
   for (int axis = 1; axis < 3; ++axis)
     if (upper[axis] - lower[axis] > upper[longest] - lower[longest]) longest = axis;
-  std::stable_sort(sorted, sorted + count,
-                   [&](int a, int b) { return direction[a][longest] < direction[b][longest]; });
+  std::stable_sort(sorted, sorted + count, [&](int a, int b) { return direction[a][longest] < direction[b][longest]; });
   std::array<std::uint32_t, 2> two = {};
   for (int k = 0; k < count; ++k) two[k < count / 2 ? 0 : 1] |= 1u << sorted[k];
   return two;
@@ -59,13 +88,16 @@ BeamBlock::BeamBlock(std::span<const Eigen::Vector3f> directions) : count(static
 void BeamTracer::Front::clear() {
   clusters.clear();
   boxes.clear();
+  may_be_sheets.clear();
+  sheets.clear();
+  sheet_boxes.clear();
   nodes.clear();
 }
 
 BeamTracer::BeamTracer(const BeamScene& scene)
     : scene_(scene),
       kernels_(beam_kernels()),
-      node_children_(scene.nodes.size(), unknown_children),
+      node_places_(scene.nodes.size(), unknown_places),
       cluster_slots_(scene.clusters.size(), unknown) {
   if (!scene.nodes.empty()) root_.nodes.push_back(0);
 }
@@ -84,7 +116,7 @@ void BeamTracer::begin(const BeamPacket& packet) {
     for (int axis = 0; axis < 3; ++axis)
       span_.plane[r] += packet.normal[axis][r] * (packet.origin[axis][r] - span_.centre[axis]);
   }
-  for (std::uint32_t node : known_nodes_) node_children_[node] = unknown_children;
+  for (std::uint32_t node : known_nodes_) node_places_[node] = unknown_places;
   for (std::uint32_t cluster : known_clusters_) cluster_slots_[cluster] = unknown;
   known_nodes_.clear();
   known_clusters_.clear();
@@ -94,7 +126,6 @@ void BeamTracer::begin(const BeamPacket& packet) {
 
 BeamShaft BeamTracer::shaft_along(const float (*direction)[3], std::uint32_t which) const {
   BeamShaft shaft;
-  constexpr float spread = 1e-6f;  // of unit vectors in float32, with room
   float squared_length = 0;
   for (int axis = 0; axis < 3; ++axis) {
     float lower = 1, upper = -1, sum = 0;
@@ -104,8 +135,8 @@ BeamShaft BeamTracer::shaft_along(const float (*direction)[3], std::uint32_t whi
       upper = std::max(upper, along);
       sum += along;
     }
-    shaft.direction_lower[axis] = lower - spread;
-    shaft.direction_upper[axis] = upper + spread;
+    shaft.direction_lower[axis] = lower - direction_rounding;
+    shaft.direction_upper[axis] = upper + direction_rounding;
     shaft.inverse_lower[axis] = inverse(shaft.direction_lower[axis]);
     shaft.inverse_upper[axis] = inverse(shaft.direction_upper[axis]);
     shaft.origin_lower[axis] = span_.centre[axis] - span_.half[axis] - span_.slack;
@@ -116,7 +147,7 @@ BeamShaft BeamTracer::shaft_along(const float (*direction)[3], std::uint32_t whi
   shaft.cone_sine = 2;
   const float scale = squared_length > 0 ? 1 / std::sqrt(squared_length) : 0;
   for (float& along : shaft.cone_axis) along *= scale;
-  if (!outside_) return shaft;
+  shaft.outside = outside_;
   float least_cosine = 1;
   for (std::uint32_t left = which; left != 0; left &= left - 1) {
     const float* along = direction[__builtin_ctz(left)];
@@ -138,7 +169,7 @@ bool BeamTracer::stands_outside() {
   while (!queue_.empty()) {
     const BeamScene::Node& node = scene_.nodes[queue_.back()];
     queue_.pop_back();
-    std::uint32_t children = kernels_.boxes_in(shaft, node.boxes) & ((2u << (node.count - 1)) - 1);
+    std::uint32_t children = kernels_.meet(shaft, node.boxes).met & ((2u << (node.count - 1)) - 1);
     for (; children != 0; children &= children - 1) {
       const int i = __builtin_ctz(children);
       if ((node.is_cluster >> i & 1) == 0)
@@ -152,62 +183,148 @@ bool BeamTracer::stands_outside() {
   return true;
 }
 
-void BeamTracer::search(const Front& from, const BeamShaft& shaft, std::size_t most, Front& found) {
+void BeamTracer::set_box(const float* lower, const float* upper, const BeamBoxes& from, int i, std::size_t lane,
+                         BeamBoxes& to) const {
+  for (int axis = 0; axis < 3; ++axis) {
+    to.lower[axis][lane] = (lower[axis] - span_.centre[axis]) - (span_.half[axis] + span_.slack);
+    to.upper[axis][lane] = (upper[axis] - span_.centre[axis]) + (span_.half[axis] + span_.slack);
+    to.cone_axis[axis][lane] = from.cone_axis[axis][i];
+  }
+  to.cone_sine[lane] = from.cone_sine[i];
+  to.sheet_sine[lane] = from.sheet_sine[i];
+}
+
+BeamTracer::Verdict BeamTracer::search(const Front& from, const BeamShaft& shaft, std::size_t most, Front& found) {
   found.clear();
-  // Step 1: the clusters.
-  BeamShaft about_zero = shaft;
-  for (int axis = 0; axis < 3; ++axis) about_zero.origin_lower[axis] = about_zero.origin_upper[axis] = 0;
+  std::size_t edges = 0;
+  // Step 1: the clusters and sheets.
+  const BeamShaft about_zero = from_zero(shaft);
   for (std::size_t group = 0; group < from.boxes.size(); ++group) {
-    const BeamBoxes& boxes = from.boxes[group];
-    std::uint32_t met = kernels_.boxes_in(about_zero, boxes);
-    const std::size_t left = from.clusters.size() - group * beam_lanes;
-    if (left < beam_lanes) met &= (1u << left) - 1;
-    for (; met != 0; met &= met - 1) {
-      const int i = __builtin_ctz(met);
+    const auto [met, sheets] = kernels_.meet(about_zero, from.boxes[group]);
+    for (std::uint32_t left = met & own_lanes(from.clusters.size(), group); left != 0; left &= left - 1) {
+      const int i = __builtin_ctz(left);
       const std::size_t lane = found.clusters.size() % beam_lanes;
+      const std::uint32_t may_be_sheet = from.may_be_sheets[group] >> i & 1;
       found.clusters.push_back(from.clusters[group * beam_lanes + i]);
-      if (lane == 0) found.boxes.emplace_back();
-      BeamBoxes& kept = found.boxes.back();
-      for (int axis = 0; axis < 3; ++axis) {
-        kept.lower[axis][lane] = boxes.lower[axis][i];
-        kept.upper[axis][lane] = boxes.upper[axis][i];
-        kept.cone_axis[axis][lane] = boxes.cone_axis[axis][i];
-      }
-      kept.cone_sine[lane] = boxes.cone_sine[i];
+      if (lane == 0) found.boxes.emplace_back(), found.may_be_sheets.push_back(0);
+      found.may_be_sheets.back() |= may_be_sheet << lane;
+      copy_box(from.boxes[group], i, found.boxes.back(), lane);
+      edges += 1 - (may_be_sheet & sheets >> i);
     }
   }
+  for (std::size_t group = 0; group < from.sheet_boxes.size(); ++group)
+    for (std::uint32_t left =
+             kernels_.meet(about_zero, from.sheet_boxes[group]).met & own_lanes(from.sheets.size(), group);
+         left != 0; left &= left - 1) {
+      const int i = __builtin_ctz(left);
+      const std::size_t lane = found.sheets.size() % beam_lanes;
+      found.sheets.push_back(from.sheets[group * beam_lanes + i]);
+      if (lane == 0) found.sheet_boxes.emplace_back();
+      copy_box(from.sheet_boxes[group], i, found.sheet_boxes.back(), lane);
+    }
   // Step 2: the nodes, level after level.
   found.nodes.assign(from.nodes.begin(), from.nodes.end());
   std::size_t next = 0;
   for (; next < found.nodes.size() && found.clusters.size() + found.nodes.size() - next < most; ++next)
-    open(found.nodes[next], shaft, found);
+    edges += open(found.nodes[next], shaft, found);
   found.nodes.erase(found.nodes.begin(), found.nodes.begin() + static_cast<std::ptrdiff_t>(next));
+  edges += found.nodes.size();
+  // Step 3: the one ray.
+  if (edges > 0) return Verdict::mixed;
+  return meets_sheet(found, shaft) ? Verdict::hidden : Verdict::lit;
 }
 
-void BeamTracer::open(std::uint32_t index, const BeamShaft& shaft, Front& found) {
+std::size_t BeamTracer::open(std::uint32_t index, const BeamShaft& shaft, Front& found) {
   const BeamScene::Node& node = scene_.nodes[index];
-  if (node_children_[index] == unknown_children) {
-    node_children_[index] = kernels_.boxes_above(packet_, span_, node.boxes, node.count);
+  BeamPlaces& places = node_places_[index];
+  if (places.whole == unknown_places.whole && places.above == 0) {
+    places = kernels_.places_of(packet_, span_, node.boxes, node.count);
     known_nodes_.push_back(index);
   }
-  const std::uint32_t above = node_children_[index];
-  std::uint32_t children = above & all_lanes;
-  if (children != 0) children &= kernels_.boxes_in(shaft, node.boxes);
-  for (; children != 0; children &= children - 1) {
-    const int i = __builtin_ctz(children);
-    if ((node.is_cluster >> i & 1) == 0)
+  if (places.above == 0) return 0;
+  const auto [met, sheets] = kernels_.meet(shaft, node.boxes);
+  const std::uint32_t may_be_sheets = places.whole & places.apart;
+  std::size_t edges = 0;
+  for (std::uint32_t left = met & places.above; left != 0; left &= left - 1) {
+    const int i = __builtin_ctz(left);
+    const bool is_sheet = (may_be_sheets & sheets) >> i & 1;
+    if ((node.is_cluster >> i & 1) != 0) {
+      if (add_cluster(node, i, (places.whole >> i & 1) != 0, (may_be_sheets >> i & 1) != 0, found) && !is_sheet)
+        ++edges;
+    } else if (is_sheet) {
+      const std::size_t lane = found.sheets.size() % beam_lanes;
+      found.sheets.push_back(node.child[i]);
+      if (lane == 0) found.sheet_boxes.emplace_back();
+      const Eigen::Vector3f lower = at_lane(node.boxes.lower, i), upper = at_lane(node.boxes.upper, i);
+      set_box(lower.data(), upper.data(), node.boxes, i, lane, found.sheet_boxes.back());
+    } else {
       found.nodes.push_back(node.child[i]);
-    else
-      add_cluster(node, i, (above >> (16 + i) & 1) != 0, found);
+    }
+  }
+  return edges;
+}
+
+void BeamTracer::open_sheets(const BeamShaft& shaft, Front& front) {
+  queue_.assign(front.sheets.begin(), front.sheets.end());
+  front.sheets.clear();
+  front.sheet_boxes.clear();
+  while (!queue_.empty()) {
+    const BeamScene::Node& node = scene_.nodes[queue_.back()];
+    queue_.pop_back();
+    for (std::uint32_t left = kernels_.meet(shaft, node.boxes).met & first_bits(node.count); left != 0;
+         left &= left - 1) {
+      const int i = __builtin_ctz(left);
+      if ((node.is_cluster >> i & 1) != 0)
+        add_cluster(node, i, true, true, front);
+      else
+        queue_.push_back(node.child[i]);
+    }
   }
 }
 
-void BeamTracer::add_cluster(const BeamScene::Node& node, int child, bool whole, Front& front) {
+bool BeamTracer::meets_sheet(const Front& front, const BeamShaft& shaft) {
+  if (front.clusters.empty() && front.sheets.empty()) return false;
+  // Some ray of the shaft: from its middle along the mean of its directions.
+  BeamShaft ray = shaft;
+  float direction[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    ray.origin_lower[axis] = span_.centre[axis] - span_.slack;
+    ray.origin_upper[axis] = span_.centre[axis] + span_.slack;
+    direction[axis] = shaft.cone_axis[axis];
+    ray.direction_lower[axis] = direction[axis] - direction_rounding;
+    ray.direction_upper[axis] = direction[axis] + direction_rounding;
+    ray.inverse_lower[axis] = inverse(ray.direction_lower[axis]);
+    ray.inverse_upper[axis] = inverse(ray.direction_upper[axis]);
+  }
+  const BeamShaft about_zero = from_zero(ray);
+  for (std::size_t group = 0; group < front.boxes.size(); ++group)
+    for (std::uint32_t left =
+             kernels_.meet(about_zero, front.boxes[group]).met & own_lanes(front.clusters.size(), group);
+         left != 0; left &= left - 1)
+      if (kernels_.hits(span_, direction, outside_, *front.clusters[group * beam_lanes + __builtin_ctz(left)]))
+        return true;
+  queue_.assign(front.sheets.begin(), front.sheets.end());
+  while (!queue_.empty()) {
+    const BeamScene::Node& node = scene_.nodes[queue_.back()];
+    queue_.pop_back();
+    for (std::uint32_t left = kernels_.meet(ray, node.boxes).met & first_bits(node.count); left != 0;
+         left &= left - 1) {
+      const int i = __builtin_ctz(left);
+      if ((node.is_cluster >> i & 1) == 0)
+        queue_.push_back(node.child[i]);
+      else if (kernels_.hits(span_, direction, outside_, scene_.clusters[node.child[i]]))
+        return true;
+    }
+  }
+  return false;
+}
+
+bool BeamTracer::add_cluster(const BeamScene::Node& node, int child, bool whole, bool may_be_sheet, Front& front) {
   const std::uint32_t cluster = node.child[child];
   const LocalCluster* local = nullptr;
   if (!whole) {
     std::int32_t& slot = cluster_slots_[cluster];
-    if (slot == none) return;
+    if (slot == none) return false;
     if (slot == unknown) {
       known_clusters_.push_back(cluster);
       if (local_count_ == local_.size()) local_.emplace_back();
@@ -215,55 +332,61 @@ void BeamTracer::add_cluster(const BeamScene::Node& node, int child, bool whole,
       if (kernels_.keep_above(packet_, span_, scene_.clusters[cluster], fresh.triangles, fresh.lower, fresh.upper) ==
           0) {
         slot = none;
-        return;
+        return false;
       }
       slot = static_cast<std::int32_t>(local_count_++);
     }
     local = &local_[slot];
   }
+  const std::size_t lane = front.clusters.size() % beam_lanes;
   front.clusters.push_back(local != nullptr ? &local->triangles : &scene_.clusters[cluster]);
-  const std::size_t lane = (front.clusters.size() - 1) % beam_lanes;
-  if (lane == 0) front.boxes.emplace_back();
-  BeamBoxes& boxes = front.boxes.back();
-  for (int axis = 0; axis < 3; ++axis) {
-    const float lower = local != nullptr ? local->lower[axis] : node.boxes.lower[axis][child];
-    const float upper = local != nullptr ? local->upper[axis] : node.boxes.upper[axis][child];
-    boxes.lower[axis][lane] = (lower - span_.centre[axis]) - (span_.half[axis] + span_.slack);
-    boxes.upper[axis][lane] = (upper - span_.centre[axis]) + (span_.half[axis] + span_.slack);
-    boxes.cone_axis[axis][lane] = node.boxes.cone_axis[axis][child];
-  }
-  boxes.cone_sine[lane] = node.boxes.cone_sine[child];
+  if (lane == 0) front.boxes.emplace_back(), front.may_be_sheets.push_back(0);
+  front.may_be_sheets.back() |= (may_be_sheet ? 1u : 0u) << lane;
+  const Eigen::Vector3f lower = at_lane(node.boxes.lower, child), upper = at_lane(node.boxes.upper, child);
+  set_box(local != nullptr ? local->lower : lower.data(), local != nullptr ? local->upper : upper.data(), node.boxes,
+          child, lane, front.boxes.back());
+  return true;
+}
+
+BeamTracer::Verdict BeamTracer::search_along(const float (*direction)[3], int d, const Front*& front) {
+  front = &of_quarter_;
+  if (of_quarter_.nodes.empty() && of_quarter_.sheets.empty() &&
+      static_cast<int>(of_quarter_.clusters.size()) <= few_clusters)
+    return Verdict::mixed;
+  const BeamShaft shaft = shaft_along(direction, 1u << d);
+  const Verdict verdict = search(of_quarter_, shaft, all_of_them, of_direction_);
+  if (verdict == Verdict::mixed) open_sheets(shaft, of_direction_);
+  front = &of_direction_;
+  return verdict;
 }
 
 void BeamTracer::trace(const BeamBlock& block, BeamWeights& weights) {
   weights.facing = kernels_.face(packet_, block.direction, block.count, weights);
   weights.lit = 0;
+  // Settles a verdict on some directions; returns whether it does.
+  const auto settle = [&](Verdict verdict, std::uint32_t which) {
+    if (verdict == Verdict::lit) weights.lit |= which;
+    if (verdict == Verdict::hidden)
+      for (; which != 0; which &= which - 1) std::fill_n(weights.weight[__builtin_ctz(which)], beam_lanes, 0.f);
+    return verdict != Verdict::mixed;
+  };
   if (weights.facing == 0) return;
-
-  search(root_, shaft_along(block.direction, weights.facing), most_of_block, of_block_);
-  if (of_block_.empty()) {
-    weights.lit = weights.facing;
+  if (settle(search(root_, shaft_along(block.direction, weights.facing), most_of_block, of_block_), weights.facing))
     return;
-  }
   for (const std::uint32_t quarter : block.quarter) {
     const std::uint32_t facing = weights.facing & quarter;
     if (facing == 0) continue;
-    search(of_block_, shaft_along(block.direction, facing), most_of_quarter, of_quarter_);
-    if (of_quarter_.empty()) {
-      weights.lit |= facing;
-      continue;
-    }
+    if (settle(search(of_block_, shaft_along(block.direction, facing), most_of_quarter, of_quarter_), facing)) continue;
     int first = 0;
     for (std::uint32_t left = facing; left != 0; left &= left - 1) {
       const int d = __builtin_ctz(left);
-      const Front* front = &of_quarter_;
-      if (!of_quarter_.nodes.empty()) {
-        search(of_quarter_, shaft_along(block.direction, 1u << d), all_of_them, of_direction_);
-        front = &of_direction_;
-      }
-      const BeamRay ray{block.direction[d],  front->clusters.data(), static_cast<int>(front->clusters.size()),
-                        front->boxes.data(), outside_,               scene_.doubtful};
-      if (!kernels_.shade(packet_, span_, ray, first, weights.weight[d])) weights.lit |= 1u << d;
+      const Front* front = nullptr;
+      if (settle(search_along(block.direction, d, front), 1u << d)) continue;
+      const BeamRay ray{
+          block.direction[d], front->clusters.data(), static_cast<int>(front->clusters.size()), front->boxes.data(),
+          outside_,           scene_.doubtful};
+      const auto shade = ray.candidate_count > few_clusters ? kernels_.shade_crowded : kernels_.shade;
+      if (!shade(packet_, span_, ray, first, weights.weight[d])) weights.lit |= 1u << d;
     }
   }
 }

@@ -45,22 +45,39 @@ class BeamTracer {
     float lower[3], upper[3];
   };
 
-  /// What some beams may meet: clusters with their boxes less that of the packet's origins (Minkowski: a beam meets
-  /// theirs where a ray from zero meets these), and nodes whose children are not looked at yet.
+  enum class Verdict : std::uint8_t { lit, hidden, mixed };
+
+  /// What some beams may meet.
   struct Front {
+    /// Clusters, and their boxes less that of the packet's origins (Minkowski): a beam meets theirs where a ray from
+    /// zero meets these.
     std::vector<const BeamScene::Cluster*> clusters;
     std::vector<BeamBoxes> boxes;
-    std::vector<std::uint32_t> nodes;
+    std::vector<std::uint32_t> may_be_sheets;  ///< by group of 16, a bit each: clusters that lie off all receivers
+    /// Nodes all of whose triangles, and their neighbours, face the beams, and boxes as above.
+    std::vector<std::uint32_t> sheets;
+    std::vector<BeamBoxes> sheet_boxes;
+    std::vector<std::uint32_t> nodes;  ///< whose children are not looked at yet
 
-    bool empty() const { return clusters.empty() && nodes.empty(); }
     void clear();
   };
 
-  /// What of `from` the beams of a shaft may meet. Nodes are opened until there are `most` of clusters and nodes.
-  void search(const Front& from, const BeamShaft& shaft, std::size_t most, Front& found);
-  void open(std::uint32_t node, const BeamShaft& shaft, Front& found);
+  /// What of `from` the beams of a shaft may meet, and whether all their rays fare alike. Nodes are opened until there
+  /// are `most` of them and clusters.
+  ///
+  /// Rays fare alike where all that they meet are sheets: triangles that face all of them, off the receivers, whose
+  /// neighbours do so, too. Then no ray passes an edge of the union of these sheets, so that each crosses it as often
+  /// as every other: one ray tells for all.
+  Verdict search(const Front& from, const BeamShaft& shaft, std::size_t most, Front& found);
+  /// Verdict on a single direction; `front` becomes what is to be tested where it is mixed.
+  Verdict search_along(const float (*direction)[3], int d, const Front*& front);
+  std::size_t open(std::uint32_t node, const BeamShaft& shaft, Front& found);
+  void open_sheets(const BeamShaft& shaft, Front& front);
+  bool meets_sheet(const Front& front, const BeamShaft& shaft);
   /// `whole`: no triangle of the cluster is under all receivers' tangent planes.
-  void add_cluster(const BeamScene::Node& node, int child, bool whole, Front& front);
+  bool add_cluster(const BeamScene::Node& node, int child, bool whole, bool may_be_sheet, Front& front);
+  void set_box(const float* lower, const float* upper, const BeamBoxes& from, int i, std::size_t lane,
+               BeamBoxes& to) const;
   /// The beam along the directions whose bit is set.
   BeamShaft shaft_along(const float (*direction)[3], std::uint32_t which) const;
   bool stands_outside();
@@ -69,9 +86,9 @@ class BeamTracer {
   const BeamKernels& kernels_;
   BeamPacket packet_;
   BeamSpan span_;
-  bool outside_ = false;                      ///< only triangles that face the ray count
-  std::vector<std::uint32_t> node_children_;  ///< by node, what boxes_above says
-  std::vector<std::int32_t> cluster_slots_;   ///< by cluster: its index in local_, none or unknown
+  bool outside_ = false;                     ///< only triangles that face the ray count
+  std::vector<BeamPlaces> node_places_;      ///< by node, of its children
+  std::vector<std::int32_t> cluster_slots_;  ///< by cluster: its index in local_, none or unknown
   std::vector<std::uint32_t> known_nodes_, known_clusters_;
   std::deque<LocalCluster> local_;  ///< the first local_count_ are the packet's
   std::size_t local_count_ = 0;
