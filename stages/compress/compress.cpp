@@ -6,8 +6,8 @@
 #include <map>
 #include <optional>
 
-#include "base/stopwatch.h"
 #include "base/errors.h"
+#include "base/stopwatch.h"
 #include "compress/compress_files.h"
 
 namespace kiln {
@@ -233,7 +233,9 @@ class Search {
   /// Says whether the model leaves room, and if so what came of it.
   enum class Outcome { lacks, worse, best };
   Outcome attempt_clusters(int clusters, int components) {
-    const ClusteredPca clustered = clustered_pca(source_, all_, clusters, components, settings_.seed);
+    if (clusters != starts_clusters_) start_ = cluster_texels(source_, clusters, settings_.seed);
+    starts_clusters_ = clusters;
+    const ClusteredPca clustered = clustered_pca(source_, all_, start_, components);
     const double left = error_of(clustered.residual);
     raise_target(left);
     const TexelModel model = texel_model(source_, clustered, owners_);
@@ -347,6 +349,8 @@ class Search {
   TransferSource source_;
   std::vector<std::uint32_t> owners_, sample_;
   PrincipalComponents all_;
+  TexelClusters start_;      ///< of the number of clusters tried last:
+  int starts_clusters_ = 0;  ///< that many
   CompressResult result_;
   std::optional<CompressCandidate> best_;
   std::optional<TexelModel> best_model_;              ///< none: planes
