@@ -35,6 +35,7 @@ class Search {
         source_(asset),
         owners_(gutter_owners(source_, settings.gutter)),
         sample_(source_.sample(sampled_texels)),
+        sample_vectors_(source_.vectors(sample_)),
         all_(principal_components(source_)) {}
 
   CompressResult run() {
@@ -109,35 +110,48 @@ class Search {
   /// Whether a model leaves so much at its worst that rounding cannot be borne. Of one basis a sample tells.
   bool leaves_worse(const TexelModel& model) const {
     if (is_fixed()) return false;
-    const TexelErrors errors = stored_errors(source_, model, 0);
-    const ErrorSpread left = model.model.clusters() == 1
-                                 ? error_spread(source_, errors, std::span<const std::uint32_t>(sample_))
-                                 : error_spread(source_, errors, std::span<const std::uint8_t>(model.ids));
+    const ErrorSpread left =
+        model.model.clusters() == 1
+            ? error_spread(source_, vector_errors(model, 0), sample_vectors_, sample_)
+            : error_spread(source_, stored_errors(source_, model, 0), std::span<const std::uint8_t>(model.ids));
     return left.texel > reach * most_texel_error || left.border > reach * most_border_jump;
   }
 
-  /// The largest step that stays within the target, on the sample; 0 where none does.
-  double step_for(const TexelModel& model, double target) const {
-    const auto error_at = [&](double step) {
-      const TexelModel rounded{rounded_model(model.model, source_, all_, step), model.ids, {}};
-      return error_spread(source_, stored_errors(source_, rounded, step), std::span<const std::uint32_t>(sample_)).mean;
-    };
-    const double room = target * std::sqrt(source_.squared_norm() / static_cast<double>(source_.covered().size()));
-    // All the error a step's rounding can make is step^2 / 12 per component; start from there, in steps of factors.
-    double high = room * std::sqrt(12.0 / std::max(1, model.model.components)) * 4, low = 0;
-    for (double step = high; step > high / 4096; step /= 2)
-      if (error_at(step) <= target) {
-        low = step;
-        break;
-      } else {
-        high = step;
-      }
-    if (low == 0) return 0;
-    for (int k = 0; k < 5 && high > low; ++k) {
-      const double middle = std::sqrt(low * high);
-      (error_at(middle) <= target ? low : high) = middle;
+  /// A step for the weights of a model, and what it leaves without rounding.
+  struct Step {
+    double step = 0;  ///< 0: none stays within the target
+    double left = 0;
+
+    /// The step that reaches `aim` if one of `at` leaves `error`: rounding adds squares of steps, nearly.
+    double towards(double aim, double at, double error) const {
+      return at * std::sqrt(std::max(0.01, (aim * aim - left * left) / (error * error - left * left)));
     }
-    return low;
+  };
+
+  /// The largest step that stays within the target, on the sample.
+  Step step_for(const TexelModel& model, double target) const {
+    const auto error_at = [&](double step) {
+      const TexelModel rounded{step > 0 ? rounded_model(model.model, source_, all_, step) : model.model, model.ids, {}};
+      return error_spread(source_, vector_errors(rounded, step), sample_vectors_, sample_).mean;
+    };
+    constexpr double nearly = 0.998, aim = 0.999;  // of the target
+    constexpr int most_tries = 12;
+    Step found{0, error_at(0)};
+    if (found.left >= target) return found;
+    // All the error a step's rounding can make is step^2 / 12 per component.
+    const double room = std::sqrt(source_.squared_norm() / static_cast<double>(source_.covered().size())) *
+                        std::sqrt(target * target - found.left * found.left);
+    double step = room * std::sqrt(12.0 / std::max(1, model.model.components)), high = 0;
+    for (int k = 0; k < most_tries && step > 0; ++k) {
+      const double error = error_at(step);
+      (error <= target ? found.step : high) = step;
+      if (error >= nearly * target && error <= target) break;
+      double next = error > found.left ? found.towards(aim * target, step, error) : 2 * step;
+      if (high > 0 && (next <= found.step || next >= high)) next = (found.step + high) / 2;
+      if (high > 0 && found.step > nearly * high) break;
+      step = next;
+    }
+    return found;
   }
 
   /// Tries a model: as coarse as the target allows, measured on all texels. Says whether it is the cheapest so far.
@@ -146,32 +160,34 @@ class Search {
   }
 
   bool attempt(const TexelModel& model, CompressScheme scheme, double target, bool bounds_worst) {
-    double step = step_for(model, target);
+    const Step found = step_for(model, target);
+    double step = found.step;
     if (step == 0) return false;
     constexpr int most_tries = 12;
     for (int k = 0; k < most_tries; ++k) {
-      const StoredPca stored = store_pca(source_, model, all_, step);
-      CompressCandidate candidate = describe(stored, scheme, step);
-      const std::vector<std::uint8_t>& ids = stored.decoded.ids;
-      const ErrorSpread spread =
-          error_spread(source_, stored_errors(source_, stored.decoded, step),
-                       candidate.clusters > 1 ? std::span<const std::uint8_t>(ids) : std::span<const std::uint8_t>());
+      CompressCandidate candidate;
+      const TexelModel rounded{rounded_model(model.model, source_, all_, step), model.ids, {}};
+      const ErrorSpread spread = error_spread(
+          source_, stored_errors(source_, rounded, step),
+          model.model.clusters() > 1 ? std::span<const std::uint8_t>(model.ids) : std::span<const std::uint8_t>());
       candidate.error = spread.mean;
       candidate.texel_error = spread.texel;
       candidate.border_jump = spread.border;
       const bool is_worse = bounds_worst && !is_bounded(candidate);
       if ((candidate.error > target || is_worse) && k + 1 < most_tries) {
-        step *= is_worse ? 0.85 : 0.98;  // else the sample was too kind
+        // Else the sample was too kind.
+        step *= is_worse ? 0.85 : std::clamp(found.towards(0.9995 * target, 1, candidate.error), 0.9, 0.999);
         continue;
       }
+      const StoredPca stored = store_pca(source_, model, all_, step);
+      describe(stored, scheme, step, candidate);
       candidate.bytes = size_of(encode_pca(stored, source_, PngEffort::quick));
       return consider(candidate, &model);
     }
     return false;
   }
 
-  CompressCandidate describe(const StoredPca& stored, CompressScheme scheme, double step) const {
-    CompressCandidate candidate;
+  static void describe(const StoredPca& stored, CompressScheme scheme, double step, CompressCandidate& candidate) {
     candidate.scheme = scheme;
     candidate.clusters = stored.decoded.model.clusters();
     candidate.components = stored.decoded.model.components;
@@ -180,7 +196,6 @@ class Search {
     const int layers = (candidate.components + planes_per_lookup - 1) / planes_per_lookup;
     candidate.lookups = candidate.clusters == 1 ? layers : 1 + layers;
     candidate.lookups_at_borders = candidate.clusters == 1 ? layers : 1 + 4 * layers;
-    return candidate;
   }
 
   /// A model that leaves more than the target: tried as coarse as fits what it leaves, to show what more error would
@@ -348,6 +363,7 @@ class Search {
   ProgressFunction progress_;
   TransferSource source_;
   std::vector<std::uint32_t> owners_, sample_;
+  Eigen::MatrixXf sample_vectors_;
   PrincipalComponents all_;
   TexelClusters start_;      ///< of the number of clusters tried last:
   int starts_clusters_ = 0;  ///< that many
