@@ -14,8 +14,8 @@ namespace kiln {
 namespace {
 
 constexpr std::size_t sampled_texels = 32768;
-constexpr int mean_rounds = 6, subspace_rounds = 20, full_rounds = 2;
-constexpr int tried_subspaces = 24;
+constexpr int mean_rounds = 6, subspace_rounds = 10, full_rounds = 1, further_rounds = 8;
+constexpr int tried_subspaces = 16;
 
 using Ids = std::vector<std::uint8_t>;
 
@@ -235,6 +235,19 @@ void align(const PrincipalComponents& all, PcaModel& model) {
   }
 }
 
+/// Rounds on all texels, and what they leave.
+void settle(const TransferSource& source, const PrincipalComponents& all, int rounds, Assignment& every,
+            ClusteredPca& result) {
+  const VectorsOf covered = vectors_of(source, source.covered());
+  for (int round = 0; round < rounds; ++round) {
+    assign(covered, result.model, every);
+    refit(covered, every.ids, result.model);
+  }
+  result.residual = assign(covered, result.model, every);
+  result.ids = every.ids;
+  align(all, result.model);
+}
+
 }  // namespace
 
 TexelClusters cluster_texels(const TransferSource& source, int clusters, int seed) {
@@ -275,17 +288,18 @@ ClusteredPca clustered_pca(const TransferSource& source, const PrincipalComponen
   // On all texels.
   const std::size_t count = source.covered().size();
   Assignment every{Ids(count), Ids(count)};
-  const VectorsOf covered = vectors_of(source, source.covered());
-  find_near(covered, model, every.near);
+  find_near(vectors_of(source, source.covered()), model, every.near);
   every.ids = every.near;
-  for (int round = 0; round < full_rounds; ++round) {
-    assign(covered, model, every);
-    refit(covered, every.ids, model);
-  }
-  result.residual = assign(covered, model, every);
-  result.ids = std::move(every.ids);
-  align(all, model);
+  settle(source, all, full_rounds, every, result);
   return result;
+}
+
+void improve(const TransferSource& source, const PrincipalComponents& all, ClusteredPca& clustered) {
+  const VectorsOf covered = vectors_of(source, source.covered());
+  refit(covered, clustered.ids, clustered.model);  // aligned means say nothing of what is near
+  Assignment every{clustered.ids, Ids(clustered.ids.size())};
+  find_near(covered, clustered.model, every.near);
+  settle(source, all, further_rounds, every, clustered);
 }
 
 ClusteredPca clustered_pca(const TransferSource& source, const PrincipalComponents& all, int clusters, int components,

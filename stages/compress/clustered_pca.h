@@ -34,7 +34,10 @@ TexelClusters cluster_texels(const TransferSource& source, int clusters, int see
 ClusteredPca clustered_pca(const TransferSource& source, const PrincipalComponents& all, const TexelClusters& start,
                            int components);
 
-/// Both at once.
+/// Goes on for further rounds on all texels, which lower the residual by some percent.
+void improve(const TransferSource& source, const PrincipalComponents& all, ClusteredPca& clustered);
+
+/// Clusters the texels and fits the subspaces.
 ClusteredPca clustered_pca(const TransferSource& source, const PrincipalComponents& all, int clusters, int components,
                            int seed);
 
