@@ -27,9 +27,9 @@ std::string row(const std::string& label, const std::string& value) {
 std::string metric_rows(const std::string& stage, const Json& metrics) {
   std::string html;
   for (const auto& [key, value] : metrics.items()) {
-    if (key == "stage" || key == "version" || key == "settings" || key == "inputs" || key == "outputs" || key == "seconds" ||
-        key == "verification" || key == "plain" || key == "chosen" || key == "bounces" || key == "subsurface" ||
-        value.is_array())
+    if (key == "stage" || key == "version" || key == "settings" || key == "inputs" || key == "outputs" ||
+        key == "seconds" || key == "verification" || key == "plain" || key == "chosen" || key == "bounces" ||
+        key == "subsurface" || value.is_array())
       continue;
     if (!value.is_object()) {
       html += row(metric_label(stage + "." + key), metric_value(key, value));

@@ -163,7 +163,10 @@ RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& lig
       parse_placement("place", paths.places.front()).matrix() != Eigen::Matrix4d::Identity())
     throw WrongUsage("probes: found --place " + paths.places.front() +
                      " of the first asset; expected 0,0,0, where the probes are its own");
+  if (paths.each_light && (is_sheet(settings) || settings.frames > 1))
+    throw WrongUsage("each-light: found a sheet or --frames; expected one picture");
   const LightSettings given = chosen_lights(light_settings, paths.light_file);
+  if (paths.each_light && given.lights.empty()) throw WrongUsage("each-light: found no --light; expected at least one");
 
   RenderScene scene;
   scene.specs = light_specs(given);
@@ -180,7 +183,13 @@ RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& lig
     place_the_rest(scene, camera_settings_of(settings).azimuth_degrees);
   if (!paths.compressed.empty()) scene.compressed = load_other_form(paths.compressed, scene.assets.front());
   if (!paths.probes.empty()) scene.probes = load_probes(paths.probes);
-  scene.lights = scene_lights(given, std::max(bands, scene.probes ? scene.probes->bands : 0));
+  const int light_bands = std::max(bands, scene.probes ? scene.probes->bands : 0);
+  scene.lights = scene_lights(given, light_bands);
+  for (std::size_t k = 0; paths.each_light && k < given.lights.size(); ++k) {
+    LightSettings one = given;
+    one.lights = {given.lights[k]};
+    scene.each_light.push_back(scene_lights(one, light_bands));
+  }
   return scene;
 }
 
@@ -197,16 +206,19 @@ Json render_to_files(OutputSet& outputs, const std::string& name, const RenderSc
   }
   const PictureSettings picture = picture_of(settings);
   const std::vector<SceneView> views = views_of(settings, scene_shape(uploaded.assets));
+  const std::size_t pictures = std::max(views.size(), scene.each_light.size());
   Json metrics;
-  for (std::size_t frame = 0; frame < views.size(); ++frame) {
-    const Image<float> radiance = render_scene(uploaded.assets, scene.lights, views[frame]);
-    const std::string file = views.size() > 1 ? frame_name(name, static_cast<int>(frame)) : name;
-    write_picture(outputs.add(file), radiance, picture);
-    if (frame == 0) {
+  for (std::size_t k = 0; k < pictures; ++k) {
+    const SceneView& view = views[std::min(k, views.size() - 1)];
+    const SceneLights& lights = scene.each_light.empty() ? scene.lights : scene.each_light[k];
+    const Image<float> radiance = render_scene(uploaded.assets, lights, view);
+    const bool numbered = views.size() > 1 || !scene.each_light.empty();
+    write_picture(outputs.add(numbered ? frame_name(name, static_cast<int>(k)) : name), radiance, picture);
+    if (k == 0) {
       metrics = render_metrics(uploaded.assets, scene.specs, radiance, context);
-      metrics["camera"] = to_json(views[frame].camera);
+      metrics["camera"] = to_json(view.camera);
     }
-    progress(static_cast<double>(frame + 1) / static_cast<double>(views.size()));
+    progress(static_cast<double>(k + 1) / static_cast<double>(pictures));
   }
   metrics["frames"] = views.size();
   return metrics;
