@@ -64,10 +64,10 @@ TriangleMesh surroundings_of(const AssetFolder& asset, const TriangleMesh& high)
   return all;
 }
 
-/// An asset under each light.
+/// Assets under each light.
 struct Rendered {
-  Json said;  ///< by kiln-render, of the first
-  std::vector<Image<float>> pictures;
+  Json said;                           ///< by kiln-render, of the first
+  std::vector<Image<float>> pictures;  ///< asset after asset, light after light
 };
 
 /// The asset's pictures have the size that was asked for.
@@ -78,9 +78,9 @@ Image<float> read_rendered(const fs::path& file, const ReportSettings& settings)
   return picture;
 }
 
-/// Draws a baked or compressed folder under each light, all in one run: to start, and to load the asset, takes longer
-/// than to draw it.
-Rendered render(const fs::path& folder, const std::vector<std::string>& lights, double albedo,
+/// Draws the asset and, where there is one, its compressed form under each light, all in one run: to start takes longer
+/// than to draw.
+Rendered render(const AssetFolder& asset, const std::vector<std::string>& lights, double albedo,
                 const ReportSettings& settings, const ComparisonRun& run) {
   std::string printed;
   ProcessSettings process;
@@ -89,10 +89,11 @@ Rendered render(const fs::path& folder, const std::vector<std::string>& lights, 
   const std::string size = std::to_string(settings.picture_size);
   std::vector<std::string> command = {
       (program_folder() / "kiln-render").string(),
-      folder.string(),
+      asset.prt().string(),
       "-o",
       (run.scratch / "light.exr").string(),
       "--each-light",
+      "--each-asset",
       "--window",
       "hann",
       fmt::format("--camera={},{}", settings.camera_azimuth_degrees, settings.camera_elevation_degrees),
@@ -118,18 +119,19 @@ Rendered render(const fs::path& folder, const std::vector<std::string>& lights, 
       "--quiet",
       "--json"};
   for (const std::string& light : lights) command.push_back("--light=" + light);
+  if (!asset.compressed.empty()) command.insert(command.begin() + 2, asset.compressed.string());
   const ProcessEnd end = run_process(command, process);
   throw_if_interrupted();
   if (end.exit_status == static_cast<int>(ExitCode::machine_lacks))
     throw MachineLacks("kiln-render cannot draw on this machine; it has said why");
   if (end.exit_status == static_cast<int>(ExitCode::bad_input))
-    throw BadInput(folder.string(), "could not be drawn by kiln-render, which has said why",
+    throw BadInput(asset.folder.string(), "could not be drawn by kiln-render, which has said why",
                    "a whole output of kiln-bake or kiln-compress", "run that again");
   if (end.exit_status == static_cast<int>(ExitCode::wrong_usage))
     throw WrongUsage("kiln-render refuses its settings and has said why");
   if (!end.succeeded()) throw std::runtime_error(fmt::format("kiln-render failed (exit status {})", end.exit_status));
   Rendered rendered{Json::parse(printed), {}};
-  for (std::size_t k = 0; k < lights.size(); ++k)
+  for (std::size_t k = 0; k < lights.size() * (asset.compressed.empty() ? 1 : 2); ++k)
     rendered.pictures.push_back(read_rendered(run.scratch / fmt::format("light_{:03}.exr", k), settings));
   return rendered;
 }
@@ -177,16 +179,15 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
 
   // The asset, by the program that draws it from its files alone.
   const Stopwatch render_watch;
-  Rendered plain = render(asset.prt(), lights, albedo, settings, run), compressed;
-  if (!asset.compressed.empty()) compressed = render(asset.compressed, lights, albedo, settings, run);
-  comparison.renderer = plain.said.at("renderer").get<std::string>();
-  comparison.software_renderer = plain.said.at("software_renderer").get<bool>();
+  Rendered rendered = render(asset, lights, albedo, settings, run);
+  comparison.renderer = rendered.said.at("renderer").get<std::string>();
+  comparison.software_renderer = rendered.said.at("software_renderer").get<bool>();
   for (std::size_t k = 0; k < lights.size(); ++k) {
     LightComparison& light = comparison.lights.emplace_back();
     light.light = lights[k];
-    light.asset = std::move(plain.pictures[k]);
+    light.asset = std::move(rendered.pictures[k]);
     if (asset.compressed.empty()) continue;
-    light.compressed = std::move(compressed.pictures[k]);
+    light.compressed = std::move(rendered.pictures[lights.size() + k]);
     std::size_t pixels = 0;
     light.compressed_difference = compare(light.compressed, light.asset, pixels);
   }
@@ -200,7 +201,7 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   const TriangleMesh& high = imported.mesh;
   ReferenceView view;
   view.width = view.height = settings.picture_size;
-  view.camera = camera_of_json(plain.said.at("camera"));
+  view.camera = camera_of_json(rendered.said.at("camera"));
   view.supersample = supersample;
   view.albedo = static_cast<float>(albedo);
   view.surface_albedo = high_albedo(asset, imported);
