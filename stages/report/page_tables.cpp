@@ -28,8 +28,8 @@ std::string metric_rows(const std::string& stage, const Json& metrics) {
   std::string html;
   for (const auto& [key, value] : metrics.items()) {
     if (key == "stage" || key == "version" || key == "settings" || key == "inputs" || key == "outputs" ||
-        key == "seconds" || key == "verification" || key == "plain" || key == "chosen" || key == "bounces" ||
-        key == "subsurface" || value.is_array())
+        key == "seconds" || key == "budgets_missed" || key == "verification" || key == "plain" || key == "chosen" ||
+        key == "bounces" || key == "subsurface" || value.is_array())
       continue;
     if (!value.is_object()) {
       html += row(metric_label(stage + "." + key), metric_value(key, value));
@@ -60,16 +60,16 @@ double budget_use(const BudgetVerdict& verdict) {
 
 }  // namespace
 
-std::string budgets_section(const Report& report) {
+std::string budgets_section(std::span<const BudgetVerdict> verdicts) {
   std::string html = "<section><h2>Budgets</h2>\n";
-  if (report.budgets.empty())
+  if (verdicts.empty())
     return html +
            "<p class=note>None are set for this asset. pipeline.yaml takes them as <code>budgets: {STAGE.METRIC: {max: "
            "…}}</code>.</p></section>\n";
   html +=
       "<table><thead><tr><th>Metric<th><th class=number>Value<th "
       "class=number>Limit<th>Used<th>Verdict</thead><tbody>\n";
-  for (const BudgetVerdict& verdict : report.budgets) {
+  for (const BudgetVerdict& verdict : verdicts) {
     const std::string& key = verdict.budget.metric;
     const char* tone = verdict.met ? "good" : "bad";
     html += fmt::format(

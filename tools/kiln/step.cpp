@@ -68,9 +68,10 @@ bool may_resume(const StagePlan& plan, const StageState& begun) {
   return resumes;
 }
 
-/// The command with what is of this run alone.
-std::vector<std::string> command_of(const StagePlan& plan, const fs::path& programs, int threads) {
-  std::vector<std::string> command = plan.run.command;
+/// The command with what is of this run alone; with `reuses` what was made is judged anew.
+std::vector<std::string> command_of(const StagePlan& plan, const fs::path& programs, int threads, bool reuses) {
+  std::vector<std::string> command = plan.run.whole_command();
+  if (reuses) command.emplace_back("--reuse");
   const bool is_own = command.front() == "kiln";
   command.front() = (programs / command.front()).string();
   if (!is_own) command.insert(command.end(), {"--threads", std::to_string(threads)});
@@ -107,12 +108,13 @@ int run_step(const fs::path& plan_file, const fs::path& programs, int threads) {
   const char* stage = plan.run.name.c_str();
   FileHashes hashes(".");
   std::optional<StageState> state = load_state(plan.state);
-  if (reason_to_run(plan, state, hashes).empty()) return 0;
+  const std::string reason = reason_to_run(plan, state, hashes);
+  if (reason.empty()) return 0;
   const std::map<fs::path, FileStamp> inputs = stamps_of_inputs(plan, hashes);
 
   const Stopwatch watch;
   const bool resumes = may_resume(plan, {plan.key, inputs, {}});
-  const ProcessEnd end = run_command(plan, command_of(plan, programs, threads), resumes);
+  const ProcessEnd end = run_command(plan, command_of(plan, programs, threads, reason == other_limits), resumes);
   if (noted_signal() != 0) end_by(noted_signal());
   if (end.signal == SIGINT || end.signal == SIGTERM) end_by(end.signal);
 

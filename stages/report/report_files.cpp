@@ -1,0 +1,71 @@
+#include "report/report_files.h"
+
+#include <algorithm>
+
+#include "base/file_names.h"
+#include "image/image_file.h"
+#include "report/page.h"
+
+namespace kiln {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* cover_name = "report.png";
+constexpr const char* metrics_name = "metrics.json";
+constexpr const char* record_name = "report.json";
+
+void add_records(Json& result, const AssetFolder& asset) {
+  for (const StageRecord& record : asset.records) result["inputs"][text_of_path(record.file)] = hash_file(record.file);
+}
+
+/// Whether a record names each of the files that a report has, and they are as it says.
+bool holds(const Json& record, const fs::path& folder, const std::vector<std::string>& names) {
+  const Json outputs = record.value("outputs", Json::object());
+  return std::all_of(names.begin(), names.end(), [&](const std::string& name) {
+    std::error_code error;
+    const auto found = outputs.find(text_of_path(name));
+    return found != outputs.end() && fs::is_regular_file(folder / name, error) && hash_file(folder / name) == *found;
+  });
+}
+
+}  // namespace
+
+Json save_report(OutputSet& outputs, const std::string& page_name, const AssetFolder& asset, const Report& report,
+                 Json result) {
+  add_records(result, asset);
+  const Json metrics = all_metrics(asset, result);
+  outputs.add_text(page_name, page_html(asset, report, metrics, outputs.staging()));
+  write_png(outputs.add(cover_name), cover_picture(report));
+  outputs.add_text(metrics_name, json_text(metrics, 2) + "\n");
+  return result;
+}
+
+std::optional<EarlierReport> find_earlier(const fs::path& page_file, const AssetFolder& asset, Json result) {
+  const fs::path folder = folder_of(page_file);
+  std::error_code error;
+  if (!fs::is_regular_file(folder / record_name, error)) return std::nullopt;
+  EarlierReport earlier{"", Json::parse(read_text(folder / record_name), nullptr, false)};
+  if (!earlier.record.is_object()) return std::nullopt;
+  add_records(result, asset);
+  for (const char* key : {"stage", "version", "settings", "inputs"})
+    if (earlier.record.value(key, Json()) != result.at(key)) return std::nullopt;
+  if (!holds(earlier.record, folder, {page_file.filename().string(), cover_name, metrics_name})) return std::nullopt;
+  earlier.page = read_text(page_file);
+  return earlier;
+}
+
+Json save_judged(OutputSet& outputs, const std::string& page_name, const AssetFolder& asset, EarlierReport earlier,
+                 const std::vector<std::string>& budgets) {
+  Json& result = earlier.record;
+  result.erase("outputs");
+  const std::vector<BudgetVerdict> verdicts = judge_budgets(budgets, all_metrics(asset, result));
+  put_verdicts(result, verdicts);
+  outputs.add_text(page_name, page_judged_again(earlier.page, verdicts));
+  fs::copy_file(outputs.folder() / cover_name, outputs.add(cover_name));
+  outputs.add_text(metrics_name, json_text(all_metrics(asset, result), 2) + "\n");
+  return result;
+}
+
+}  // namespace kiln
