@@ -27,8 +27,8 @@ struct TexelClusters {
 TexelClusters cluster_texels(const TransferSource& source, int clusters, int seed);
 
 /// From clusters about means, in turn the nearest subspace for every texel and principal components for every cluster
-/// ("iterative PCA" of the paper), first on the sample, then on all texels. A texel tries the subspaces whose means are
-/// nearest to that of its present one. Bases are turned within their subspaces to lie along the components of `all`,
+/// ("iterative PCA" of the paper), first on the sample, then on all texels. A texel tries the subspaces around the mean
+/// next to it, and its present one. Bases are turned within their subspaces to lie along the components of `all`,
 /// and means are moved within them to lie next to the mean of `all`: weights then hardly jump where clusters meet, and
 /// compress as images.
 ClusteredPca clustered_pca(const TransferSource& source, const PrincipalComponents& all, const TexelClusters& start,

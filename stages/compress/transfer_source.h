@@ -11,8 +11,8 @@
 namespace kiln {
 
 /// An asset's transfer vectors, weighted by the square root of lighting_prior so that the squared length of a
-/// difference is its expected relighting error (design: E). They are decoded from the planes
-/// as they are asked for, those of small atlases once.
+/// difference is its expected relighting error (design: E). They are decoded from the planes as
+/// they are asked for, those of small atlases once.
 class TransferSource {
  public:
   /// Texels are covered where the asset's mesh covers them; `asset` must outlive this. Throws BadInput where none is.
