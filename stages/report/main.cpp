@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
     const std::string page_name = page_file.filename().string();
     Json result;
     if (reuses && earlier) {
-      result = save_judged(outputs, page_name, asset, std::move(*earlier), budgets);
+      result = save_judged(outputs, page_name, std::move(*earlier), budgets);
     } else {
       const ComparisonRun run{outputs.staging(), command.threads(), command.seed(), command.progress("report")};
       const Report report = make_report(asset, high_file, budgets, settings, run);

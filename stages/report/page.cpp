@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <stdexcept>
 
 #include "detail/texel_way.h"
 #include "report/labels.h"
@@ -12,6 +11,7 @@
 #include "report/pictures.h"
 #include "report/tradeoff.h"
 #include "report/transport.h"
+#include "report/verdicts.h"
 #include "sh/basis.h"
 
 namespace kiln {
@@ -27,8 +27,6 @@ constexpr int pyramid_bands = 6;  // more bands have rows too long to be seen
 constexpr int pyramid_pixels = 192;
 constexpr int sheet_pixels = 96;
 
-const char* plural(std::size_t count) { return count == 1 ? "" : "s"; }
-
 std::string image(const std::string& source, const std::string& description, int width, int height) {
   return fmt::format("<img src='{}' alt='{}' width={} height={}>", source, escaped(description), width, height);
 }
@@ -39,28 +37,6 @@ std::string image(const Image<std::uint8_t>& picture, const std::string& descrip
 
 std::string figure(const std::string& picture, const std::string& caption) {
   return "<figure>" + picture + "<figcaption>" + caption + "</figcaption></figure>\n";
-}
-
-std::string verdict_badge(std::span<const BudgetVerdict> verdicts) {
-  const std::size_t count = verdicts.size(), missed = missed_budgets(verdicts);
-  if (count == 0) return "<span class='badge plain'>No budgets set</span>";
-  if (missed == 0)
-    return fmt::format("<span class='badge good'>✓ {}</span>",
-                       count == 1 ? "Budget met" : fmt::format("All {} budgets met", count));
-  return fmt::format("<span class='badge bad'>✗ {} of {} budget{} missed</span>", missed, count, plural(count));
-}
-
-std::string begin_of(const char* part) { return fmt::format("<!--{}-->", part); }
-std::string end_of(const char* part) { return fmt::format("<!--/{}-->", part); }
-
-/// A part of the page that page_judged_again puts another in the place of.
-std::string marked(const char* part, const std::string& html) { return begin_of(part) + html + end_of(part); }
-
-void replace(std::string& page, const char* part, const std::string& html) {
-  const std::size_t begin = page.find(begin_of(part)), end = page.find(end_of(part));
-  if (begin == std::string::npos || end == std::string::npos)
-    throw std::logic_error("a report's page lacks the marks of its verdicts");
-  page.replace(begin, end + end_of(part).size() - begin, marked(part, html));
 }
 
 /// Pictures by a software renderer are right but slow: whoever reads timings has to know.
@@ -93,7 +69,7 @@ std::string header(const AssetFolder& asset, const Report& report, const Json& m
       "<p class=lead>A mesh of {} triangles as {} triangles, a texture atlas, a normal map and {} transfer coefficient "
       "planes of {} bits.</p>\n",
       value(simplify, "input_triangles"), value(simplify, "triangles"), asset.planes.size(), asset.bits);
-  html += marked("verdict", verdict_badge(report.budgets)) + "\n" + software_alarm(asset, report);
+  html += marked_badge(report.budgets) + "\n" + software_alarm(asset, report);
   html += "<dl class=figures>\n";
   const auto figure_of = [&](const std::string& name, const std::string& number, const std::string& more) {
     html += fmt::format("<div><dt>{}</dt><dd>{}</dd><small>{}</small></div>\n", name, number, more);
@@ -314,13 +290,6 @@ std::string footer(const Json& metrics) {
 
 }  // namespace
 
-std::string page_judged_again(const std::string& html, std::span<const BudgetVerdict> verdicts) {
-  std::string page = html;
-  replace(page, "verdict", verdict_badge(verdicts));
-  replace(page, "budgets", budgets_section(verdicts));
-  return page;
-}
-
 Image<std::uint8_t> cover_picture(const Report& report) {
   const LightComparison& light = report.comparison.lights.front();
   return cropped(shown_radiance(light.asset), crop_of(light));
@@ -333,7 +302,7 @@ std::string page_html(const AssetFolder& asset, const Report& report, const Json
          "content='width=device-width, initial-scale=1'>\n<title>" +
          escaped(asset.name) + " · Kiln report</title>\n<style>\n" + page_style() +
          "</style>\n</head>\n<body><main>\n" + header(asset, report, metrics) +
-         relit_section(asset, report, metrics, scratch) + marked("budgets", budgets_section(report.budgets)) +
+         relit_section(asset, report, metrics, scratch) + marked_budgets(report.budgets) +
          compression_section(asset, report, scratch) + transport_section(asset.record("bake")) +
          textures_section(asset, scratch) + coefficients_section(asset, scratch) + verification_section(asset) +
          stages_section(metrics) + footer(metrics) + "</main></body>\n</html>\n";

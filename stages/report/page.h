@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <span>
 #include <string>
 
 #include "image/image.h"
@@ -15,9 +14,6 @@ namespace kiln {
 /// read.
 std::string page_html(const AssetFolder& asset, const Report& report, const Json& metrics,
                       const std::filesystem::path& scratch);
-
-/// A page with other verdicts on the budgets in place of those it has.
-std::string page_judged_again(const std::string& html, std::span<const BudgetVerdict> verdicts);
 
 /// The asset alone under the report's first light, cropped to it: what an index of assets shows.
 Image<std::uint8_t> cover_picture(const Report& report);

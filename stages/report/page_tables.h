@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <string>
 
 #include "report/records.h"
@@ -9,7 +8,6 @@
 namespace kiln {
 
 /// The sections of the page that hold words and numbers; see page_html. HTML.
-std::string budgets_section(std::span<const BudgetVerdict> verdicts);
 std::string verification_section(const AssetFolder& asset);
 std::string stages_section(const Json& metrics);
 

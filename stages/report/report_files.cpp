@@ -12,10 +12,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* cover_name = "report.png";
-constexpr const char* metrics_name = "metrics.json";
-constexpr const char* record_name = "report.json";
-
 void add_records(Json& result, const AssetFolder& asset) {
   for (const StageRecord& record : asset.records) result["inputs"][text_of_path(record.file)] = hash_file(record.file);
 }
@@ -37,35 +33,22 @@ Json save_report(OutputSet& outputs, const std::string& page_name, const AssetFo
   add_records(result, asset);
   const Json metrics = all_metrics(asset, result);
   outputs.add_text(page_name, page_html(asset, report, metrics, outputs.staging()));
-  write_png(outputs.add(cover_name), cover_picture(report));
-  outputs.add_text(metrics_name, json_text(metrics, 2) + "\n");
+  write_png(outputs.add(report_cover), cover_picture(report));
+  outputs.add_text(report_metrics, json_text(metrics, 2) + "\n");
   return result;
 }
 
 std::optional<EarlierReport> find_earlier(const fs::path& page_file, const AssetFolder& asset, Json result) {
   const fs::path folder = folder_of(page_file);
   std::error_code error;
-  if (!fs::is_regular_file(folder / record_name, error)) return std::nullopt;
-  EarlierReport earlier{"", Json::parse(read_text(folder / record_name), nullptr, false)};
-  if (!earlier.record.is_object()) return std::nullopt;
+  if (!fs::is_regular_file(folder / report_record, error)) return std::nullopt;
+  const Json record = Json::parse(read_text(folder / report_record), nullptr, false);
+  if (!record.is_object()) return std::nullopt;
   add_records(result, asset);
   for (const char* key : {"stage", "version", "settings", "inputs"})
-    if (earlier.record.value(key, Json()) != result.at(key)) return std::nullopt;
-  if (!holds(earlier.record, folder, {page_file.filename().string(), cover_name, metrics_name})) return std::nullopt;
-  earlier.page = read_text(page_file);
-  return earlier;
-}
-
-Json save_judged(OutputSet& outputs, const std::string& page_name, const AssetFolder& asset, EarlierReport earlier,
-                 const std::vector<std::string>& budgets) {
-  Json& result = earlier.record;
-  result.erase("outputs");
-  const std::vector<BudgetVerdict> verdicts = judge_budgets(budgets, all_metrics(asset, result));
-  put_verdicts(result, verdicts);
-  outputs.add_text(page_name, page_judged_again(earlier.page, verdicts));
-  fs::copy_file(outputs.folder() / cover_name, outputs.add(cover_name));
-  outputs.add_text(metrics_name, json_text(all_metrics(asset, result), 2) + "\n");
-  return result;
+    if (record.value(key, Json()) != result.at(key)) return std::nullopt;
+  if (!holds(record, folder, {page_file.filename().string(), report_cover, report_metrics})) return std::nullopt;
+  return load_earlier(page_file);
 }
 
 }  // namespace kiln

@@ -13,13 +13,13 @@
 #include "raycast/ray_scene.h"
 #include "report/budget.h"
 #include "report/labels.h"
-#include "report/page.h"
 #include "report/pictures.h"
 #include "report/reference.h"
 #include "report/report_files.h"
 #include "report/report_settings.h"
 #include "report/tradeoff.h"
 #include "report/transport.h"
+#include "report/verdicts.h"
 #include "scratch.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
@@ -76,7 +76,7 @@ AssetFolder write_report(const fs::path& folder, const std::vector<std::string>&
                                                     "<!--budgets--><!--/budgets--></p>",
                                                     verdicts));
   outputs.add_text("report.png", "a picture");
-  outputs.add_text("metrics.json", "{}");
+  outputs.add_text("metrics.json", all_metrics(asset, result).dump());
   for (const std::string& name : outputs.names()) result["outputs"][name] = hash_file(outputs.staging() / name);
   outputs.add_text("report.json", result.dump());
   outputs.commit();
@@ -92,7 +92,7 @@ TEST(Judging, OtherBudgetsChangeTheVerdictsAndNothingElse) {
   OutputSet outputs(scratch.folder());
   const std::optional<EarlierReport> earlier = find_earlier(page, asset, result);
   ASSERT_TRUE(earlier);
-  const Json judged = save_judged(outputs, "report.html", asset, *earlier, {"simplify.triangles<=99"});
+  const Json judged = save_judged(outputs, "report.html", *earlier, {"simplify.triangles<=99"});
   outputs.commit();
   EXPECT_EQ(judged.at("budgets_missed"), 1);
   EXPECT_EQ(judged.at("budgets").size(), 1);
@@ -104,7 +104,7 @@ TEST(Judging, OtherBudgetsChangeTheVerdictsAndNothingElse) {
   EXPECT_NE(html.find(" pictures "), std::string::npos);
   EXPECT_EQ(read_text(scratch.folder() / "report.png"), "a picture");
   EXPECT_EQ(Json::parse(read_text(scratch.folder() / "metrics.json")).at("report").at("budgets_missed"), 1);
-  EXPECT_THROW(save_judged(outputs, "report.html", asset, *earlier, {"simplify.rectangles<=1"}), WrongUsage);
+  EXPECT_THROW(save_judged(outputs, "report.html", *earlier, {"simplify.rectangles<=1"}), WrongUsage);
 }
 
 TEST(Judging, NeedsAReportOfTheSameThings) {

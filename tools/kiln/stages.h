@@ -58,8 +58,7 @@ struct StageRun {
   std::vector<std::filesystem::path> inputs;
   std::vector<std::filesystem::path> outputs;  ///< the record, <stage>.json, first
   std::filesystem::path checkpoint;            ///< a folder; where it is there, the stage goes on with --resume
-  std::vector<std::string> limits = {};        ///< more arguments, which judge what is made: where they alone are
-                                               ///< others than before, the stage runs with --reuse
+  std::vector<std::string> limits = {};        ///< more arguments, the budgets of a report: others alone judge it anew
 
   /// `command` and `limits`.
   std::vector<std::string> whole_command() const;
