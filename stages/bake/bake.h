@@ -69,8 +69,8 @@ struct BakeVerification {
   std::optional<SampledError> relighting_error;  ///< the same as expected relighting error
 };
 
-/// Texels on which two backends are compared. A defect that misses all of them has, with a confidence of 95 %, less than
-/// 3 in 16,384 of the texels: 1.4 % in relative L2 where it is as large as the transfer itself.
+/// Texels on which two backends are compared. A defect that misses all of them has, with a confidence of 95 %, less
+/// than 3 in 16,384 of the texels: 1.4 % in relative L2 where it is as large as the transfer itself.
 inline constexpr std::size_t compared_texels = 16384;
 
 /// Compares `result` with the other backend (embree, or egl if embree baked it), and it and the planes read back
