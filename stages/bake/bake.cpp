@@ -8,8 +8,8 @@
 
 #include "bake/bounce/bounced_light.h"
 #include "bake/engines/engines.h"
-#include "base/stopwatch.h"
 #include "base/errors.h"
+#include "base/stopwatch.h"
 #include "sh/basis.h"
 
 namespace kiln {
@@ -56,6 +56,23 @@ std::vector<TransferVectors> thin_out(const std::vector<TransferVectors>& channe
   }
   return thinned;
 }
+
+/// Every `step`-th receiver, without what is filled.
+TexelReceivers thin_out(const TexelReceivers& receivers, std::size_t step) {
+  TexelReceivers thinned;
+  thinned.width = receivers.width;
+  thinned.height = receivers.height;
+  for (std::size_t r = 0; r < receivers.texels.size(); r += step) {
+    thinned.texels.push_back(receivers.texels[r]);
+    thinned.positions.push_back(receivers.positions[r]);
+    thinned.normals.push_back(receivers.normals[r]);
+    if (!receivers.albedos.empty()) thinned.albedos.push_back(receivers.albedos[r]);
+  }
+  return thinned;
+}
+
+/// Every which receiver is looked at, so that about `most` are.
+std::size_t step_to(std::size_t receivers, std::size_t most) { return std::max<std::size_t>(1, receivers / most); }
 
 /// Direct light takes the first part of the progress where light bounces.
 constexpr double direct_share = 0.3;
@@ -216,27 +233,24 @@ BakeVerification verify(const BakeResult& result, const std::vector<TransferVect
   other_settings.directions = result.directions;
   other_settings.sampling = result.sampling;
   if (result.bounces) other_settings.bounces = std::to_string(result.bounces->energy.size());
-  const BakeResult other_result =
-      bake(receivers, occluders, other_settings, seed, threads, {}, [&](double fraction) { progress(0.5 * fraction); });
+  const std::size_t all = receivers.texels.size(), backend_step = step_to(all, compared_texels);
+  const BakeResult other_result = bake(thin_out(receivers, backend_step), occluders, other_settings, seed, threads, {},
+                                       [&](double fraction) { progress(0.3 * fraction); });
+  const std::vector<TransferVectors> compared = thin_out(baked, backend_step);
   verification.other_backend = other_result.renderer;
+  verification.backend_texels = compared.front().receivers;
   const bool rays_are_other = other == BakeBackend::embree;
-  verification.backend_difference =
-      rays_are_other ? relative_l2(baked, other_result.channels) : relative_l2(other_result.channels, baked);
+  verification.backend_difference = rays_are_other ? sampled_relative_l2(compared, other_result.channels, all)
+                                                   : sampled_relative_l2(other_result.channels, compared, all);
 
   // Step 2: many rays, from some of the texels.
-  const std::size_t all = receivers.texels.size();
-  const std::size_t step = std::max<std::size_t>(1, all / settings.verify_texels);
-  std::vector<Eigen::Vector3f> positions, normals, albedos;
-  for (std::size_t r = 0; r < all; r += step) {
-    positions.push_back(receivers.positions[r]);
-    normals.push_back(receivers.normals[r]);
-    if (!receivers.albedos.empty()) albedos.push_back(receivers.albedos[r]);
-  }
+  const std::size_t step = step_to(all, static_cast<std::size_t>(settings.verify_texels));
+  const TexelReceivers some = thin_out(receivers, step);
   const std::vector<Eigen::Vector3f> many =
       sample_directions(Sampling::fibonacci, settings.verify_directions, seed + 1u);
   const std::unique_ptr<TransferEngine> rays = make_engine(BakeBackend::embree, occluders, settings, threads);
-  rays->set_receivers({positions, normals}, settings.bands);
-  rays->add(many, [&](double fraction) { progress(0.5 + 0.5 * fraction); });
+  rays->set_receivers(some.view(), settings.bands);
+  rays->add(many, [&](double fraction) { progress(0.3 + 0.7 * fraction); });
   std::vector<TransferVectors> reference = {rays->sums().transfer()};
   if (result.bounces) {
     // The surface's light by the bake's own number of directions: the last bounce, which shows, by many.
@@ -245,18 +259,18 @@ BakeVerification verify(const BakeResult& result, const std::vector<TransferVect
     order_coherently(own, block_directions);
     const BounceTarget target = {.automatic = false, .count = static_cast<int>(result.bounces->energy.size())};
     const BouncedLight light(make_engine(BakeBackend::embree, occluders, settings, threads), BakeBackend::embree,
-                             occluders, own, settings, threads, target,
-                             BounceSample({positions, normals}, reference.front()), no_progress);
+                             occluders, own, settings, threads, target, BounceSample(some.view(), reference.front()),
+                             no_progress);
     reference.resize(light.channels(), reference.front());
-    light.add_to(reference, {positions, normals}, many, no_progress);
+    light.add_to(reference, some.view(), many, no_progress);
   }
-  put_albedo(reference, albedos);
+  put_albedo(reference, some.albedos);
   verification.reference_directions = settings.verify_directions;
-  verification.reference_texels = positions.size();
-  verification.integration_error = relative_l2(thin_out(baked, step), reference);
+  verification.reference_texels = some.texels.size();
+  verification.integration_error = sampled_relative_l2(thin_out(baked, step), reference, all);
   if (is_scattered) return verification;
-  verification.error = relative_l2(thin_out(stored, step), reference);
-  verification.relighting_error = expected_relighting_error(thin_out(stored, step), reference);
+  verification.error = sampled_relative_l2(thin_out(stored, step), reference, all);
+  verification.relighting_error = sampled_relighting_error(thin_out(stored, step), reference, all);
   return verification;
 }
 

@@ -304,6 +304,27 @@ Json describe_bake(const BakeScene& scene, const BakeResult& result) {
   return metrics;
 }
 
+namespace {
+
+/// Each error, and beside it what all texels' own is within with a confidence of 95 %.
+Json describe_verification(const BakeVerification& verification) {
+  Json json = {{"other_backend", verification.other_backend},
+               {"backend_texels", verification.backend_texels},
+               {"reference_directions", verification.reference_directions},
+               {"reference_texels", verification.reference_texels}};
+  const auto add = [&](const std::string& name, const SampledError& error) {
+    json[name] = error.value;
+    json[name + "_uncertainty"] = error.uncertainty;
+  };
+  add("backend_difference", verification.backend_difference);
+  add("integration_error", verification.integration_error);
+  if (verification.error) add("error", *verification.error);
+  if (verification.relighting_error) add("relighting_error", *verification.relighting_error);
+  return json;
+}
+
+}  // namespace
+
 Json save_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeResult& result,
                const BakeSettings& settings, const CommandLine& command) {
   std::vector<TransferVectors> stored;
@@ -325,12 +346,7 @@ Json save_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scen
   if (settings.verify_directions > 0) {
     const BakeVerification v = verify(result, stored, scene.receivers, scene.occluders, settings, command.seed(),
                                       command.threads(), command.progress("verify"));
-    metrics["verification"] = {{"other_backend", v.other_backend},
-                               {"backend_difference", v.backend_difference},
-                               {"reference_directions", v.reference_directions},
-                               {"reference_texels", v.reference_texels},
-                               {"integration_error", v.integration_error}};
-    if (v.error) metrics["verification"].update({{"error", *v.error}, {"relighting_error", *v.relighting_error}});
+    metrics["verification"] = describe_verification(v);
   }
   return metrics;
 }

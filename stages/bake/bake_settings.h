@@ -74,7 +74,7 @@ struct BakeSettings {
   std::optional<double> ray_offset;  ///< fraction of the occluders' bounding box diagonal; none: rounding_offset
   SubsurfaceSettings subsurface;
   int verify_directions = 0;  ///< 0: no verification
-  int verify_texels = 8192;
+  int verify_texels = 2048;
 };
 
 /// The settings as the command line, pipeline.yaml and the report know them.

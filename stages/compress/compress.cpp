@@ -6,8 +6,8 @@
 #include <map>
 #include <optional>
 
-#include "base/stopwatch.h"
 #include "base/errors.h"
+#include "base/stopwatch.h"
 #include "compress/compress_files.h"
 
 namespace kiln {
@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t sampled_texels = 65536;  // that steps are chosen on
 constexpr int planes_per_lookup = 4;
+constexpr int most_clusters = 256;
 constexpr double rounding_allowance = 1.25;  // error of a stored model over what the model leaves, where that is free
 constexpr double reach = 0.97;  // a model that leaves more of the target than this has no room for rounding
 
@@ -35,6 +36,7 @@ class Search {
         source_(asset),
         owners_(gutter_owners(source_, settings.gutter)),
         sample_(source_.sample(sampled_texels)),
+        sample_vectors_(source_.vectors(sample_)),
         all_(principal_components(source_)) {}
 
   CompressResult run() {
@@ -92,11 +94,23 @@ class Search {
   /// Notes a candidate, and `model` with it if it is the cheapest so far; says whether its bytes are the least.
   bool consider(CompressCandidate candidate, const TexelModel* model) {
     candidate.feasible = candidate.error <= result_.target_error && (is_fixed() || is_bounded(candidate));
-    result_.tried.push_back(candidate);
+    note(candidate);
     if (!candidate.feasible || (best_ && best_->bytes <= candidate.bytes)) return false;
     best_ = candidate;
     best_model_ = model != nullptr ? std::optional(*model) : std::nullopt;
     return true;
+  }
+
+  /// Adds a candidate to those tried, in the place of the same model as it was before it settled.
+  void note(const CompressCandidate& candidate) {
+    const auto same = std::find_if(result_.tried.begin(), result_.tried.end(), [&](const CompressCandidate& other) {
+      return other.scheme == candidate.scheme && other.scheme != CompressScheme::planes &&
+             other.clusters == candidate.clusters && other.components == candidate.components;
+    });
+    if (same == result_.tried.end())
+      result_.tried.push_back(candidate);
+    else if (candidate.feasible && (!same->feasible || candidate.bytes < same->bytes))
+      *same = candidate;
   }
 
   /// Whether the settings leave no choice of a model: then its worst is told of and not bounded.
@@ -109,35 +123,48 @@ class Search {
   /// Whether a model leaves so much at its worst that rounding cannot be borne. Of one basis a sample tells.
   bool leaves_worse(const TexelModel& model) const {
     if (is_fixed()) return false;
-    const TexelErrors errors = stored_errors(source_, model, 0);
-    const ErrorSpread left = model.model.clusters() == 1
-                                 ? error_spread(source_, errors, std::span<const std::uint32_t>(sample_))
-                                 : error_spread(source_, errors, std::span<const std::uint8_t>(model.ids));
+    const ErrorSpread left =
+        model.model.clusters() == 1
+            ? error_spread(source_, vector_errors(model, 0), sample_vectors_, sample_)
+            : error_spread(source_, stored_errors(source_, model, 0), std::span<const std::uint8_t>(model.ids));
     return left.texel > reach * most_texel_error || left.border > reach * most_border_jump;
   }
 
-  /// The largest step that stays within the target, on the sample; 0 where none does.
-  double step_for(const TexelModel& model, double target) const {
-    const auto error_at = [&](double step) {
-      const TexelModel rounded{rounded_model(model.model, source_, all_, step), model.ids, {}};
-      return error_spread(source_, stored_errors(source_, rounded, step), std::span<const std::uint32_t>(sample_)).mean;
-    };
-    const double room = target * std::sqrt(source_.squared_norm() / static_cast<double>(source_.covered().size()));
-    // All the error a step's rounding can make is step^2 / 12 per component; start from there, in steps of factors.
-    double high = room * std::sqrt(12.0 / std::max(1, model.model.components)) * 4, low = 0;
-    for (double step = high; step > high / 4096; step /= 2)
-      if (error_at(step) <= target) {
-        low = step;
-        break;
-      } else {
-        high = step;
-      }
-    if (low == 0) return 0;
-    for (int k = 0; k < 5 && high > low; ++k) {
-      const double middle = std::sqrt(low * high);
-      (error_at(middle) <= target ? low : high) = middle;
+  /// A step for the weights of a model, and what it leaves without rounding.
+  struct Step {
+    double step = 0;  ///< 0: none stays within the target
+    double left = 0;
+
+    /// The step that reaches `aim` if one of `at` leaves `error`: rounding adds squares of steps, nearly.
+    double towards(double aim, double at, double error) const {
+      return at * std::sqrt(std::max(0.01, (aim * aim - left * left) / (error * error - left * left)));
     }
-    return low;
+  };
+
+  /// The largest step that stays within the target, on the sample.
+  Step step_for(const TexelModel& model, double target) const {
+    const auto error_at = [&](double step) {
+      const TexelModel rounded{step > 0 ? rounded_model(model.model, source_, all_, step) : model.model, model.ids, {}};
+      return error_spread(source_, vector_errors(rounded, step), sample_vectors_, sample_).mean;
+    };
+    constexpr double nearly = 0.998, aim = 0.999;  // of the target
+    constexpr int most_tries = 12;
+    Step found{0, error_at(0)};
+    if (found.left >= target) return found;
+    // All the error a step's rounding can make is step^2 / 12 per component.
+    const double room = std::sqrt(source_.squared_norm() / static_cast<double>(source_.covered().size())) *
+                        std::sqrt(target * target - found.left * found.left);
+    double step = room * std::sqrt(12.0 / std::max(1, model.model.components)), high = 0;
+    for (int k = 0; k < most_tries && step > 0; ++k) {
+      const double error = error_at(step);
+      (error <= target ? found.step : high) = step;
+      if (error >= nearly * target && error <= target) break;
+      double next = error > found.left ? found.towards(aim * target, step, error) : 2 * step;
+      if (high > 0 && (next <= found.step || next >= high)) next = (found.step + high) / 2;
+      if (high > 0 && found.step > nearly * high) break;
+      step = next;
+    }
+    return found;
   }
 
   /// Tries a model: as coarse as the target allows, measured on all texels. Says whether it is the cheapest so far.
@@ -146,32 +173,34 @@ class Search {
   }
 
   bool attempt(const TexelModel& model, CompressScheme scheme, double target, bool bounds_worst) {
-    double step = step_for(model, target);
+    const Step found = step_for(model, target);
+    double step = found.step;
     if (step == 0) return false;
     constexpr int most_tries = 12;
     for (int k = 0; k < most_tries; ++k) {
-      const StoredPca stored = store_pca(source_, model, all_, step);
-      CompressCandidate candidate = describe(stored, scheme, step);
-      const std::vector<std::uint8_t>& ids = stored.decoded.ids;
-      const ErrorSpread spread =
-          error_spread(source_, stored_errors(source_, stored.decoded, step),
-                       candidate.clusters > 1 ? std::span<const std::uint8_t>(ids) : std::span<const std::uint8_t>());
+      CompressCandidate candidate;
+      const TexelModel rounded{rounded_model(model.model, source_, all_, step), model.ids, {}};
+      const ErrorSpread spread = error_spread(
+          source_, stored_errors(source_, rounded, step),
+          model.model.clusters() > 1 ? std::span<const std::uint8_t>(model.ids) : std::span<const std::uint8_t>());
       candidate.error = spread.mean;
       candidate.texel_error = spread.texel;
       candidate.border_jump = spread.border;
       const bool is_worse = bounds_worst && !is_bounded(candidate);
       if ((candidate.error > target || is_worse) && k + 1 < most_tries) {
-        step *= is_worse ? 0.85 : 0.98;  // else the sample was too kind
+        // Else the sample was too kind.
+        step *= is_worse ? 0.85 : std::clamp(found.towards(0.9995 * target, 1, candidate.error), 0.9, 0.999);
         continue;
       }
+      const StoredPca stored = store_pca(source_, model, all_, step);
+      describe(stored, scheme, step, candidate);
       candidate.bytes = size_of(encode_pca(stored, source_, PngEffort::quick));
       return consider(candidate, &model);
     }
     return false;
   }
 
-  CompressCandidate describe(const StoredPca& stored, CompressScheme scheme, double step) const {
-    CompressCandidate candidate;
+  static void describe(const StoredPca& stored, CompressScheme scheme, double step, CompressCandidate& candidate) {
     candidate.scheme = scheme;
     candidate.clusters = stored.decoded.model.clusters();
     candidate.components = stored.decoded.model.components;
@@ -180,7 +209,6 @@ class Search {
     const int layers = (candidate.components + planes_per_lookup - 1) / planes_per_lookup;
     candidate.lookups = candidate.clusters == 1 ? layers : 1 + layers;
     candidate.lookups_at_borders = candidate.clusters == 1 ? layers : 1 + 4 * layers;
-    return candidate;
   }
 
   /// A model that leaves more than the target: tried as coarse as fits what it leaves, to show what more error would
@@ -191,7 +219,7 @@ class Search {
 
   void note_lacking(double error) { least_error_ = std::min(least_error_.value_or(error), error); }
 
-  /// With one basis: the fewest components that leave less than the target, and more as long as that saves bytes.
+  /// With one basis: as many components as are worth their bits, and fewer or more as long as that saves bytes.
   void try_one_basis() {
     const int length = source_.length();
     const auto feasible = [&](int n) {
@@ -212,11 +240,26 @@ class Search {
         attempt_lacking(texel_model(source_, all_.model(n), owners_), CompressScheme::pca,
                         error_of(all_.residual[static_cast<std::size_t>(n)]));
     if (!feasible(fewest)) return;
-    int missed = 0;
-    for (int n = fewest, further = 1; n <= length && missed < 2; n += further, further = std::min(4, 2 * further)) {
-      missed = attempt_plain(n) ? 0 : missed + 1;
-      if (n < length && n + further > length && missed < 2) attempt_plain(length);
+    const int first = std::max(fewest, components_worth_bits());
+    attempt_plain(first);
+    int n = first;
+    while (n < length && attempt_plain(n + 1)) ++n;
+    if (n > first) return;
+    while (n > fewest && attempt_plain(n - 1)) --n;
+  }
+
+  /// How many components have more variance than the rounding of their weights makes error, where both together are
+  /// the target (reverse water-filling; Cover and Thomas, 10.3.3).
+  int components_worth_bits() const {
+    const double allowed = result_.target_error * result_.target_error * source_.squared_norm();
+    int n = source_.length();
+    while (n > 1) {
+      const auto kept = static_cast<std::size_t>(n);
+      const double rounding = (allowed - all_.residual[kept]) / n;  // of each component, if n are kept
+      if (all_.variances[n - 1] > rounding) break;
+      --n;
     }
+    return n;
   }
 
   bool attempt_plain(int components) {
@@ -230,67 +273,91 @@ class Search {
       result_.target_error = std::max(result_.target_error, rounding_allowance * left);
   }
 
-  /// Says whether the model leaves room, and if so what came of it.
+  /// Whether a model leaves room, and if so what came of it.
   enum class Outcome { lacks, worse, best };
-  Outcome attempt_clusters(int clusters, int components) {
-    const ClusteredPca clustered = clustered_pca(source_, all_, clusters, components, settings_.seed);
+  struct Attempt {
+    Outcome outcome = Outcome::lacks;
+    double left = 0;
+  };
+  Attempt attempt_clusters(int clusters, int components) {
+    if (clusters != starts_clusters_) start_ = cluster_texels(source_, clusters, settings_.seed);
+    starts_clusters_ = clusters;
+    ClusteredPca clustered = clustered_pca(source_, all_, start_, components);
+    if (is_fixed()) improve(source_, all_, clustered);
     const double left = error_of(clustered.residual);
     raise_target(left);
     const TexelModel model = texel_model(source_, clustered, owners_);
     if (left > reach * result_.target_error || leaves_worse(model)) {
       if (left > reach * result_.target_error) note_lacking(left);
       attempt_lacking(model, CompressScheme::clustered_pca, left);
-      return Outcome::lacks;
+      return {Outcome::lacks, left};
     }
-    return attempt(model, CompressScheme::clustered_pca) ? Outcome::best : Outcome::worse;
+    if (!attempt(model, CompressScheme::clustered_pca)) return {Outcome::worse, left};
+    best_clusters_ = std::move(clustered);
+    return {Outcome::best, left};
   }
 
   Outcome attempt_once(int clusters, int components) {
-    const auto [place, is_new] = attempted_.try_emplace({clusters, components}, Outcome::lacks);
+    const auto [place, is_new] = attempted_.try_emplace({clusters, components});
     if (is_new) {
       place->second = attempt_clusters(clusters, components);
-      progress_(std::min(0.85, 0.2 + 0.04 * static_cast<double>(attempted_.size())));
+      progress_(std::min(0.85, 0.2 + 0.06 * static_cast<double>(attempted_.size())));
     }
-    return place->second;
+    return place->second.outcome;
   }
 
-  /// The fewest components that leave less than the target with so many clusters; none where the most do not. From
-  /// below, as time grows with components.
-  std::optional<int> fewest_components(int clusters, int most) {
-    int low = 0, high = std::min(4, most);  // low lacks, high may
-    while (attempt_once(clusters, high) == Outcome::lacks) {
-      if (high == most) return std::nullopt;
-      low = high;
-      high = std::min(2 * high, most);
-    }
+  /// The components at which so many clusters may leave just less than the target: errors fall by about the same factor
+  /// from each to the next, that of the two attempts nearest to it.
+  int expected_components(int clusters) const {
+    constexpr double usual_fall = 0.25;  // of the logarithm, a component
+    std::vector<std::pair<int, double>> known;
+    for (const auto& [key, attempt] : attempted_)
+      if (key.first == clusters && attempt.left > 0) known.emplace_back(key.second, std::log(attempt.left));
+    if (known.empty()) return 4;
+    const double aim = std::log(reach * result_.target_error);
+    std::stable_sort(known.begin(), known.end(),
+                     [&](const auto& a, const auto& b) { return std::abs(a.second - aim) < std::abs(b.second - aim); });
+    const auto& [n, left] = known.front();
+    double fall = usual_fall;
+    if (known.size() > 1) fall = (left - known[1].second) / (known[1].first - n);
+    return n + static_cast<int>(std::ceil((left - aim) / std::max(fall, 0.02)));
+  }
+
+  /// The fewest components that leave less than the target with so many clusters; none where the most do not. `first`
+  /// is tried first, if there is one.
+  std::optional<int> fewest_components(int clusters, int most, std::optional<int> first) {
+    int low = 0, high = most + 1;  // low lacks, high does not
     while (high - low > 1) {
-      const int middle = (low + high) / 2;
-      (attempt_once(clusters, middle) == Outcome::lacks ? low : high) = middle;
+      const int n =
+          std::clamp(low == 0 && high > most && first ? *first : expected_components(clusters), low + 1, high - 1);
+      (attempt_once(clusters, n) == Outcome::lacks ? low : high) = n;
     }
-    return high;
+    return high <= most ? std::optional(high) : std::nullopt;
   }
 
-  /// Fewer clusters and fewer components leave more, so what lacks with many clusters lacks with few. Bytes first fall
-  /// with components, as steps get coarser, then rise.
+  /// The fewest components that do, and more as long as that saves bytes: bytes first fall with components, as steps
+  /// get coarser, then rise. So they do with clusters, of which there are half as many in turn.
   void try_clusters() {
-    std::vector<int> clusters = {256, 128, 64};
-    if (settings_.clusters > 0) clusters = {settings_.clusters};
+    const bool is_free = settings_.clusters == 0;
     if (settings_.components > 0) {
-      for (const int k : clusters)
+      for (const int k : is_free ? std::vector{256, 128, 64} : std::vector{settings_.clusters})
         if (attempt_once(k, settings_.components) == Outcome::lacks) break;
       return;
     }
-    constexpr int most_components = 24, further_components = 4;
+    constexpr int most_components = 24, further_components = 4, fewest_clusters = 16;
     const int most = std::min(source_.length() - 1, most_components);
-    if (most < 1) return;
-    const std::optional<int> fewest = fewest_components(clusters.front(), most);
-    if (!fewest) return;
-    int first = *fewest;
-    for (const int k : clusters) {
-      const int last = std::min(most, first + further_components);
-      while (first < last && attempt_once(k, first) == Outcome::lacks) ++first;
-      for (int n = first; n <= last; ++n)
-        if (attempt_once(k, n) != Outcome::best && n > first) break;
+    std::optional<int> fewest;
+    for (int k = is_free ? most_clusters : settings_.clusters; most > 0 && k >= 2; k /= 2) {
+      if (fewest) fewest = std::min(most, *fewest + 1);
+      fewest = fewest_components(k, most, fewest);
+      if (!fewest) break;
+      bool is_best = attempt_once(k, *fewest) == Outcome::best;
+      for (int n = *fewest + 1; n <= std::min(most, *fewest + further_components); ++n) {
+        const bool is_better = attempt_once(k, n) == Outcome::best;
+        is_best |= is_better;
+        if (!is_better) break;
+      }
+      if (!is_free || !is_best || k / 2 < fewest_clusters) break;
     }
   }
 
@@ -308,8 +375,17 @@ class Search {
                     settings_.max_error, *least_error_ / reach));
   }
 
+  /// Lets the cheapest candidate settle, where it is of clusters; keeps it as it was where that saves nothing.
+  void improve_best() {
+    if (is_fixed() || best_->scheme != CompressScheme::clustered_pca) return;
+    improve(source_, all_, *best_clusters_);
+    attempt(texel_model(source_, *best_clusters_, owners_), CompressScheme::clustered_pca);
+  }
+
   /// Encodes the cheapest candidate as small as can be.
   void finish() {
+    progress_(0.85);
+    improve_best();
     progress_(0.9);
     result_.chosen = *best_;
     if (best_model_) {
@@ -346,12 +422,16 @@ class Search {
   ProgressFunction progress_;
   TransferSource source_;
   std::vector<std::uint32_t> owners_, sample_;
+  Eigen::MatrixXf sample_vectors_;
   PrincipalComponents all_;
+  TexelClusters start_;      ///< of the number of clusters tried last:
+  int starts_clusters_ = 0;  ///< that many
   CompressResult result_;
   std::optional<CompressCandidate> best_;
   std::optional<TexelModel> best_model_;              ///< none: planes
+  std::optional<ClusteredPca> best_clusters_;         ///< of that model, where it is of clusters
   std::optional<double> least_error_;                 ///< that was left by models which leave too much
-  std::map<std::pair<int, int>, Outcome> attempted_;  ///< by clusters and components
+  std::map<std::pair<int, int>, Attempt> attempted_;  ///< by clusters and components
 };
 
 }  // namespace

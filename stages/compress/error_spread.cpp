@@ -96,6 +96,19 @@ ErrorSpread error_spread(const TransferSource& source, const TexelErrors& errors
   return spread_of(all, source);
 }
 
+ErrorSpread error_spread(const TransferSource& source, const VectorErrors& errors, const Eigen::MatrixXf& vectors,
+                         std::span<const std::uint32_t> texels) {
+  Lengths all;
+  all.texels.resize(texels.size());
+  for_each_chunk(texels.size(), [&](std::size_t first, std::size_t count) {
+    Eigen::MatrixXf values = vectors.middleCols(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(count));
+    errors(values, texels.subspan(first, count));
+    for (std::size_t k = 0; k < count; ++k)
+      all.texels[first + k] = values.col(static_cast<Eigen::Index>(k)).squaredNorm();
+  });
+  return spread_of(all, source);
+}
+
 ErrorSpread spread_of_decoded(const PrtAsset& decoded, const TransferSource& source) {
   const TransferSource other(decoded, source.coverage());
   std::span<const std::uint8_t> ids;

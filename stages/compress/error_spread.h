@@ -28,6 +28,13 @@ ErrorSpread error_spread(const TransferSource& source, const TexelErrors& errors
 ErrorSpread error_spread(const TransferSource& source, const TexelErrors& errors,
                          std::span<const std::uint32_t> texels);
 
+/// Turns vectors of texels, weighted, into their errors, in place.
+using VectorErrors = std::function<void(Eigen::Ref<Eigen::MatrixXf> vectors, std::span<const std::uint32_t> texels)>;
+
+/// Over some covered texels whose vectors are known, without borders.
+ErrorSpread error_spread(const TransferSource& source, const VectorErrors& errors, const Eigen::MatrixXf& vectors,
+                         std::span<const std::uint32_t> texels);
+
 /// How a decoded asset differs from `source` over the covered texels of that; same size, bands and channels.
 ErrorSpread spread_of_decoded(const PrtAsset& decoded, const TransferSource& source);
 

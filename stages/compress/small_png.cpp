@@ -14,8 +14,10 @@ namespace kiln {
 namespace {
 
 constexpr std::size_t most_tried_bytes = 1u << 20;
+constexpr int trial_level = 4;            // of zlib; 9 takes up to ten times as long
 constexpr int large_level = 8;            // 9 takes several times as long for next to nothing
 constexpr int filters = 5, adaptive = 5;  // none, sub, up, average, Paeth; the best of them for each row
+constexpr int paeth = 4;
 
 using Bytes = std::vector<unsigned char>;
 
@@ -95,6 +97,32 @@ Bytes bands_of(const Bytes& raw, std::size_t row_bytes) {
   return part;
 }
 
+/// The smallest of every filter with two strategies of zlib: Z_RLE, the same at every level, for planes with noise in
+/// them, and Z_FILTERED, whose best filter a low level tells, for the others. A large picture is chosen for on a part.
+Bytes smallest_of_all(const Bytes& raw, std::size_t row_bytes, std::size_t texel_bytes) {
+  struct Trial {
+    Bytes bytes;
+    int filter = 0;
+  };
+  const bool is_large = raw.size() > most_tried_bytes;
+  const Bytes part = is_large ? bands_of(raw, row_bytes) : raw;
+  Trial runs, matches;  // by Z_RLE, by Z_FILTERED
+  for (int choice = 0; choice <= adaptive; ++choice) {
+    const Bytes rows = filtered(part, row_bytes, texel_bytes, choice);
+    for (auto [best, strategy] : {std::pair(&runs, Z_RLE), std::pair(&matches, Z_FILTERED)}) {
+      Bytes trial = deflated(rows, trial_level, strategy);
+      if (best->bytes.empty() || trial.size() < best->bytes.size()) *best = {std::move(trial), choice};
+    }
+  }
+  if (is_large) {
+    const bool has_runs = runs.bytes.size() < matches.bytes.size();
+    const Bytes rows = filtered(raw, row_bytes, texel_bytes, has_runs ? runs.filter : matches.filter);
+    return deflated(rows, large_level, has_runs ? Z_RLE : Z_FILTERED);
+  }
+  Bytes searched = deflated(filtered(raw, row_bytes, texel_bytes, matches.filter), 9, Z_FILTERED);
+  return searched.size() < runs.bytes.size() ? std::move(searched) : std::move(runs.bytes);
+}
+
 void add_number(std::string& bytes, std::uint32_t value) {
   for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<char>(value >> shift & 0xff));
 }
@@ -120,26 +148,9 @@ std::string encode_grey_png(const Image<std::uint16_t>& image, int bits, PngEffo
       raw.push_back(static_cast<unsigned char>(image.at(i, j) & 0xff));
     }
 
-  Bytes smallest;
-  if (effort == PngEffort::quick) {
-    smallest = deflated(filtered(raw, row_bytes, texel_bytes, 3), 6, Z_FILTERED);
-  } else {
-    // Which filter and strategy, of a large picture on a part of it.
-    const bool is_large = raw.size() > most_tried_bytes;
-    const Bytes part = is_large ? bands_of(raw, row_bytes) : raw;
-    int best_filter = 0, best_strategy = Z_FILTERED;
-    for (int choice = 0; choice <= adaptive; ++choice) {
-      const Bytes rows = filtered(part, row_bytes, texel_bytes, choice);
-      for (const int strategy : {Z_FILTERED, Z_RLE}) {
-        Bytes trial = deflated(rows, is_large ? 6 : 9, strategy);
-        if (!smallest.empty() && trial.size() >= smallest.size()) continue;
-        smallest = std::move(trial);
-        best_filter = choice;
-        best_strategy = strategy;
-      }
-    }
-    if (is_large) smallest = deflated(filtered(raw, row_bytes, texel_bytes, best_filter), large_level, best_strategy);
-  }
+  const Bytes smallest = effort == PngEffort::quick
+                             ? deflated(filtered(raw, row_bytes, texel_bytes, paeth), trial_level, Z_RLE)
+                             : smallest_of_all(raw, row_bytes, texel_bytes);
 
   std::string header;
   add_number(header, static_cast<std::uint32_t>(image.width()));

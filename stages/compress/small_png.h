@@ -9,10 +9,8 @@ namespace kiln {
 
 /// How hard to look for the smallest file.
 enum class PngEffort {
-  quick,  ///< one filter: a measure of what the picture is worth, some percent too high
-  /// The smallest of every filter and adaptive ones, each with two strategies of zlib; of pictures above 1 MiB these
-  /// are chosen on a part.
-  thorough,
+  quick,     ///< one filter and runs alone: a measure of what the picture is worth, some percent too high
+  thorough,  ///< the smallest of all filters and two strategies of zlib; of pictures above 1 MiB chosen on a part
 };
 
 /// A grey PNG of 8 or 16 bits (of 8, values are at most 255) as the bytes of a file; the same values give the same

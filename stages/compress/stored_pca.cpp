@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <tbb/parallel_for.h>
 
@@ -23,19 +24,24 @@ std::vector<Eigen::MatrixXf> fitting_matrices(const PcaModel& model) {
   return result;
 }
 
+/// Columns of `vectors`, which are those of `texels`, cluster after cluster: `body` gets a cluster's number and its
+/// columns' numbers.
+void for_each_cluster(const TexelModel& model, std::span<const std::uint32_t> texels,
+                      const std::function<void(std::size_t, const std::vector<Eigen::Index>&)>& body) {
+  std::vector<std::vector<Eigen::Index>> columns(model.model.means.size());
+  for (std::size_t k = 0; k < texels.size(); ++k) columns[model.ids[texels[k]]].push_back(static_cast<Eigen::Index>(k));
+  for (std::size_t cluster = 0; cluster < columns.size(); ++cluster)
+    if (!columns[cluster].empty()) body(cluster, columns[cluster]);
+}
+
 /// components x texels.
 Eigen::MatrixXf fitted_weights(const TexelModel& model, const std::vector<Eigen::MatrixXf>& fits,
                                const Eigen::MatrixXf& vectors, std::span<const std::uint32_t> texels) {
   Eigen::MatrixXf weights(model.model.components, vectors.cols());
-  if (model.model.clusters() == 1) {
-    weights = fits[0] * (vectors.colwise() - model.model.means[0]);
-    return weights;
-  }
-  for (Eigen::Index k = 0; k < vectors.cols(); ++k) {
-    const std::size_t cluster = model.ids[texels[static_cast<std::size_t>(k)]];
-    const Eigen::VectorXf centred = vectors.col(k) - model.model.means[cluster];
-    weights.col(k).noalias() = fits[cluster] * centred;
-  }
+  for_each_cluster(model, texels, [&](std::size_t cluster, const std::vector<Eigen::Index>& columns) {
+    const Eigen::MatrixXf centred = vectors(Eigen::all, columns).colwise() - model.model.means[cluster];
+    weights(Eigen::all, columns) = fits[cluster] * centred;
+  });
   return weights;
 }
 
@@ -127,18 +133,24 @@ PcaModel rounded_model(const PcaModel& model, const TransferSource& source, cons
   return rounded;
 }
 
+VectorErrors vector_errors(const TexelModel& decoded, double step) {
+  return [&decoded, fits = fitting_matrices(decoded.model), unit = static_cast<float>(step)](
+             Eigen::Ref<Eigen::MatrixXf> vectors, std::span<const std::uint32_t> texels) {
+    for_each_cluster(decoded, texels, [&](std::size_t cluster, const std::vector<Eigen::Index>& columns) {
+      Eigen::MatrixXf part = vectors(Eigen::all, columns).colwise() - decoded.model.means[cluster];
+      Eigen::MatrixXf weights = fits[cluster] * part;
+      if (unit > 0) weights = unit * (weights.array() / unit).round();
+      part.noalias() -= decoded.model.bases[cluster] * weights;
+      vectors(Eigen::all, columns) = part;
+    });
+  };
+}
+
 TexelErrors stored_errors(const TransferSource& source, const TexelModel& decoded, double step) {
-  return [&source, &decoded, fits = fitting_matrices(decoded.model),
-          unit = static_cast<float>(step)](std::span<const std::uint32_t> texels) {
-    Eigen::MatrixXf errors = source.vectors(texels);
-    Eigen::MatrixXf weights = fitted_weights(decoded, fits, errors, texels);
-    if (unit > 0) weights = unit * (weights.array() / unit).round();
-    for (Eigen::Index k = 0; k < errors.cols(); ++k) {
-      const std::size_t cluster = decoded.ids[texels[static_cast<std::size_t>(k)]];
-      errors.col(k) -= decoded.model.means[cluster];
-      errors.col(k).noalias() -= decoded.model.bases[cluster] * weights.col(k);
-    }
-    return errors;
+  return [&source, errors = vector_errors(decoded, step)](std::span<const std::uint32_t> texels) {
+    Eigen::MatrixXf vectors = source.vectors(texels);
+    errors(vectors, texels);
+    return vectors;
   };
 }
 

@@ -50,8 +50,11 @@ struct StoredPca {
 PcaModel rounded_model(const PcaModel& model, const TransferSource& source, const PrincipalComponents& all, double step,
                        StoredPca* stored = nullptr);
 
-/// The errors of covered texels whose weights are stored in steps of `step`, fitted to the means and bases of
-/// `decoded`, which must outlive it; `step` 0: not rounded.
+/// Turns vectors of texels, as TransferSource gives them, into the errors of those texels where weights are stored in
+/// steps of `step`, fitted to the means and bases of `decoded`, which must outlive it; `step` 0: not rounded.
+VectorErrors vector_errors(const TexelModel& decoded, double step);
+
+/// The same of covered texels of `source`, which must outlive it, too.
 TexelErrors stored_errors(const TransferSource& source, const TexelModel& decoded, double step);
 
 /// Weights fitted by least squares to the rounded bases, in equal steps of `step` in all planes: of all ways to spend

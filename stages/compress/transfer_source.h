@@ -11,7 +11,8 @@
 namespace kiln {
 
 /// An asset's transfer vectors, weighted by the square root of lighting_prior so that the squared length of a
-/// difference is its expected relighting error (design: E). They are decoded from the planes as they are asked for.
+/// difference is its expected relighting error (design: E). They are decoded from the planes as
+/// they are asked for, those of small atlases once.
 class TransferSource {
  public:
   /// Texels are covered where the asset's mesh covers them; `asset` must outlive this. Throws BadInput where none is.
@@ -34,10 +35,15 @@ class TransferSource {
   Eigen::MatrixXf vectors(std::span<const std::uint32_t> texels) const;
 
  private:
+  Eigen::MatrixXf decoded(std::span<const std::uint32_t> texels) const;
+  void remember();
+
   const PrtAsset& asset_;
   Eigen::VectorXf scale_;
   std::vector<std::uint8_t> coverage_;
   std::vector<std::uint32_t> covered_;
+  Eigen::MatrixXf known_;              ///< vectors of all covered texels; empty where they would take much memory
+  std::vector<std::uint32_t> places_;  ///< of an atlas' texels, columns of known_
   double squared_norm_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #include "report/budget.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -59,6 +60,23 @@ BudgetVerdict judge_budget(const Budget& budget, const Json& metrics) {
     verdict.value = at->is_boolean() ? static_cast<double>(at->get<bool>()) : at->get<double>();
   verdict.met = budget.is_highest ? verdict.value <= budget.limit : verdict.value >= budget.limit;
   return verdict;
+}
+
+std::vector<BudgetVerdict> judge_budgets(const std::vector<std::string>& texts, const Json& metrics) {
+  std::vector<BudgetVerdict> verdicts;
+  for (const std::string& text : texts) verdicts.push_back(judge_budget(parse_budget(text), metrics));
+  return verdicts;
+}
+
+std::size_t missed_budgets(std::span<const BudgetVerdict> verdicts) {
+  return static_cast<std::size_t>(
+      std::count_if(verdicts.begin(), verdicts.end(), [](const BudgetVerdict& verdict) { return !verdict.met; }));
+}
+
+void put_verdicts(Json& result, std::span<const BudgetVerdict> verdicts) {
+  result["budgets"] = Json::array();
+  for (const BudgetVerdict& verdict : verdicts) result["budgets"].push_back(to_json(verdict));
+  result["budgets_missed"] = missed_budgets(verdicts);
 }
 
 Json to_json(const BudgetVerdict& verdict) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <span>
 #include <string>
+#include <vector>
 
 #include "base/options.h"
 
@@ -27,6 +29,14 @@ Budget parse_budget(const std::string& text);
 /// budget, a truth counts 1 or 0. Throws WrongUsage where there is no such number, and says which there are.
 BudgetVerdict judge_budget(const Budget& budget, const Json& metrics);
 
+/// Of each text that parse_budget reads, in order.
+std::vector<BudgetVerdict> judge_budgets(const std::vector<std::string>& texts, const Json& metrics);
+
 Json to_json(const BudgetVerdict& verdict);
+
+std::size_t missed_budgets(std::span<const BudgetVerdict> verdicts);
+
+/// Sets `budgets` and `budgets_missed` of the report's result.
+void put_verdicts(Json& result, std::span<const BudgetVerdict> verdicts);
 
 }  // namespace kiln

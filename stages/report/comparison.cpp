@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "base/stopwatch.h"
 #include "base/errors.h"
 #include "base/process.h"
+#include "base/stopwatch.h"
 #include "image/image_file.h"
 #include "import/import_mesh.h"
 #include "material/load_albedo.h"
@@ -64,55 +64,76 @@ TriangleMesh surroundings_of(const AssetFolder& asset, const TriangleMesh& high)
   return all;
 }
 
-/// Draws a baked or compressed folder under one light into an EXR, and returns what kiln-render says of it.
-Json render(const fs::path& folder, const std::string& light, double albedo, const ReportSettings& settings,
-            const ComparisonRun& run, const fs::path& file) {
+/// Assets under each light.
+struct Rendered {
+  Json said;                           ///< by kiln-render, of the first
+  std::vector<Image<float>> pictures;  ///< asset after asset, light after light
+};
+
+/// The asset's pictures have the size that was asked for.
+Image<float> read_rendered(const fs::path& file, const ReportSettings& settings) {
+  Image<float> picture = read_float_image(file);
+  if (picture.width() != settings.picture_size || picture.height() != settings.picture_size || picture.channels() != 4)
+    throw std::runtime_error("kiln-render drew another size or number of channels than asked");
+  return picture;
+}
+
+/// Draws the asset and, where there is one, its compressed form under each light, all in one run: to start takes longer
+/// than to draw.
+Rendered render(const AssetFolder& asset, const std::vector<std::string>& lights, double albedo,
+                const ReportSettings& settings, const ComparisonRun& run) {
   std::string printed;
   ProcessSettings process;
   process.on_output_line = [&](const std::string& line) { printed += line; };
   // Everything that the reference has to share is said, whatever the renderer's defaults are.
   const std::string size = std::to_string(settings.picture_size);
-  const ProcessEnd end =
-      run_process({(program_folder() / "kiln-render").string(),
-                   folder.string(),
-                   "-o",
-                   file.string(),
-                   "--light=" + light,
-                   "--window",
-                   "hann",
-                   fmt::format("--camera={},{}", settings.camera_azimuth_degrees, settings.camera_elevation_degrees),
-                   "--field-of-view",
-                   fmt::format("{}", field_of_view_degrees),
-                   fmt::format("--zoom={}", settings.framing.zoom),
-                   "--target=" + settings.framing.target,
-                   "--distance=" + settings.framing.distance,
-                   "--width",
-                   size,
-                   "--height",
-                   size,
-                   "--supersample",
-                   std::to_string(supersample),
-                   "--albedo",
-                   fmt::format("{}", albedo),
-                   "--background",
-                   "none",
-                   "--gl-device",
-                   settings.gl_device,
-                   "--threads",
-                   std::to_string(run.threads),
-                   "--quiet",
-                   "--json"},
-                  process);
+  std::vector<std::string> command = {
+      (program_folder() / "kiln-render").string(),
+      asset.prt().string(),
+      "-o",
+      (run.scratch / "light.exr").string(),
+      "--each-light",
+      "--each-asset",
+      "--window",
+      "hann",
+      fmt::format("--camera={},{}", settings.camera_azimuth_degrees, settings.camera_elevation_degrees),
+      "--field-of-view",
+      fmt::format("{}", field_of_view_degrees),
+      fmt::format("--zoom={}", settings.framing.zoom),
+      "--target=" + settings.framing.target,
+      "--distance=" + settings.framing.distance,
+      "--width",
+      size,
+      "--height",
+      size,
+      "--supersample",
+      std::to_string(supersample),
+      "--albedo",
+      fmt::format("{}", albedo),
+      "--background",
+      "none",
+      "--gl-device",
+      settings.gl_device,
+      "--threads",
+      std::to_string(run.threads),
+      "--quiet",
+      "--json"};
+  for (const std::string& light : lights) command.push_back("--light=" + light);
+  if (!asset.compressed.empty()) command.insert(command.begin() + 2, asset.compressed.string());
+  const ProcessEnd end = run_process(command, process);
   throw_if_interrupted();
   if (end.exit_status == static_cast<int>(ExitCode::machine_lacks))
     throw MachineLacks("kiln-render cannot draw on this machine; it has said why");
   if (end.exit_status == static_cast<int>(ExitCode::bad_input))
-    throw BadInput(folder.string(), "could not be drawn by kiln-render, which has said why",
+    throw BadInput(asset.folder.string(), "could not be drawn by kiln-render, which has said why",
                    "a whole output of kiln-bake or kiln-compress", "run that again");
   if (end.exit_status == static_cast<int>(ExitCode::wrong_usage))
     throw WrongUsage("kiln-render refuses its settings and has said why");
   if (!end.succeeded()) throw std::runtime_error(fmt::format("kiln-render failed (exit status {})", end.exit_status));
-  return Json::parse(printed);
+  Rendered rendered{Json::parse(printed), {}};
+  for (std::size_t k = 0; k < lights.size() * (asset.compressed.empty() ? 1 : 2); ++k)
+    rendered.pictures.push_back(read_rendered(run.scratch / fmt::format("light_{:03}.exr", k), settings));
+  return rendered;
 }
 
 bool is_whole(float coverage) { return coverage > 0.9999f; }
@@ -134,14 +155,6 @@ ImageDifference compare(const Image<float>& picture, const Image<float>& referen
     return image;
   };
   return compare_images(as_image(ours), as_image(theirs));
-}
-
-/// Both of the asset's pictures have the size that was asked for.
-Image<float> read_rendered(const fs::path& file, const ReportSettings& settings) {
-  Image<float> picture = read_float_image(file);
-  if (picture.width() != settings.picture_size || picture.height() != settings.picture_size || picture.channels() != 4)
-    throw std::runtime_error("kiln-render drew another size or number of channels than asked");
-  return picture;
 }
 
 double silhouette_difference(const LightComparison& comparison) {
@@ -166,19 +179,15 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
 
   // The asset, by the program that draws it from its files alone.
   const Stopwatch render_watch;
-  Json camera;
+  Rendered rendered = render(asset, lights, albedo, settings, run);
+  comparison.renderer = rendered.said.at("renderer").get<std::string>();
+  comparison.software_renderer = rendered.said.at("software_renderer").get<bool>();
   for (std::size_t k = 0; k < lights.size(); ++k) {
-    const fs::path file = run.scratch / fmt::format("light_{}.exr", k);
-    const Json said = render(asset.prt(), lights[k], albedo, settings, run, file);
-    comparison.renderer = said.at("renderer").get<std::string>();
-    camera = said.at("camera");
-    comparison.software_renderer = said.at("software_renderer").get<bool>();
     LightComparison& light = comparison.lights.emplace_back();
     light.light = lights[k];
-    light.asset = read_rendered(file, settings);
+    light.asset = std::move(rendered.pictures[k]);
     if (asset.compressed.empty()) continue;
-    render(asset.compressed, lights[k], albedo, settings, run, file);
-    light.compressed = read_rendered(file, settings);
+    light.compressed = std::move(rendered.pictures[lights.size() + k]);
     std::size_t pixels = 0;
     light.compressed_difference = compare(light.compressed, light.asset, pixels);
   }
@@ -192,7 +201,7 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   const TriangleMesh& high = imported.mesh;
   ReferenceView view;
   view.width = view.height = settings.picture_size;
-  view.camera = camera_of_json(camera);
+  view.camera = camera_of_json(rendered.said.at("camera"));
   view.supersample = supersample;
   view.albedo = static_cast<float>(albedo);
   view.surface_albedo = high_albedo(asset, imported);

@@ -2,10 +2,7 @@
 
 #include "base/command_line.h"
 #include "base/errors.h"
-#include "base/file_names.h"
-#include "image/image_file.h"
-#include "report/page.h"
-#include "report/report.h"
+#include "report/report_files.h"
 
 int main(int argc, char** argv) {
   using namespace kiln;
@@ -14,6 +11,7 @@ int main(int argc, char** argv) {
     CommandLine command("kiln-report", "Gathers what the stages say of an asset, and shows it beside its original.");
     std::filesystem::path folder, page_file, high_file, compressed;
     std::vector<std::string> budgets;
+    bool reuses = false;
     ReportSettings settings;
     command.input("ASSET-FOLDER", folder,
                   "The asset's folder: what kiln-simplify to kiln-bake wrote, as `kiln build` lays it out");
@@ -31,28 +29,32 @@ int main(int argc, char** argv) {
         ->take_all()
         ->type_name("")
         ->group("Budgets");
+    command.app()
+        .add_flag("--reuse", reuses,
+                  "Where a report of these inputs and settings is there already, judge what it has measured and draw "
+                  "nothing")
+        ->group("Budgets");
     command.parse(argc, argv);
 
     // Load.
     const AssetFolder asset = load_asset_folder(folder, compressed);
     if (high_file.empty()) high_file = recorded_high_mesh(asset);
+    std::optional<EarlierReport> earlier = find_earlier(page_file, asset, command.result(0, Json::object()));
 
-    // Run.
+    // Run, and save.
     OutputSet outputs(folder_of(page_file));
-    const ComparisonRun run{outputs.staging(), command.threads(), command.seed(), command.progress("report")};
-    const Report report = make_report(asset, high_file, budgets, settings, run);
-
-    // Save.
-    Json result = command.result(report.seconds, report.to_json());
-    for (const StageRecord& record : asset.records)
-      result["inputs"][text_of_path(record.file)] = hash_file(record.file);
-    const Json metrics = all_metrics(asset, result);
-    outputs.add_text(page_file.filename().string(), page_html(asset, report, metrics, outputs.staging()));
-    write_png(outputs.add("report.png"), cover_picture(report));
-    outputs.add_text("metrics.json", json_text(metrics, 2) + "\n");
+    const std::string page_name = page_file.filename().string();
+    Json result;
+    if (reuses && earlier) {
+      result = save_judged(outputs, page_name, std::move(*earlier), budgets);
+    } else {
+      const ComparisonRun run{outputs.staging(), command.threads(), command.seed(), command.progress("report")};
+      const Report report = make_report(asset, high_file, budgets, settings, run);
+      result = save_report(outputs, page_name, asset, report, command.result(report.seconds, report.to_json()));
+    }
     command.finish(outputs, result);
-    if (const std::size_t missed = report.missed_budgets(); missed > 0)
-      throw BudgetMissed(std::to_string(missed) + " of " + std::to_string(report.budgets.size()) +
+    if (const auto missed = result.at("budgets_missed").get<std::size_t>(); missed > 0)
+      throw BudgetMissed(std::to_string(missed) + " of " + std::to_string(result.at("budgets").size()) +
                          " budgets missed; see " + page_file.string());
   });
 }

@@ -11,6 +11,7 @@
 #include "report/pictures.h"
 #include "report/tradeoff.h"
 #include "report/transport.h"
+#include "report/verdicts.h"
 #include "sh/basis.h"
 
 namespace kiln {
@@ -26,8 +27,6 @@ constexpr int pyramid_bands = 6;  // more bands have rows too long to be seen
 constexpr int pyramid_pixels = 192;
 constexpr int sheet_pixels = 96;
 
-const char* plural(std::size_t count) { return count == 1 ? "" : "s"; }
-
 std::string image(const std::string& source, const std::string& description, int width, int height) {
   return fmt::format("<img src='{}' alt='{}' width={} height={}>", source, escaped(description), width, height);
 }
@@ -38,15 +37,6 @@ std::string image(const Image<std::uint8_t>& picture, const std::string& descrip
 
 std::string figure(const std::string& picture, const std::string& caption) {
   return "<figure>" + picture + "<figcaption>" + caption + "</figcaption></figure>\n";
-}
-
-std::string verdict_badge(const Report& report) {
-  const std::size_t count = report.budgets.size(), missed = report.missed_budgets();
-  if (count == 0) return "<span class='badge plain'>No budgets set</span>";
-  if (missed == 0)
-    return fmt::format("<span class='badge good'>✓ {}</span>",
-                       count == 1 ? "Budget met" : fmt::format("All {} budgets met", count));
-  return fmt::format("<span class='badge bad'>✗ {} of {} budget{} missed</span>", missed, count, plural(count));
 }
 
 /// Pictures by a software renderer are right but slow: whoever reads timings has to know.
@@ -79,7 +69,7 @@ std::string header(const AssetFolder& asset, const Report& report, const Json& m
       "<p class=lead>A mesh of {} triangles as {} triangles, a texture atlas, a normal map and {} transfer coefficient "
       "planes of {} bits.</p>\n",
       value(simplify, "input_triangles"), value(simplify, "triangles"), asset.planes.size(), asset.bits);
-  html += verdict_badge(report) + "\n" + software_alarm(asset, report);
+  html += marked_badge(report.budgets) + "\n" + software_alarm(asset, report);
   html += "<dl class=figures>\n";
   const auto figure_of = [&](const std::string& name, const std::string& number, const std::string& more) {
     html += fmt::format("<div><dt>{}</dt><dd>{}</dd><small>{}</small></div>\n", name, number, more);
@@ -312,7 +302,7 @@ std::string page_html(const AssetFolder& asset, const Report& report, const Json
          "content='width=device-width, initial-scale=1'>\n<title>" +
          escaped(asset.name) + " · Kiln report</title>\n<style>\n" + page_style() +
          "</style>\n</head>\n<body><main>\n" + header(asset, report, metrics) +
-         relit_section(asset, report, metrics, scratch) + budgets_section(report) +
+         relit_section(asset, report, metrics, scratch) + marked_budgets(report.budgets) +
          compression_section(asset, report, scratch) + transport_section(asset.record("bake")) +
          textures_section(asset, scratch) + coefficients_section(asset, scratch) + verification_section(asset) +
          stages_section(metrics) + footer(metrics) + "</main></body>\n</html>\n";

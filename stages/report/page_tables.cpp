@@ -27,9 +27,9 @@ std::string row(const std::string& label, const std::string& value) {
 std::string metric_rows(const std::string& stage, const Json& metrics) {
   std::string html;
   for (const auto& [key, value] : metrics.items()) {
-    if (key == "stage" || key == "version" || key == "settings" || key == "inputs" || key == "outputs" || key == "seconds" ||
-        key == "verification" || key == "plain" || key == "chosen" || key == "bounces" || key == "subsurface" ||
-        value.is_array())
+    if (key == "stage" || key == "version" || key == "settings" || key == "inputs" || key == "outputs" ||
+        key == "seconds" || key == "budgets_missed" || key == "verification" || key == "plain" || key == "chosen" ||
+        key == "bounces" || key == "subsurface" || value.is_array())
       continue;
     if (!value.is_object()) {
       html += row(metric_label(stage + "." + key), metric_value(key, value));
@@ -51,37 +51,7 @@ std::string settings_rows(const Json& settings) {
   return html;
 }
 
-/// How much of the budget is used up: 1 is all of it.
-double budget_use(const BudgetVerdict& verdict) {
-  const double use =
-      verdict.budget.is_highest ? verdict.value / verdict.budget.limit : verdict.budget.limit / verdict.value;
-  return std::isfinite(use) && use >= 0 ? use : verdict.met ? 0 : 1;
-}
-
 }  // namespace
-
-std::string budgets_section(const Report& report) {
-  std::string html = "<section><h2>Budgets</h2>\n";
-  if (report.budgets.empty())
-    return html +
-           "<p class=note>None are set for this asset. pipeline.yaml takes them as <code>budgets: {STAGE.METRIC: {max: "
-           "…}}</code>.</p></section>\n";
-  html +=
-      "<table><thead><tr><th>Metric<th><th class=number>Value<th "
-      "class=number>Limit<th>Used<th>Verdict</thead><tbody>\n";
-  for (const BudgetVerdict& verdict : report.budgets) {
-    const std::string& key = verdict.budget.metric;
-    const char* tone = verdict.met ? "good" : "bad";
-    html += fmt::format(
-        "<tr><td><code>{}</code><td class=note>{}<td class=number>{}<td class=number>{} {}<td><div class='meter {}'><i "
-        "style='width:{:.0f}%'></i></div>"
-        "<td class='verdict {}'>{}\n",
-        escaped(verdict.budget.metric), escaped(metric_label(key)), metric_value(key, verdict.value),
-        verdict.budget.is_highest ? "≤" : "≥", metric_value(key, verdict.budget.limit), tone,
-        100 * std::min(1.0, budget_use(verdict)), tone, verdict.met ? "met" : "missed");
-  }
-  return html + "</tbody></table></section>\n";
-}
 
 std::string verification_section(const AssetFolder& asset) {
   const Json verification = asset.record("bake").value("verification", Json());

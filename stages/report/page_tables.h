@@ -8,7 +8,6 @@
 namespace kiln {
 
 /// The sections of the page that hold words and numbers; see page_html. HTML.
-std::string budgets_section(const Report& report);
 std::string verification_section(const AssetFolder& asset);
 std::string stages_section(const Json& metrics);
 

@@ -5,8 +5,10 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "raycast/beam_transfer.h"
 #include "raycast/ray_scene.h"
-#include "raycast/ray_transfer.h"
+#include "sh/basis.h"
+#include "sh/directions.h"
 #include "sh/ray_offset.h"
 
 namespace kiln {
@@ -46,6 +48,30 @@ VisiblePoints visible_points(const RayScene& scene, const TriangleMesh& mesh, co
   return points;
 }
 
+/// Of receivers under one light, at an albedo of 1.
+std::vector<Eigen::Vector3f> radiance_of(const TransferVectors& transfer, const LightSpec& light,
+                                         const ReferenceView& view, const Receivers& receivers) {
+  std::vector<Eigen::Vector3f> radiance(receivers.size());
+  const bool is_local = light.kind == LightSpec::Kind::sphere;
+  const LightCoefficients far = windowed_light(light, view.bands, view.window);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, receivers.size(), 512), [&](const auto& range) {
+    // Plane after plane, so that what is read lies together.
+    std::vector<Eigen::Vector3d> sums(range.size(), Eigen::Vector3d::Zero());
+    std::vector<LightCoefficients> near;
+    for (std::size_t r = range.begin(); is_local && r != range.end(); ++r)
+      near.push_back(windowed_light(light, view.bands, view.window, receivers.positions[r].template cast<double>()));
+    for (int i = 0; i < transfer.coefficients; ++i) {
+      const std::span<const float> plane = transfer.plane(i);
+      for (std::size_t k = 0; k < range.size(); ++k) {
+        const LightCoefficients& incident = is_local ? near[k] : far;
+        for (int c = 0; c < 3; ++c) sums[k][c] += incident.channels[c][i] * plane[range.begin() + k];
+      }
+    }
+    for (std::size_t k = 0; k < range.size(); ++k) radiance[range.begin() + k] = sums[k].cast<float>();
+  });
+  return radiance;
+}
+
 TriangleMesh joined(const TriangleMesh& first, const TriangleMesh& second) {
   TriangleMesh both{first.positions, first.triangles, {}, {}};
   const auto count = static_cast<std::uint32_t>(first.positions.size());
@@ -62,7 +88,9 @@ std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const Ref
                                              const ProgressFunction& progress) {
   const VisiblePoints points = visible_points(RayScene(mesh), mesh, view);
   const TriangleMesh occluders = joined(mesh, view.surroundings);
-  const RayScene scene(occluders);
+  const BeamScene scene(occluders.positions, occluders.triangles);
+  std::vector<Eigen::Vector3f> ordered(directions.begin(), directions.end());
+  order_coherently(ordered);
   const float ray_offset = rounding_offset(occluders.positions);                      // as kiln-bake has it
   const float share = 1.f / static_cast<float>(view.supersample * view.supersample);  // of a pixel that one sample has
   std::vector<Image<float>> pictures(lights.size(), Image<float>(view.width, view.height, 4));
@@ -73,21 +101,16 @@ std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const Ref
     const std::size_t size = std::min(batch_receivers, count - begin);
     const Receivers receivers{std::span(points.positions).subspan(begin, size),
                               std::span(points.normals).subspan(begin, size)};
-    const TransferVectors transfer = transfer_by_rays(scene, receivers, directions, view.bands, ray_offset);
+    TransferSums sums(size, coefficient_count(view.bands));
+    add_transfer_by_beams(scene, BeamReceivers(receivers, ray_offset), ordered, sums);
+    const TransferVectors transfer = sums.transfer();
     for (std::size_t light = 0; light < lights.size(); ++light) {
-      const bool local = lights[light].kind == LightSpec::Kind::sphere;
-      LightCoefficients incident = windowed_light(lights[light], view.bands, view.window);
+      const std::vector<Eigen::Vector3f> radiance = radiance_of(transfer, lights[light], view, receivers);
       for (std::size_t r = 0; r < size; ++r) {
-        if (local)
-          incident = windowed_light(lights[light], view.bands, view.window, receivers.positions[r].cast<double>());
         const std::size_t pixel = points.pixels[begin + r];
         const std::span<float> values =
             pictures[light].pixel(static_cast<int>(pixel % view.width), static_cast<int>(pixel / view.width));
-        for (int c = 0; c < 3; ++c) {
-          double radiance = 0;
-          for (int i = 0; i < transfer.coefficients; ++i) radiance += incident.channels[c][i] * transfer.plane(i)[r];
-          values[c] += share * points.albedos[begin + r][c] * static_cast<float>(radiance);
-        }
+        for (int c = 0; c < 3; ++c) values[c] += share * points.albedos[begin + r][c] * radiance[r][c];
         values[3] += share;
       }
     }

@@ -6,11 +6,6 @@
 
 namespace kiln {
 
-std::size_t Report::missed_budgets() const {
-  return static_cast<std::size_t>(
-      std::count_if(budgets.begin(), budgets.end(), [](const BudgetVerdict& verdict) { return !verdict.met; }));
-}
-
 Json Report::to_json() const {
   Json lights = Json::array();
   double relative_l2 = 0, root_mean_square = 0, compressed_relative_l2 = 0;
@@ -28,8 +23,6 @@ Json Report::to_json() const {
     }
     root_mean_square = std::max(root_mean_square, light.difference.root_mean_square);
   }
-  Json verdicts = Json::array();
-  for (const BudgetVerdict& verdict : budgets) verdicts.push_back(kiln::to_json(verdict));
   Json json = {{"relative_l2", relative_l2},
                {"root_mean_square", root_mean_square},
                {"silhouette_difference", comparison.silhouette_difference},
@@ -38,9 +31,8 @@ Json Report::to_json() const {
                {"software_renderer", comparison.software_renderer},
                {"render_seconds", comparison.render_seconds},
                {"reference_seconds", comparison.reference_seconds},
-               {"lights", lights},
-               {"budgets", verdicts},
-               {"budgets_missed", missed_budgets()}};
+               {"lights", lights}};
+  put_verdicts(json, budgets);
   if (is_compressed) json["compressed_relative_l2"] = compressed_relative_l2;
   return json;
 }

@@ -17,7 +17,6 @@ struct Report {
   std::vector<BudgetVerdict> budgets;
   double seconds = 0;
 
-  std::size_t missed_budgets() const;
   Json to_json() const;  ///< the report stage's own metrics
 };
 

@@ -206,6 +206,38 @@ TEST(ClusteredPca, TwoSubspacesNeedTwoClusters) {
   EXPECT_GT(error_of(source, clustered_pca(source, all, 2, 1, 1).residual), 1e-2);
 }
 
+TEST(ClusteredPca, EveryTexelHasTheNearestSubspaceNearly) {
+  // Texels try the subspaces around the mean next to them alone, 16 of 64, and others reach far here, where what varies
+  // is spread over seven dimensions: 9 % more is left than by trying all, 5 % after more rounds. A third, which is
+  // allowed, is less than what trying four leaves, 58 %.
+  const PrtAsset asset = make_asset(96, 80, 3, 1, of_rank(7, 9));
+  const TransferSource source(asset);
+  const PrincipalComponents all = principal_components(source);
+  ClusteredPca clustered = clustered_pca(source, all, 64, 2, 1);
+  const auto check = [&] {
+    const Eigen::MatrixXf vectors = source.vectors(source.covered());
+    double nearest = 0, given = 0;
+    for (Eigen::Index k = 0; k < vectors.cols(); ++k) {
+      double least = INFINITY;
+      for (std::size_t c = 0; c < clustered.model.means.size(); ++c) {
+        const Eigen::VectorXd x = (vectors.col(k) - clustered.model.means[c]).cast<double>();
+        const double distance =
+            (x - clustered.model.bases[c].cast<double>() * (clustered.model.bases[c].cast<double>().transpose() * x))
+                .squaredNorm();
+        least = std::min(least, distance);
+        if (c == clustered.ids[static_cast<std::size_t>(k)]) given += distance;
+      }
+      nearest += least;
+    }
+    EXPECT_LT(given, 1.33 * nearest);
+    EXPECT_NEAR(clustered.residual, given, 1e-3 * given);  // in float32
+    return given;
+  };
+  const double before = check();
+  improve(source, all, clustered);
+  EXPECT_LT(check(), before);
+}
+
 TEST(ClusteredPca, MoreClustersThanTexelsThatDiffer) {
   const PrtAsset asset = make_asset(
       32, 32, 2, 1, [](int i, int) { return Eigen::VectorXd(Eigen::VectorXd::Constant(4, i < 16 ? 0.1 : 0.2)); });

@@ -112,7 +112,23 @@ TEST_F(Stage, AStampSavesReading) {
   EXPECT_NE(FileHashes(scratch_.folder()).stamp("a.obj", &stamp)->hash, "trusted");
 }
 
+TEST_F(Stage, OtherLimitsAloneAreToldFromOtherWork) {
+  plan_.run.limits = {"--budget", "cook.salt<=1"};
+  EXPECT_EQ(reason(), other_limits);
+  FileHashes hashes(scratch_.folder());
+  save_state(plan_.state, state_after(plan_, stamps_of_inputs(plan_, hashes), scratch_.folder()));
+  EXPECT_EQ(reason(), "");
+  // Whatever else has changed decides.
+  plan_.run.limits = {"--budget", "cook.salt<=2"};
+  EXPECT_EQ(reason(), other_limits);
+  write("out/spoon.png", "bent");
+  EXPECT_EQ(reason(), "out/spoon.png has changed");
+  plan_.key = "cook a.obj --longer\nversion 1\n";
+  EXPECT_EQ(reason(), "its command or programs have changed");
+}
+
 TEST_F(Stage, PlansComeBack) {
+  plan_.run.limits = {"--budget", "cook.salt<=1"};
   plan_.run.command = {"kiln-cook", "caf\xe9\n.obj", "\\x41"};
   plan_.run.inputs = {"caf\xe9\n.obj"};
   plan_.run.checkpoint = "out/pot.checkpoint";
@@ -123,6 +139,7 @@ TEST_F(Stage, PlansComeBack) {
   EXPECT_EQ(back.run.inputs, plan_.run.inputs);
   EXPECT_EQ(back.run.outputs, plan_.run.outputs);
   EXPECT_EQ(back.run.checkpoint, plan_.run.checkpoint);
+  EXPECT_EQ(back.run.limits, plan_.run.limits);
   EXPECT_EQ(back.key, plan_.key);
   EXPECT_EQ(back.state, plan_.state);
 }

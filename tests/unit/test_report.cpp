@@ -1,9 +1,13 @@
 // What the report computes by itself: budgets, pictures, the reference picture, and the text around them.
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <numbers>
 
 #include "base/errors.h"
+#include "base/file_names.h"
+#include "base/outputs.h"
 #include "base/process.h"
 #include "image/image_file.h"
 #include "raycast/ray_scene.h"
@@ -11,9 +15,12 @@
 #include "report/labels.h"
 #include "report/pictures.h"
 #include "report/reference.h"
+#include "report/report_files.h"
 #include "report/report_settings.h"
 #include "report/tradeoff.h"
 #include "report/transport.h"
+#include "report/verdicts.h"
+#include "scratch.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 #include "sh/light_spec.h"
@@ -22,6 +29,8 @@
 
 namespace kiln {
 namespace {
+
+namespace fs = std::filesystem;
 
 TEST(Budget, ReadsBothRelations) {
   const Budget highest = parse_budget("simplify.hausdorff<=0.012");
@@ -50,6 +59,77 @@ TEST(Budget, JudgesIncludingTheLimitItself) {
   EXPECT_FALSE(judge_budget(parse_budget("atlas.broken>=-1"), metrics).met);
   for (const char* text : {"atlas.chart<=1", "bake.x<=1", "atlas<=1", "atlas.name<=1", "atlas.charts.x<=1"})
     EXPECT_THROW(judge_budget(parse_budget(text), metrics), WrongUsage) << text;
+}
+
+/// A report of one stage in `folder`, as if it had been drawn.
+AssetFolder write_report(const fs::path& folder, const std::vector<std::string>& budgets) {
+  AssetFolder asset;
+  asset.name = "pot";
+  std::ofstream(folder / "simplify.json") << "{}";
+  asset.records.push_back({"simplify", folder / "simplify.json", {{"triangles", 100}}});
+  OutputSet outputs(folder);
+  Json result = {{"stage", "report"}, {"version", "1"}, {"settings", {{"lights", "1,2"}}}, {"seconds", 7.5}};
+  result["inputs"] = {{text_of_path(folder / "simplify.json"), hash_file(folder / "simplify.json")}};
+  const std::vector<BudgetVerdict> verdicts = judge_budgets(budgets, all_metrics(asset, result));
+  put_verdicts(result, verdicts);
+  outputs.add_text("report.html", page_judged_again("<p><!--verdict--><!--/verdict--> pictures "
+                                                    "<!--budgets--><!--/budgets--></p>",
+                                                    verdicts));
+  outputs.add_text("report.png", "a picture");
+  outputs.add_text("metrics.json", all_metrics(asset, result).dump());
+  for (const std::string& name : outputs.names()) result["outputs"][name] = hash_file(outputs.staging() / name);
+  outputs.add_text("report.json", result.dump());
+  outputs.commit();
+  return asset;
+}
+
+TEST(Judging, OtherBudgetsChangeTheVerdictsAndNothingElse) {
+  const Scratch scratch;
+  const fs::path page = scratch.folder() / "report.html";
+  const AssetFolder asset = write_report(scratch.folder(), {"simplify.triangles<=100", "report.seconds<=8"});
+  EXPECT_NE(read_text(page).find("All 2 budgets met"), std::string::npos);
+  Json result = Json::parse(read_text(scratch.folder() / "report.json"));
+  OutputSet outputs(scratch.folder());
+  const std::optional<EarlierReport> earlier = find_earlier(page, asset, result);
+  ASSERT_TRUE(earlier);
+  const Json judged = save_judged(outputs, "report.html", *earlier, {"simplify.triangles<=99"});
+  outputs.commit();
+  EXPECT_EQ(judged.at("budgets_missed"), 1);
+  EXPECT_EQ(judged.at("budgets").size(), 1);
+  EXPECT_EQ(judged.at("seconds"), 7.5) << "what it took to draw";
+  const std::string html = read_text(page);
+  EXPECT_NE(html.find("1 of 1 budget missed"), std::string::npos);
+  EXPECT_EQ(html.find("All 2"), std::string::npos);
+  EXPECT_EQ(html.find("report.seconds"), std::string::npos);
+  EXPECT_NE(html.find(" pictures "), std::string::npos);
+  EXPECT_EQ(read_text(scratch.folder() / "report.png"), "a picture");
+  EXPECT_EQ(Json::parse(read_text(scratch.folder() / "metrics.json")).at("report").at("budgets_missed"), 1);
+  EXPECT_THROW(save_judged(outputs, "report.html", *earlier, {"simplify.rectangles<=1"}), WrongUsage);
+}
+
+TEST(Judging, NeedsAReportOfTheSameThings) {
+  const Scratch scratch;
+  const fs::path folder = scratch.folder(), page = folder / "report.html";
+  const auto with = [&](const char* key, const Json& value) {
+    Json result = Json::parse(read_text(folder / "report.json"));
+    result[key] = value;
+    return result;
+  };
+  for (const char* change : {"", "settings", "version", "inputs"}) {
+    const AssetFolder asset = write_report(folder, {});
+    EXPECT_EQ(find_earlier(page, asset, *change == 0 ? with("seconds", 0) : with(change, {{"other", 1}})).has_value(),
+              *change == 0)
+        << change;
+  }
+  for (const std::string file : {"report.html", "report.png", "metrics.json", "simplify.json"}) {
+    const AssetFolder asset = write_report(folder, {});
+    const Json result = with("seconds", 0);
+    std::ofstream(folder / file, std::ios::app) << " ";
+    EXPECT_FALSE(find_earlier(page, asset, result)) << file;
+    if (file == "simplify.json") continue;
+    fs::remove(folder / file);
+    EXPECT_FALSE(find_earlier(page, asset, result)) << file << " gone";
+  }
 }
 
 TEST(Base64, VectorsOfRfc4648) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
+#include <random>
 
 #include "sh/basis.h"
 #include "sh/directions.h"
@@ -304,6 +305,41 @@ TEST(Transfer, ErrorsAreWhatTheirDefinitionsSay) {
   const std::vector<TransferVectors> others = {other, reference, zeros}, references = {reference, reference, zeros};
   EXPECT_NEAR(relative_l2(others, references), 0.1 / std::sqrt(2.0), 1e-12);
   EXPECT_NEAR(expected_relighting_error(others, references), std::sqrt(0.125 / 13), 1e-7);
+}
+
+TEST(Transfer, SampledErrorsAreAsUncertainAsTheySay) {
+  // 400 samples of 500 out of 20,000 receivers whose errors differ by a factor of ten: of intervals of 95 % about 20
+  // may miss. 36 is 3.7 standard deviations of that number more; an interval too narrow by a fifth misses 48.
+  constexpr std::size_t all = 20000, count = 500, step = all / count;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> value(0, 1);
+  TransferVectors truth(all, 4), other(all, 4);
+  for (std::size_t r = 0; r < all; ++r) {
+    const float size = 0.01f * std::pow(10.f, value(random));
+    for (int i = 0; i < 4; ++i) {
+      truth.plane(i)[r] = value(random);
+      other.plane(i)[r] = truth.plane(i)[r] + size * (value(random) - 0.5f);
+    }
+  }
+  const double whole = relative_l2(other, truth);
+  int missed = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    TransferVectors some(count, 4), reference(count, 4);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t r = k * step + random() % step;
+      for (int i = 0; i < 4; ++i) {
+        some.plane(i)[k] = other.plane(i)[r];
+        reference.plane(i)[k] = truth.plane(i)[r];
+      }
+    }
+    const SampledError error = sampled_relative_l2(std::span(&some, 1), std::span(&reference, 1), all);
+    EXPECT_NEAR(error.value, relative_l2(some, reference), 1e-12);
+    EXPECT_LT(error.uncertainty, 0.2 * error.value) << "500 texels tell more than that";
+    missed += std::abs(error.value - whole) > error.uncertainty;
+  }
+  EXPECT_GT(missed, 4) << "an interval that never misses is too wide";
+  EXPECT_LE(missed, 36);
+  EXPECT_EQ(sampled_relative_l2(std::span(&other, 1), std::span(&truth, 1), all).uncertainty, 0) << "all measured";
 }
 
 }  // namespace

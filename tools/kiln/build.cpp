@@ -130,7 +130,8 @@ class Build {
     for (const std::size_t k : wanted_) {
       const StageRun& run = rules_[k].run;
       if (!settings_.json && must_run(k))
-        std::printf("[%s] %s: %s\n", rules_[k].asset.c_str(), run.name.c_str(), shown_command(run.command).c_str());
+        std::printf("[%s] %s: %s\n", rules_[k].asset.c_str(), run.name.c_str(),
+                    shown_command(run.whole_command()).c_str());
       note(k, must_run(k) ? "to build" : "current");
     }
     if (!settings_.json && std::none_of(wanted_.begin(), wanted_.end(), [&](std::size_t k) { return must_run(k); }))

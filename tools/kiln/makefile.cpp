@@ -104,7 +104,7 @@ std::string makefile_text(const std::vector<MakeRule>& rules, const fs::path& pr
     const bool is_first = k == 0 || rules[k - 1].asset != rule.asset;
     const bool is_last = k + 1 == rules.size() || rules[k + 1].asset != rule.asset;
     if (is_first) body += fmt::format("\n# {}\n", rule.asset);
-    body += fmt::format("# {}\n{}:", shown_command(rule.run.command), targets[k]);
+    body += fmt::format("# {}\n{}:", shown_command(rule.run.whole_command()), targets[k]);
     for (const std::size_t need : needs[k]) body += " " + targets[need];
     body += fmt::format("\n\t@$(STEP) {}\n", recipe_word(rule.plan.string()));
     phony += " " + targets[k];

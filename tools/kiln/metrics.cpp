@@ -43,10 +43,12 @@ constexpr const char* of_bake =
     "ambiguous refined quantisation_error width height seams.edges seams.seam_mismatch_mean_before "
     "seams.seam_mismatch_max_before seams.seam_mismatch_mean seams.seam_mismatch_max seams.change";
 
-/// The last two are left out where the reference shares what it measures.
+/// The last four are left out where the reference shares what it measures.
 constexpr const char* of_verification =
-    "verification.backend_difference verification.reference_directions verification.reference_texels "
-    "verification.integration_error verification.error verification.relighting_error";
+    "verification.backend_texels verification.backend_difference verification.backend_difference_uncertainty "
+    "verification.reference_directions verification.reference_texels verification.integration_error "
+    "verification.integration_error_uncertainty verification.error verification.error_uncertainty "
+    "verification.relighting_error verification.relighting_error_uncertainty";
 
 constexpr const char* of_bounces =
     "bounces.count bounces.seconds bounces.cache_points bounces.cache_triangles bounces.cache_seconds";

@@ -107,6 +107,7 @@ void save_plan(const fs::path& file, const StagePlan& plan) {
                      {"inputs", texts_of(run.inputs)},
                      {"outputs", texts_of(run.outputs)},
                      {"checkpoint", text_of_path(run.checkpoint)},
+                     {"limits", texts_of(run.limits)},
                      {"key", text_of_path(plan.key)},
                      {"state", text_of_path(plan.state)}};
   write_if_changed(file, json_text(json, 1) + "\n");
@@ -121,6 +122,7 @@ StagePlan load_plan(const fs::path& file) {
     plan.run.command = words_of(json.at("command"));
     plan.run.inputs = paths_of(json.at("inputs"));
     plan.run.outputs = paths_of(json.at("outputs"));
+    plan.run.limits = words_of(json.at("limits"));
     plan.run.checkpoint = path_of_text(json.at("checkpoint").get<std::string>());
     plan.key = path_of_text(json.at("key").get<std::string>()).string();
     plan.state = path_of_text(json.at("state").get<std::string>());
@@ -136,15 +138,17 @@ std::optional<StageState> load_state(const fs::path& file) {
   const Json json = Json::parse(read_text(file), nullptr, false);
   try {
     return StageState{path_of_text(json.at("key").get<std::string>()).string(), stamps_of(json.at("inputs")),
-                      stamps_of(json.at("outputs"))};
+                      stamps_of(json.at("outputs")), words_of(json.at("limits"))};
   } catch (const Json::exception&) {
     return std::nullopt;  // cut off, or of another version: as if the stage had not run
   }
 }
 
 void save_state(const fs::path& file, const StageState& state) {
-  const Json json = {
-      {"key", text_of_path(state.key)}, {"inputs", to_json(state.inputs)}, {"outputs", to_json(state.outputs)}};
+  const Json json = {{"key", text_of_path(state.key)},
+                     {"limits", texts_of(state.limits)},
+                     {"inputs", to_json(state.inputs)},
+                     {"outputs", to_json(state.outputs)}};
   write_if_changed(file, json_text(json, 1) + "\n");
 }
 
@@ -159,7 +163,7 @@ std::string reason_to_run(const StagePlan& plan, std::optional<StageState>& stat
   for (auto* files : {&state->inputs, &state->outputs})
     for (auto& [file, stamp] : *files)
       if (!holds(file, stamp, hashes, reason)) return reason;
-  return "";
+  return state->limits == plan.run.limits ? "" : other_limits;
 }
 
 std::map<fs::path, FileStamp> stamps_of_inputs(const StagePlan& plan, FileHashes& hashes) {
@@ -171,7 +175,7 @@ std::map<fs::path, FileStamp> stamps_of_inputs(const StagePlan& plan, FileHashes
 
 StageState state_after(const StagePlan& plan, std::map<fs::path, FileStamp> inputs, const fs::path& folder) {
   FileHashes hashes(folder);
-  StageState state{plan.key, std::move(inputs), {}};
+  StageState state{plan.key, std::move(inputs), {}, plan.run.limits};
   const Json record = record_of(plan, folder);
   const auto add = [&](std::map<fs::path, FileStamp>& files, const fs::path& file) {
     if (files.contains(file)) return;

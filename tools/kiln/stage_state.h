@@ -44,7 +44,7 @@ class FileHashes {
 struct StagePlan {
   std::string asset;
   StageRun run;
-  std::string key;              ///< what makes the command give another result: stamp_text()
+  std::string key;              ///< what makes the command give another result, its limits aside: stamp_text()
   std::filesystem::path state;  ///< the file of its StageState
 };
 
@@ -56,6 +56,7 @@ StagePlan load_plan(const std::filesystem::path& file);
 struct StageState {
   std::string key;
   std::map<std::filesystem::path, FileStamp> inputs, outputs;
+  std::vector<std::string> limits = {};
 };
 
 /// Nothing where there is none that can be read.
@@ -63,8 +64,11 @@ std::optional<StageState> load_state(const std::filesystem::path& file);
 void save_state(const std::filesystem::path& file, const StageState& state);
 
 /// Why a stage has to run, in a few words; empty where it does not: its command, and the content of all that it read
-/// and made, are as they were. Stamps in `state` are brought up to date.
+/// and made, are as they were. `other_limits` where nothing but its limits is not. Stamps in `state` are brought up to
+/// date.
 std::string reason_to_run(const StagePlan& plan, std::optional<StageState>& state, FileHashes& hashes);
+
+inline constexpr const char* other_limits = "its budgets have changed";
 
 /// What a stage will read, before it runs.
 std::map<std::filesystem::path, FileStamp> stamps_of_inputs(const StagePlan& plan, FileHashes& hashes);

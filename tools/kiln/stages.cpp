@@ -104,6 +104,12 @@ StageRun bake_run(const AssetPlan& plan, const std::string& mesh, const fs::path
 
 }  // namespace
 
+std::vector<std::string> StageRun::whole_command() const {
+  std::vector<std::string> whole = command;
+  whole.insert(whole.end(), limits.begin(), limits.end());
+  return whole;
+}
+
 std::string stage_name(Stage stage) {
   switch (stage) {
     case Stage::simplify:
@@ -212,7 +218,7 @@ std::vector<StageRun> stage_runs(const AssetPlan& plan) {
     tell.inputs.push_back(compress_record);
   }
   append_settings(tell.command, plan, Stage::report);
-  for (const std::string& budget : plan.budgets) tell.command.insert(tell.command.end(), {"--budget", budget});
+  for (const std::string& budget : plan.budgets) tell.limits.insert(tell.limits.end(), {"--budget", budget});
   runs.push_back(tell);
   return runs;
 }

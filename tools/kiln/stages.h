@@ -58,6 +58,10 @@ struct StageRun {
   std::vector<std::filesystem::path> inputs;
   std::vector<std::filesystem::path> outputs;  ///< the record, <stage>.json, first
   std::filesystem::path checkpoint;            ///< a folder; where it is there, the stage goes on with --resume
+  std::vector<std::string> limits = {};        ///< more arguments, the budgets of a report: others alone judge it anew
+
+  /// `command` and `limits`.
+  std::vector<std::string> whole_command() const;
 };
 
 /// Another asset of the scene, as the bake of one is told of it.

@@ -14,6 +14,7 @@
 #include "base/progress.h"
 #include "base/stopwatch.h"
 #include "kiln/stage_state.h"
+#include "report/judging.h"
 
 namespace kiln {
 
@@ -68,9 +69,25 @@ bool may_resume(const StagePlan& plan, const StageState& begun) {
   return resumes;
 }
 
+/// Judges the report anew, without its program, which takes longer to start than this; whether that went well.
+bool judge_report(const StagePlan& plan) {
+  const auto page = std::find_if(plan.run.outputs.begin(), plan.run.outputs.end(),
+                                 [](const fs::path& output) { return output.extension() == ".html"; });
+  if (page == plan.run.outputs.end()) return false;
+  std::vector<std::string> budgets;
+  for (const std::string& word : plan.run.limits)
+    if (word != "--budget") budgets.push_back(word);
+  try {
+    judge_anew(*page, budgets);
+    return true;
+  } catch (const std::exception&) {
+    return false;  // the program will say what is wrong
+  }
+}
+
 /// The command with what is of this run alone.
 std::vector<std::string> command_of(const StagePlan& plan, const fs::path& programs, int threads) {
-  std::vector<std::string> command = plan.run.command;
+  std::vector<std::string> command = plan.run.whole_command();
   const bool is_own = command.front() == "kiln";
   command.front() = (programs / command.front()).string();
   if (!is_own) command.insert(command.end(), {"--threads", std::to_string(threads)});
@@ -107,12 +124,15 @@ int run_step(const fs::path& plan_file, const fs::path& programs, int threads) {
   const char* stage = plan.run.name.c_str();
   FileHashes hashes(".");
   std::optional<StageState> state = load_state(plan.state);
-  if (reason_to_run(plan, state, hashes).empty()) return 0;
+  const std::string reason = reason_to_run(plan, state, hashes);
+  if (reason.empty()) return 0;
   const std::map<fs::path, FileStamp> inputs = stamps_of_inputs(plan, hashes);
 
   const Stopwatch watch;
   const bool resumes = may_resume(plan, {plan.key, inputs, {}});
-  const ProcessEnd end = run_command(plan, command_of(plan, programs, threads), resumes);
+  ProcessEnd end;
+  if (reason != other_limits || !judge_report(plan))
+    end = run_command(plan, command_of(plan, programs, threads), resumes);
   if (noted_signal() != 0) end_by(noted_signal());
   if (end.signal == SIGINT || end.signal == SIGTERM) end_by(end.signal);
 

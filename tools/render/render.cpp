@@ -163,7 +163,12 @@ RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& lig
       parse_placement("place", paths.places.front()).matrix() != Eigen::Matrix4d::Identity())
     throw WrongUsage("probes: found --place " + paths.places.front() +
                      " of the first asset; expected 0,0,0, where the probes are its own");
+  if ((paths.each_light || paths.each_asset) && (is_sheet(settings) || settings.frames > 1))
+    throw WrongUsage("each-light and each-asset: found a sheet or --frames; expected one picture");
+  if (paths.each_asset && (!paths.places.empty() || !paths.probes.empty()))
+    throw WrongUsage("each-asset: found --place or --probes; expected assets where they were baked");
   const LightSettings given = chosen_lights(light_settings, paths.light_file);
+  if (paths.each_light && given.lights.empty()) throw WrongUsage("each-light: found no --light; expected at least one");
 
   RenderScene scene;
   scene.specs = light_specs(given);
@@ -174,41 +179,83 @@ RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& lig
     scene.names.push_back(name_of(folder));
     bands = std::max(bands, scene.assets.back().bands);
   }
-  if (is_sheet(settings))
+  scene.each_asset = paths.each_asset;
+  if (is_sheet(settings) || paths.each_asset)
     scene.placements.resize(scene.assets.size());
   else
     place_the_rest(scene, camera_settings_of(settings).azimuth_degrees);
   if (!paths.compressed.empty()) scene.compressed = load_other_form(paths.compressed, scene.assets.front());
   if (!paths.probes.empty()) scene.probes = load_probes(paths.probes);
-  scene.lights = scene_lights(given, std::max(bands, scene.probes ? scene.probes->bands : 0));
+  const int light_bands = std::max(bands, scene.probes ? scene.probes->bands : 0);
+  scene.lights = scene_lights(given, light_bands);
+  for (std::size_t k = 0; paths.each_light && k < given.lights.size(); ++k) {
+    LightSettings one = given;
+    one.lights = {given.lights[k]};
+    scene.each_light.push_back(scene_lights(one, light_bands));
+  }
   return scene;
 }
+
+namespace {
+
+/// Pictures of a scene's assets together, or of one of them.
+class PictureSeries {
+ public:
+  PictureSeries(OutputSet& outputs, const std::string& name, const RenderScene& scene, const RenderSettings& settings,
+                const ProgressFunction& progress)
+      : outputs_(outputs), name_(name), scene_(scene), settings_(settings), progress_(progress) {}
+
+  /// Draws assets `first` to `last` - 1 under all lights or each; gives the metrics of the first picture.
+  Json draw(std::size_t first, std::size_t last, const EglContext& context) {
+    Uploaded uploaded;
+    for (std::size_t k = first; k < last; ++k) {
+      const bool probed = scene_.probes && (k > 0 || scene_.assets.size() == 1);
+      const int samples = incident_samples_of(settings_, probed || scene_.lights.is_local());
+      const bool other_form = settings_.technique == TechniqueChoice::compressed && scene_.compressed;
+      const PrtAsset& asset = other_form ? *scene_.compressed : scene_.assets[k];
+      uploaded.add(asset, scene_.placements[k], technique_of(settings_, asset), samples,
+                   probed ? &*scene_.probes : nullptr);
+    }
+    const PictureSettings picture = picture_of(settings_);
+    const std::vector<SceneView> views = views_of(settings_, scene_shape(uploaded.assets));
+    const std::size_t pictures = std::max(views.size(), scene_.each_light.size());
+    const std::size_t all = pictures * (scene_.each_asset ? scene_.assets.size() : 1);
+    const bool is_numbered = views.size() > 1 || scene_.each_asset || !scene_.each_light.empty();
+    Json metrics;
+    for (std::size_t k = 0; k < pictures; ++k, ++drawn_) {
+      const SceneView& view = views[std::min(k, views.size() - 1)];
+      const SceneLights& lights = scene_.each_light.empty() ? scene_.lights : scene_.each_light[k];
+      const Image<float> radiance = render_scene(uploaded.assets, lights, view);
+      write_picture(outputs_.add(is_numbered ? frame_name(name_, drawn_) : name_), radiance, picture);
+      if (k == 0) {
+        metrics = render_metrics(uploaded.assets, scene_.specs, radiance, context);
+        metrics["camera"] = to_json(view.camera);
+        metrics["frames"] = views.size();
+      }
+      progress_(static_cast<double>(drawn_ + 1) / static_cast<double>(all));
+    }
+    return metrics;
+  }
+
+ private:
+  OutputSet& outputs_;
+  const std::string& name_;
+  const RenderScene& scene_;
+  const RenderSettings& settings_;
+  const ProgressFunction& progress_;
+  int drawn_ = 0;  ///< pictures
+};
+
+}  // namespace
 
 Json render_to_files(OutputSet& outputs, const std::string& name, const RenderScene& scene,
                      const RenderSettings& settings, const EglContext& context, const ProgressFunction& progress) {
   if (is_sheet(settings)) return write_sheet(outputs, name, scene, settings, context);
-  Uploaded uploaded;
-  for (std::size_t k = 0; k < scene.assets.size(); ++k) {
-    const bool probed = scene.probes && (k > 0 || scene.assets.size() == 1);
-    const int samples = incident_samples_of(settings, probed || scene.lights.is_local());
-    const bool other_form = settings.technique == TechniqueChoice::compressed && scene.compressed;
-    const PrtAsset& asset = other_form ? *scene.compressed : scene.assets[k];
-    uploaded.add(asset, scene.placements[k], technique_of(settings, asset), samples, probed ? &*scene.probes : nullptr);
-  }
-  const PictureSettings picture = picture_of(settings);
-  const std::vector<SceneView> views = views_of(settings, scene_shape(uploaded.assets));
-  Json metrics;
-  for (std::size_t frame = 0; frame < views.size(); ++frame) {
-    const Image<float> radiance = render_scene(uploaded.assets, scene.lights, views[frame]);
-    const std::string file = views.size() > 1 ? frame_name(name, static_cast<int>(frame)) : name;
-    write_picture(outputs.add(file), radiance, picture);
-    if (frame == 0) {
-      metrics = render_metrics(uploaded.assets, scene.specs, radiance, context);
-      metrics["camera"] = to_json(views[frame].camera);
-    }
-    progress(static_cast<double>(frame + 1) / static_cast<double>(views.size()));
-  }
-  metrics["frames"] = views.size();
+  PictureSeries series(outputs, name, scene, settings, progress);
+  const std::size_t count = scene.assets.size();
+  Json metrics = series.draw(0, scene.each_asset ? 1 : count, context);
+  for (std::size_t k = 1; scene.each_asset && k < count; ++k)
+    metrics["assets"].push_back(series.draw(k, k + 1, context).at("assets").at(0));
   return metrics;
 }
 

@@ -23,6 +23,8 @@ struct RenderPaths {
   std::filesystem::path compressed;  ///< of the only asset; empty: none
   std::vector<std::string> places;   ///< of the assets, in their order; those without one stand side by side
   std::filesystem::path light_file;  ///< empty: none
+  bool each_light = false;           ///< a picture for each light, none for all
+  bool each_asset = false;           ///< a picture for each asset, none of all
   std::filesystem::path probes;      ///< of the first asset; empty: none
 };
 
@@ -35,13 +37,15 @@ struct RenderScene {
   std::optional<ProbeSet> probes;      ///< of the first asset, for the others, or for the only one
   std::vector<LightSpec> specs;
   SceneLights lights;
+  std::vector<SceneLights> each_light;  ///< of each picture, where there is one for each light
+  bool each_asset = false;              ///< whether there is one for each asset
 };
 
 /// Throws WrongUsage for options that do not go together, BadInput for bad files.
 RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& lights, const RenderSettings& settings);
 
-/// Draws a picture, a turntable or a sheet of techniques into files of `outputs`, `name` being the picture's, and gives
-/// the metrics.
+/// Draws a picture, one for each light or asset, a turntable or a sheet of techniques into files of `outputs`, `name`
+/// being the picture's, and gives the metrics, those of the first picture.
 Json render_to_files(OutputSet& outputs, const std::string& name, const RenderScene& scene,
                      const RenderSettings& settings, const EglContext& context, const ProgressFunction& progress);
 

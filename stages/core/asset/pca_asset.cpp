@@ -159,21 +159,27 @@ void decode_transfer(const PrtAsset& asset, std::span<const std::uint32_t> texel
   const double white = asset.bits == 8 ? 255 : white16;
   const std::size_t length = static_cast<std::size_t>(asset.channels) * asset.bands * asset.bands;
   const auto decode = [&](const auto& pictures) {
-    for (std::size_t plane = 0; plane < pictures.size(); ++plane) {
-      const auto lowest = static_cast<float>(asset.planes[plane].lowest),
-                 step = static_cast<float>((asset.planes[plane].highest - asset.planes[plane].lowest) / white);
-      for (std::size_t k = 0; k < texels.size(); ++k) {
-        const float value = lowest + step * static_cast<float>(pictures[plane].values()[texels[k]]);
-        float* to = vectors.data() + k * length;
-        if (!asset.clusters) {
-          to[plane] = value;
-          continue;
+    // In groups that stay in the first cache while plane after plane is read.
+    constexpr std::size_t group = 64;
+    for (std::size_t first = 0; first < texels.size(); first += group) {
+      const std::size_t last = std::min(first + group, texels.size());
+      for (std::size_t plane = 0; plane < pictures.size(); ++plane) {
+        const auto lowest = static_cast<float>(asset.planes[plane].lowest),
+                   step = static_cast<float>((asset.planes[plane].highest - asset.planes[plane].lowest) / white);
+        const auto* stored = pictures[plane].values().data();
+        for (std::size_t k = first; k < last; ++k) {
+          const float value = lowest + step * static_cast<float>(stored[texels[k]]);
+          float* to = vectors.data() + k * length;
+          if (!asset.clusters) {
+            to[plane] = value;
+            continue;
+          }
+          const int cluster = asset.clusters->of_texel(texels[k]);
+          const std::span<const float> mean = asset.clusters->mean(cluster),
+                                       basis = asset.clusters->vector(cluster, static_cast<int>(plane));
+          if (plane == 0) std::copy(mean.begin(), mean.end(), to);
+          for (std::size_t i = 0; i < length; ++i) to[i] += value * basis[i];
         }
-        const int cluster = asset.clusters->of_texel(texels[k]);
-        const std::span<const float> mean = asset.clusters->mean(cluster),
-                                     basis = asset.clusters->vector(cluster, static_cast<int>(plane));
-        if (plane == 0) std::copy(mean.begin(), mean.end(), to);
-        for (std::size_t i = 0; i < length; ++i) to[i] += value * basis[i];
       }
     }
   };

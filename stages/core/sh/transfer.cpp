@@ -32,6 +32,34 @@ double weighted_error(std::span<const TransferVectors> a, std::span<const Transf
   return std::sqrt(difference / reference);
 }
 
+SampledError sampled_error(std::span<const TransferVectors> a, std::span<const TransferVectors> b,
+                           const std::vector<double>& band_weights, std::size_t population) {
+  const std::size_t count = b.front().receivers;
+  std::vector<double> differences(count, 0.0), references(count, 0.0);  // squared lengths
+  for (std::size_t channel = 0; channel < b.size(); ++channel)
+    for (int i = 0; i < b[channel].coefficients; ++i) {
+      const double weight = band_weights[band_of(i)];
+      for (std::size_t r = 0; r < count; ++r) {
+        const double t = b[channel].plane(i)[r], d = a[channel].plane(i)[r] - t;
+        differences[r] += weight * d * d;
+        references[r] += weight * t * t;
+      }
+    }
+  SampledError error{weighted_error(a, b, band_weights), 0};
+  if (count < 2 || population <= count || error.value == 0) return error;
+  const double ratio = error.value * error.value;
+  double squares = 0, reference = 0;
+  for (std::size_t r = 0; r < count; ++r) {
+    const double residual = differences[r] - ratio * references[r];
+    squares += residual * residual;
+    reference += references[r];
+  }
+  const auto n = static_cast<double>(count), all = static_cast<double>(population);
+  const double deviation = std::sqrt(squares / (n - 1)) / (reference / n);  // of the ratio, one receiver
+  error.uncertainty = 1.96 * deviation * std::sqrt((1 - n / all) / n) / (2 * error.value);
+  return error;
+}
+
 int bands_of(const TransferVectors& transfer) { return band_of(transfer.coefficients - 1) + 1; }
 
 }  // namespace
@@ -50,6 +78,16 @@ double expected_relighting_error(const TransferVectors& a, const TransferVectors
 
 double expected_relighting_error(std::span<const TransferVectors> a, std::span<const TransferVectors> b) {
   return weighted_error(a, b, lighting_prior(bands_of(b.front())));
+}
+
+SampledError sampled_relative_l2(std::span<const TransferVectors> a, std::span<const TransferVectors> b,
+                                 std::size_t population) {
+  return sampled_error(a, b, std::vector<double>(bands_of(b.front()), 1.0), population);
+}
+
+SampledError sampled_relighting_error(std::span<const TransferVectors> a, std::span<const TransferVectors> b,
+                                      std::size_t population) {
+  return sampled_error(a, b, lighting_prior(bands_of(b.front())), population);
 }
 
 std::vector<double> lighting_prior(int bands) {

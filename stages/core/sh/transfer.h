@@ -41,6 +41,23 @@ double expected_relighting_error(const TransferVectors& a, const TransferVectors
 /// The same over all channels together.
 double expected_relighting_error(std::span<const TransferVectors> a, std::span<const TransferVectors> b);
 
+/// An error of many receivers, measured on some of them.
+struct SampledError {
+  double value = 0;
+  /// With a confidence of 95 % all receivers' own is within this of it; 0 where all were measured. It is 1.96 standard
+  /// errors of a ratio of means (Cochran, "Sampling techniques", 1977, 6.4), and needs a few hundred receivers whose
+  /// errors are not those of a handful alone.
+  double uncertainty = 0;
+};
+
+/// relative_l2 of `population` receivers, of which `a` and `b` have some that are spread evenly.
+SampledError sampled_relative_l2(std::span<const TransferVectors> a, std::span<const TransferVectors> b,
+                                 std::size_t population);
+
+/// expected_relighting_error of them.
+SampledError sampled_relighting_error(std::span<const TransferVectors> a, std::span<const TransferVectors> b,
+                                      std::size_t population);
+
 /// Diagonal of the second moment of lighting coefficients, by band: (l + 1)^-2. Photographed environments have power
 /// spectra that fall about as the square of the frequency (Dror, Willsky and Adelson, "Statistical characterization of
 /// real-world illumination", 2004, section 4); only the ratios between bands matter.
