@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "atlas/block_cholesky.h"
 
@@ -68,6 +69,20 @@ double largest_step(const Chart& chart, const Uvs& uvs, const Uvs& move) {
   return largest;
 }
 
+double mean_energy(const Surface& surface, const Chart& chart, const Uvs& uvs) {
+  double sum = 0, area = 0;
+  for (std::size_t i = 0; i < chart.triangles.size(); ++i) {
+    const RestTriangle& rest = surface.rest[chart.faces[i]];
+    const Matrix2 j = jacobian(rest, chart.triangles[i], uvs);
+    const double determinant = j.determinant();
+    if (!(determinant > 0)) return std::numeric_limits<double>::infinity();
+    const double square = j.squaredNorm();
+    sum += rest.area * square * (1 + 1 / (determinant * determinant));
+    area += rest.area;
+  }
+  return sum / area;
+}
+
 /// The least squares systems of a chart's steps; their pattern is the same in all.
 class Relaxation {
  public:
@@ -80,19 +95,7 @@ class Relaxation {
     right_side_.resize(chart.uvs.size());
   }
 
-  double energy(const Uvs& uvs) const {
-    double sum = 0, area = 0;
-    for (std::size_t i = 0; i < chart_.triangles.size(); ++i) {
-      const RestTriangle& rest = surface_.rest[chart_.faces[i]];
-      const Matrix2 j = jacobian(rest, chart_.triangles[i], uvs);
-      const double determinant = j.determinant();
-      if (!(determinant > 0)) return std::numeric_limits<double>::infinity();
-      const double square = j.squaredNorm();
-      sum += rest.area * square * (1 + 1 / (determinant * determinant));
-      area += rest.area;
-    }
-    return sum / area;
-  }
+  double energy(const Uvs& uvs) const { return mean_energy(surface_, chart_, uvs); }
 
   /// As-rigid-as-possible steps (Liu et al. 2008), which need no valid start, until nothing is flipped.
   bool unflip(int iterations) {
@@ -263,11 +266,24 @@ double run(Relaxation& relaxation, const Chart& chart, const RelaxSettings& sett
 
 }  // namespace
 
-bool unflip(const Surface& surface, Chart& chart) { return Relaxation(surface, chart).unflip(6); }
-
 double relax(const Surface& surface, Chart& chart, const RelaxSettings& settings) {
   Relaxation relaxation(surface, chart);
   return run(relaxation, chart, settings);
+}
+
+bool relax_until(const Surface& surface, Chart& chart, const std::function<bool(double)>& goes_on) {
+  std::optional<Relaxation> relaxation;  // made when a step is needed
+  if (!is_flip_free(chart)) {
+    relaxation.emplace(surface, chart);
+    if (!relaxation->unflip(6)) return false;
+  }
+  for (double energy = mean_energy(surface, chart, chart.uvs); goes_on(energy);) {
+    if (!relaxation) relaxation.emplace(surface, chart);
+    const double lower = relaxation->step(energy);
+    if (!(lower < energy)) break;
+    energy = lower;
+  }
+  return true;
 }
 
 bool relax_around(const Surface& surface, Chart& chart, const std::vector<std::uint32_t>& seeds, std::size_t most_faces,
