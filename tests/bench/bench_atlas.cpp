@@ -2,7 +2,7 @@
 //
 //   bench_atlas low_5000.drc low_1000.drc --size 1024 --gutter 4          makes atlases, of both qualities
 //   bench_atlas low_5000.drc --to-obj low_5000.obj                        writes a mesh for other tools
-//   bench_atlas --measure unwrapped.obj --size 1024 [--name "Smart UV"]   measures uvs made elsewhere
+//   bench_atlas --measure unwrapped.obj --size 1024 [--height 1024] [--name "Smart UV"]   measures uvs made elsewhere
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -69,7 +69,7 @@ int main(int argc, char** argv) {
   std::filesystem::path measured, obj;
   std::string name = "measured", density = "even", quality = "both";
   double seconds = 0, cpu_seconds = 0;
-  int size = 1024, gutter = 4, repeats = 3, threads = 2;
+  int size = 1024, height = 0, gutter = 4, repeats = 3, threads = 2;
   app.add_option("meshes", meshes, "Low meshes");
   app.add_option("--measure", measured, "An OBJ file with uvs, only to be measured");
   app.add_option("--to-obj", obj, "Writes the first mesh there, and does nothing else");
@@ -77,6 +77,7 @@ int main(int argc, char** argv) {
   app.add_option("--seconds", seconds, "That making it took");
   app.add_option("--cpu-seconds", cpu_seconds, "The same, of all threads");
   app.add_option("--size", size, "Texels a side");
+  app.add_option("--height", height, "Where it is not the same, with --measure");
   app.add_option("--gutter", gutter, "Texels between charts");
   app.add_option("--repeat", repeats, "Runs, the best of which counts; quality best runs once");
   app.add_option("--density", density, "As of kiln-atlas; peers have even")->check(CLI::IsMember({"even", "transfer"}));
@@ -88,7 +89,7 @@ int main(int argc, char** argv) {
 
   if (!measured.empty()) {
     print_row(name, measured.filename().string(), {seconds, cpu_seconds}, "-",
-              measure_atlas(load_uv_mesh(measured), size, size));
+              measure_atlas(load_uv_mesh(measured), size, height > 0 ? height : size));
     return 0;
   }
   if (!obj.empty()) {
