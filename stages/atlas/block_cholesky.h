@@ -21,8 +21,8 @@ struct SymmetricBlock {
 
 /// Solves sparse symmetric positive definite systems of one 2 x 2 block a vertex on the diagonal and one, itself
 /// symmetric, an edge: what least squares over a planar map's vertices give. The pattern is analysed once and
-/// factorised for as many values as there are. Twice as fast as a general sparse solver at the least, which sees four
-/// entries where this sees a block.
+/// factorised for as many values as there are. Quicker than a general sparse solver, which sees four entries where this
+/// sees a block.
 class BlockCholesky {
  public:
   using Edge = std::pair<std::uint32_t, std::uint32_t>;  ///< two different vertices; each edge once
