@@ -189,14 +189,46 @@ bool within_bounds(const Surface& surface, const Chart& chart, const ChartSettin
          stretch.linf - 1 <= excess * (settings.largest_linf - 1);
 }
 
+/// Whether relaxing may still bring a chart within the bounds, as far as its energy tells.
+class Prospect {
+ public:
+  /// Of singular values 1 + e the energy's excess is 4 e^2 to second order, summed over both, and that of the L2
+  /// stretch of a chart of equal area an eighth to a quarter of it (Sander et al. 2001, section 3, expanded).
+  explicit Prospect(const ChartSettings& settings) : most_(8 * (settings.largest_l2 - 1)) {}
+
+  bool stepped() const { return steps_ > 0; }
+
+  /// Told the energy before the first step and after each.
+  bool hopeful(double energy) {
+    constexpr int most_steps = 8;
+    constexpr double isometry = 4;
+    const double excess = energy - isometry, fall = last_excess_ - excess;
+    last_excess_ = excess;
+    if (steps_++ == 0) return true;
+    if (steps_ > most_steps) return false;
+    // Steps fall by ever less: the first one by most of what there is, later ones by half of the one before or less.
+    return steps_ == 2 ? excess < 5 * most_ : fall > 1e-2 * excess && excess - 2 * fall < most_;
+  }
+
+ private:
+  double most_, last_excess_ = 0;
+  int steps_ = 0;
+};
+
 /// The relaxed chart, if it is valid and within the bounds.
 std::optional<Chart> flattened(const Surface& surface, GluedChart glued, const ChartSettings& settings) {
   constexpr std::size_t largest_relaxed_whole = 4000;  // faces
   Chart& chart = glued.chart;
   if (chart.faces.size() <= largest_relaxed_whole) {
-    if (!is_flip_free(chart) && !unflip(surface, chart)) return {};
-    relax(surface, chart, {8, 1e-2});
-    equalise_area(surface, chart);
+    // The final charts are relaxed once more: here one step, and being within the bounds, are enough.
+    Prospect prospect(settings);
+    bool within = false;
+    const auto goes_on = [&](double energy) {
+      equalise_area(surface, chart);
+      within = within_bounds(surface, chart, settings);
+      return (!within || !prospect.stepped()) && prospect.hopeful(energy);
+    };
+    if (!relax_until(surface, chart, goes_on) || !within) return {};
   } else {
     // Only the surroundings of the seam have something to gain, at first.
     const std::size_t most_faces = std::max(largest_relaxed_whole, 16 * glued.seam.size());

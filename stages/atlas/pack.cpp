@@ -36,10 +36,10 @@ class Packer {
     if (crowd()) return crowd_at_largest_scale(progress);
     const double full_scale = std::sqrt(static_cast<double>(settings_.width) * settings_.height / area_);
     const double start = std::min(full_scale * std::sqrt(0.6), scale_that_fills(0.75));
-    const std::vector<FoundPlan> found =
+    const std::vector<std::vector<FoundPlan>> found =
         searched(PackSearch::Aim::raise_scale, start, [&](double fraction) { progress(0.8 * fraction); });
     return best_of(
-        found, [&](const FoundPlan& plan) { return at_texels(plan); }, progress,
+        found, [&](const std::vector<FoundPlan>& plans) { return best_at_texels(plans); }, progress,
         [](const Packing& a, const Packing& b) { return a.texels_per_unit > b.texels_per_unit; });
   }
 
@@ -47,10 +47,10 @@ class Packer {
   std::optional<Packing> at_given_scale(const ProgressFunction& progress) {
     set_size(settings_.width, static_cast<int>(1.4 * texel_area() / settings_.width) + 2 * settings_.gutter + 1);
     if (crowd()) return crowd_at_given_scale();
-    const std::vector<FoundPlan> found = searched(PackSearch::Aim::lower_height, settings_.texels_per_unit,
-                                                  [&](double fraction) { progress(0.8 * fraction); });
+    const std::vector<std::vector<FoundPlan>> found = searched(PackSearch::Aim::lower_height, settings_.texels_per_unit,
+                                                               [&](double fraction) { progress(0.8 * fraction); });
     return best_of(
-        found, [&](const FoundPlan& plan) { return at_texels_and_scale(plan); }, progress,
+        found, [&](const std::vector<FoundPlan>& plans) { return best_at_texels_and_scale(plans); }, progress,
         [](const Packing& a, const Packing& b) { return a.height < b.height; });
   }
 
@@ -97,8 +97,8 @@ class Packer {
   SearchBounds bounds() const {
     const int count = static_cast<int>(pieces_.size());
     if (count == 1) return {1'000'000'000, 0};  // there is no order to be found, only a scale
-    const std::int64_t work = std::int64_t{1'750'000} * std::clamp(settings_.rotations, 2, 64);
-    return {settings_.thorough ? 4 * work : work, 8 * count * count};
+    const std::int64_t work = std::int64_t{440'000} * std::clamp(settings_.rotations, 2, 64);
+    return {settings_.thorough ? 4 * work : work, 30 * count * count};
   }
 
   /// Of many charts, half of the chains try fewer angles, and more orders instead.
@@ -120,8 +120,9 @@ class Packer {
     return left > 0 ? left / (half + std::sqrt(half * half + area_ * left)) : 0;
   }
 
-  /// What each chain of a search found.
-  std::vector<FoundPlan> searched(PackSearch::Aim aim, double texels_per_unit, const ProgressFunction& progress) const {
+  /// What each chain of a search found, the best first.
+  std::vector<std::vector<FoundPlan>> searched(PackSearch::Aim aim, double texels_per_unit,
+                                               const ProgressFunction& progress) const {
     const PackGrid grid = grid_of(settings_, coarse_zoom());
     std::vector<std::unique_ptr<PackSearch>> chains(chain_count());
     constexpr int slices = 20;  // between which progress is told
@@ -136,15 +137,15 @@ class Packer {
       });
       progress(static_cast<double>(slice) / slices);
     }
-    std::vector<FoundPlan> found;
+    std::vector<std::vector<FoundPlan>> found;
     for (const auto& chain : chains)
-      if (chain->found()) found.push_back(*chain->found());
+      if (std::vector<FoundPlan> plans = chain->found(); !plans.empty()) found.push_back(std::move(plans));
     return found;
   }
 
   /// The best of what plans give in texels.
   template <typename PlacePlanInTexels, typename Better>
-  std::optional<Packing> best_of(const std::vector<FoundPlan>& found, const PlacePlanInTexels& place,
+  std::optional<Packing> best_of(const std::vector<std::vector<FoundPlan>>& found, const PlacePlanInTexels& place,
                                  const ProgressFunction& progress, const Better& better) const {
     std::vector<std::optional<Packing>> packings(found.size());
     tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) { packings[i] = place(found[i]); });
@@ -185,8 +186,18 @@ class Packer {
     return plan;
   }
 
-  /// The same order and angles in texels, at the largest scale that does.
-  std::optional<Packing> at_texels(const FoundPlan& found) const {
+  /// In texels charts may come to lie elsewhere, and the plan that was best not be the best any more: others are tried
+  /// at a scale a little larger than what is had so far.
+  std::optional<Packing> best_at_texels(const std::vector<FoundPlan>& plans) const {
+    constexpr double little = 1.003;
+    std::optional<Packing> best = at_texels(plans[0], 0);
+    for (std::size_t i = 1; best && i < plans.size(); ++i)
+      if (std::optional<Packing> other = at_texels(plans[i], little * best->texels_per_unit)) best = std::move(other);
+    return best;
+  }
+
+  /// The same order and angles in texels, at the largest scale that does, if that is `least_scale` or more.
+  std::optional<Packing> at_texels(const FoundPlan& found, double least_scale) const {
     Angles angles;
     for (const double angle : found.angles) angles.push_back({angle});
     PlacePlan plan = found.plan;
@@ -201,19 +212,30 @@ class Packer {
       return true;
     };
     // Step 1: a scale that fits and one that does not.
-    double lower = found.texels_per_unit, upper = lower;
+    double lower = least_scale > 0 ? least_scale : found.texels_per_unit, upper = lower;
     if (fits(lower)) {
       for (int i = 0; i < 8 && fits(upper = lower * 1.008); ++i) lower = upper;
+    } else if (least_scale > 0) {
+      return {};
     } else {
       for (double step = 0.008; !fits(lower = upper * (1 - step)); step = std::min(0.5, 1.5 * step)) {
         upper = lower;
         if (step == 0.5 && upper < 1e-3 * found.texels_per_unit) return {};
       }
     }
+    // Step 2: the largest between them, as far as it is one.
     for (int i = 0; i < 3; ++i) {
       const double middle = 0.5 * (lower + upper);
       (fits(middle) ? lower : upper) = middle;
     }
+    return best;
+  }
+
+  std::optional<Packing> best_at_texels_and_scale(const std::vector<FoundPlan>& plans) const {
+    std::optional<Packing> best;
+    for (const FoundPlan& plan : plans)
+      if (std::optional<Packing> other = at_texels_and_scale(plan); other && (!best || other->height < best->height))
+        best = std::move(other);
     return best;
   }
 

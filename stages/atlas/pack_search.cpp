@@ -127,8 +127,8 @@ void PackSearch::advance(double share) {
   const auto until = static_cast<std::int64_t>(share * static_cast<double>(bounds_.work));
   while (!ended_ && work() < until) {
     // Rows are whole numbers, and the found height is one divided by the zoom: half a row is more than its rounding.
-    const bool better =
-        aim_ == Aim::raise_scale ? height_.top <= grid_.top_row() : height_.top < found_->height * grid_.zoom - 0.5;
+    const bool better = aim_ == Aim::raise_scale ? height_.top <= grid_.top_row()
+                                                 : height_.top < found_.back().height * grid_.zoom - 0.5;
     if (better) {
       keep_found();
       changes_in_vain_ = 0;
@@ -136,7 +136,7 @@ void PackSearch::advance(double share) {
       texels_per_unit_ *= std::clamp(std::sqrt(static_cast<double>(grid_.top_row()) / height_.top), 1.003, 1.05);
       // Where a chart no longer fits between the sides, a little less may do.
       ended_ = !set_scale(texels_per_unit_, 3 * grid_.height / 2) &&
-               !set_scale(texels_per_unit_ = 1.003 * found_->texels_per_unit, 3 * grid_.height / 2);
+               !set_scale(texels_per_unit_ = 1.003 * found_.back().texels_per_unit, 3 * grid_.height / 2);
     } else if (++changes_in_vain_ > bounds_.changes_in_vain) {
       ended_ = true;
     } else {
@@ -202,8 +202,10 @@ void PackSearch::change(double temperature) {
 }
 
 void PackSearch::keep_found() {
-  found_ = FoundPlan{texels_per_unit_, height_.top / grid_.zoom, plan_, {}};
-  for (std::size_t i = 0; i < pieces_.size(); ++i) found_->angles.push_back(angles_[i][spots_[i].rotation]);
+  constexpr std::size_t most_kept = 4;
+  if (found_.size() == most_kept) found_.pop_front();
+  found_.push_back({texels_per_unit_, height_.top / grid_.zoom, plan_, {}});
+  for (std::size_t i = 0; i < pieces_.size(); ++i) found_.back().angles.push_back(angles_[i][spots_[i].rotation]);
 }
 
 }  // namespace kiln

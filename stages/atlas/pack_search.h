@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <optional>
 #include <random>
@@ -67,8 +68,8 @@ class PackSearch {
   /// Searches on until `share` of all work is done.
   void advance(double share);
 
-  /// The best that fitted, if any did.
-  const std::optional<FoundPlan>& found() const { return found_; }
+  /// The best that fitted, the best one first, then those found before it; none if nothing did.
+  std::vector<FoundPlan> found() const { return {found_.rbegin(), found_.rend()}; }
 
  private:
   std::int64_t work() const { return work_ + (placer_ ? placer_->work() : 0); }
@@ -96,7 +97,7 @@ class PackSearch {
   PlacePlan plan_;
   Placer::Height height_;
   std::vector<Spot> spots_;
-  std::optional<FoundPlan> found_;
+  std::deque<FoundPlan> found_;  ///< the last ones, each better than those before
 };
 
 }  // namespace kiln

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <unordered_map>
 
 namespace kiln {
@@ -23,14 +24,58 @@ std::uint32_t size_class(const ChartBitmap& bitmap) {
   return step(bitmap.width) << 16 | step(bitmap.height);
 }
 
+int longest_run(const std::vector<Shape>& shapes) {
+  int longest = 0;
+  for (const Shape& shape : shapes)
+    for (const ChartBitmap& bitmap : shape) longest = std::max(longest, bitmap.widest_run);
+  return longest;
+}
+
+/// Rows next to each other are blocked by the same: those that follow each other in the search are apart, yet all come.
+int row_stride(int height) {
+  int stride = std::max(1, static_cast<int>(0.382 * height));  // the golden section
+  while (std::gcd(stride, height) != 1) ++stride;
+  return stride;
+}
+
+/// Sets the bits from `first` to `last`, as far as there are such, and no others.
+void set_between(int first, int last, FreeRuns::Mask& mask) {
+  for (int word = 0; word < FreeRuns::span_words; ++word) {
+    const int low = std::max(first - 64 * word, 0), high = std::min(last - 64 * word, 63);
+    mask[word] = low <= high ? ~std::uint64_t{0} << low & ~std::uint64_t{0} >> (63 - high) : 0;
+  }
+}
+
+bool none(const FreeRuns::Mask& mask) { return (mask[0] | mask[1] | mask[2] | mask[3]) == 0; }
+
+int lowest_bit(const FreeRuns::Mask& mask) {
+  int word = 0;
+  while (mask[word] == 0) ++word;
+  return 64 * word + __builtin_ctzll(mask[word]);
+}
+
 }  // namespace
 
 Placer::Placer(const std::vector<Shape>& shapes, int width, int height, int gutter, Use use)
-    : shapes_(shapes), width_(width), height_(height), gutter_(gutter), use_(use) {
+    : shapes_(shapes),
+      width_(width),
+      height_(height),
+      gutter_(gutter),
+      use_(use),
+      free_(width, height, longest_run(shapes)) {
   for (const Shape& shape : shapes) texels_ += static_cast<double>(shape[0].texels);
   const std::size_t grid_bytes = static_cast<std::size_t>(width + 63) / 8 * height;
   step_between_grids_ = use != Use::search ? shapes.size() : 1 + shapes.size() * grid_bytes / most_grid_bytes;
   const std::size_t grids = (shapes.size() + step_between_grids_ - 1) / step_between_grids_;
+  probes_.resize(shapes.size());
+  for (std::size_t chart = 0; chart < shapes.size(); ++chart)
+    for (const ChartBitmap& bitmap : shapes[chart]) {
+      std::vector<FreeRuns::Probe>& probes = probes_[chart].emplace_back();
+      const int stride = row_stride(bitmap.height);
+      int row = bitmap.widest_row;
+      for (int i = 0; i < bitmap.height; ++i, row = (row + stride) % bitmap.height)
+        for (const TexelRun& run : bitmap.rows[row]) free_.append_probes(row, run, probes);
+    }
   for (State* state : {&kept_, &trial_}) {
     state->grids.assign(grids, TexelGrid(width, height));
     state->spots.resize(shapes.size());
@@ -39,31 +84,25 @@ Placer::Placer(const std::vector<Shape>& shapes, int width, int height, int gutt
 }
 
 /// The lowest, then leftmost place where a chart fits with its bottom row from `first_row` to `last_row`.
-bool Placer::lowest_spot(const TexelGrid& grid, const ChartBitmap& bitmap, int first_row, int last_row, Spot& spot) {
+bool Placer::lowest_spot(const TexelGrid& grid, std::uint32_t chart, Rows rows, Spot& spot) {
+  const ChartBitmap& bitmap = shapes_[chart][spot.rotation];
+  const std::vector<FreeRuns::Probe>& probes = probes_[chart][spot.rotation];
   const int last_x = grid.width() - gutter_ - bitmap.width;
-  int blocker = bitmap.widest_row;  // the row of the chart that met something last is the likeliest to do so again
-  for (int y = first_row; y <= last_row; ++y) {
+  std::size_t blocker = 0;  // the probe that met something last is the likeliest to do so again
+  for (int y = rows.first; y <= rows.last; ++y) {
     if (grid.longest_free(y + bitmap.widest_row) < bitmap.widest_run) continue;
-    int x = gutter_, clear_rows = 0;
-    while (clear_rows < bitmap.height && x <= last_x) {
-      bool clear = true;
-      for (const TexelRun& run : bitmap.rows[blocker]) {
-        ++work_;
-        const int taken = grid.last_taken(y + blocker, x + run.first, x + run.last);
-        if (taken < 0) continue;
-        x = taken - run.first + 1;  // no place before that one can be free
-        clear = false;
-        if (x > last_x) break;
+    for (int start = gutter_ / 64 * 64; start <= last_x; start += FreeRuns::span) {
+      FreeRuns::Mask places;
+      set_between(gutter_ - start, last_x - start, places);
+      std::size_t passed = 0;
+      for (; passed < probes.size(); ++passed) {
+        free_.keep_free(probes[blocker], y, start, places);
+        if (none(places)) break;
+        if (++blocker == probes.size()) blocker = 0;
       }
-      if (!clear) {
-        clear_rows = 0;
-        continue;
-      }
-      ++clear_rows;
-      blocker = blocker + 1 == bitmap.height ? 0 : blocker + 1;
-    }
-    if (x <= last_x) {
-      spot.x = x;
+      work_ += static_cast<std::int64_t>(passed + 1);
+      if (passed < probes.size()) continue;
+      spot.x = start + lowest_bit(places);
       spot.y = y;
       return true;
     }
@@ -75,6 +114,7 @@ Placer::Height Placer::place(const PlacePlan& plan, std::size_t first, int highe
   first = first / step_between_grids_ * step_between_grids_;
   first_ = first;
   TexelGrid grid = kept_.grids[first / step_between_grids_];
+  work_ += free_.update(grid, 0, height_ - 1) / 8;
   trial_.heights[first] = kept_.heights[first];
   for (std::size_t step = 0; step < first; ++step) trial_.spots[plan.order[step]] = kept_.spots[plan.order[step]];
   highest_top = std::min(highest_top, height_ - gutter_);
@@ -98,12 +138,12 @@ Placer::Height Placer::place(const PlacePlan& plan, std::size_t first, int highe
       if (use_ == Use::crowd) {
         int& row_of_class = rows_of_classes.emplace(size_class(bitmap), gutter_).first->second;
         first_row = std::max(gutter_, row_of_class - bitmap.height / 4);
-        if (!lowest_spot(grid, bitmap, first_row, last_row, spot)) {
+        if (!lowest_spot(grid, chart, {first_row, last_row}, spot)) {
           row_of_class = std::max(row_of_class, last_row);
           continue;
         }
         row_of_class = spot.y;
-      } else if (!lowest_spot(grid, bitmap, first_row, last_row, spot)) {
+      } else if (!lowest_spot(grid, chart, {first_row, last_row}, spot)) {
         continue;
       }
       const double cost = spot.y + height + 1e-4 * spot.x;
@@ -116,6 +156,7 @@ Placer::Height Placer::place(const PlacePlan& plan, std::size_t first, int highe
     trial_.spots[chart] = best;
     const ChartBitmap& bitmap = shapes_[chart][best.rotation];
     occupy(grid, bitmap, best, gutter_);
+    work_ += free_.update(grid, best.y - gutter_, best.y + bitmap.height - 1 + gutter_) / 8;
     work_ += static_cast<std::int64_t>(bitmap.height) * (2 * gutter_ + 1);
     Height& height = trial_.heights[step + 1];
     height = trial_.heights[step];

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "atlas/chart_bitmap.h"
+#include "atlas/free_runs.h"
 #include "atlas/texel_grid.h"
 
 namespace kiln {
@@ -56,7 +57,7 @@ class Placer {
   void keep();
 
   const std::vector<Spot>& spots() const { return trial_.spots; }
-  /// Comparisons of a chart's row with the grid so far, and what takes as long: a measure of time that is the same in
+  /// Comparisons of a chart's run with a row of the grid, and what takes as long: a measure of time that is the same in
   /// every run.
   std::int64_t work() const { return work_; }
 
@@ -67,7 +68,10 @@ class Placer {
     std::vector<Height> heights;   ///< before each step; the mean times the texels
   };
 
-  bool lowest_spot(const TexelGrid& grid, const ChartBitmap& bitmap, int first_row, int last_row, Spot& spot);
+  struct Rows {
+    int first, last;
+  };
+  bool lowest_spot(const TexelGrid& grid, std::uint32_t chart, Rows rows, Spot& spot);
 
   const std::vector<Shape>& shapes_;
   int width_, height_, gutter_;
@@ -77,6 +81,8 @@ class Placer {
   std::size_t first_ = 0;
   std::int64_t work_ = 0;
   State kept_, trial_;
+  std::vector<std::vector<std::vector<FreeRuns::Probe>>> probes_;  ///< per chart and rotation, those apart first
+  FreeRuns free_;                                                  ///< of the grid that a chart is placed in
 };
 
 }  // namespace kiln

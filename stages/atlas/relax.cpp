@@ -3,11 +3,13 @@
 #include "atlas/relax.h"
 
 #include <Eigen/LU>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include "atlas/block_cholesky.h"
 
 namespace kiln {
 
@@ -67,39 +69,43 @@ double largest_step(const Chart& chart, const Uvs& uvs, const Uvs& move) {
   return largest;
 }
 
+double mean_energy(const Surface& surface, const Chart& chart, const Uvs& uvs) {
+  double sum = 0, area = 0;
+  for (std::size_t i = 0; i < chart.triangles.size(); ++i) {
+    const RestTriangle& rest = surface.rest[chart.faces[i]];
+    const Matrix2 j = jacobian(rest, chart.triangles[i], uvs);
+    const double determinant = j.determinant();
+    if (!(determinant > 0)) return std::numeric_limits<double>::infinity();
+    const double square = j.squaredNorm();
+    sum += rest.area * square * (1 + 1 / (determinant * determinant));
+    area += rest.area;
+  }
+  return sum / area;
+}
+
+/// The least squares systems of a chart's steps; their pattern is the same in all.
 class Relaxation {
  public:
   /// Vertices that are `pinned`, where any are given, stay where they are.
   Relaxation(const Surface& surface, Chart& chart, std::vector<std::uint8_t> pinned = {})
-      : surface_(surface), chart_(chart), pinned_(std::move(pinned)) {
+      : surface_(surface), chart_(chart), pinned_(std::move(pinned)), solver_(chart.uvs.size(), number_edges()) {
     pinned_.resize(chart.uvs.size(), 0);
-    build_pattern();
+    diagonal_.resize(chart.uvs.size());
+    off_diagonal_.resize(edge_count_);
+    right_side_.resize(chart.uvs.size());
   }
 
-  double energy(const Uvs& uvs) const {
-    double sum = 0, area = 0;
-    for (std::size_t i = 0; i < chart_.triangles.size(); ++i) {
-      const RestTriangle& rest = surface_.rest[chart_.faces[i]];
-      const Matrix2 j = jacobian(rest, chart_.triangles[i], uvs);
-      const double determinant = j.determinant();
-      if (!(determinant > 0)) return std::numeric_limits<double>::infinity();
-      const double square = j.squaredNorm();
-      sum += rest.area * square * (1 + 1 / (determinant * determinant));
-      area += rest.area;
-    }
-    return sum / area;
-  }
+  double energy(const Uvs& uvs) const { return mean_energy(surface_, chart_, uvs); }
 
   /// As-rigid-as-possible steps (Liu et al. 2008), which need no valid start, until nothing is flipped.
   bool unflip(int iterations) {
     for (int i = 0; i < iterations; ++i) {
       assemble(true);
-      if (i == 0) factorisation_.factorize(matrix_);  // only the right side changes
-      if (factorisation_.info() != Eigen::Success) return false;
-      const Eigen::VectorXd solution = factorisation_.solve(right_side_);
-      if (!solution.allFinite()) return false;
+      if (i == 0 && !solver_.factorise(diagonal_, off_diagonal_)) return false;  // only the right side changes
+      const Uvs solution = solver_.solve(right_side_);
+      if (!all_finite(solution)) return false;
       for (std::size_t v = 0; v < chart_.uvs.size(); ++v)
-        if (!pinned_[v]) chart_.uvs[v] = solution.segment<2>(2 * static_cast<Eigen::Index>(v));
+        if (!pinned_[v]) chart_.uvs[v] = solution[v];
       if (is_flip_free(chart_)) return true;
     }
     return false;
@@ -108,13 +114,11 @@ class Relaxation {
   /// One step; the new energy, or the old one where it cannot be lowered.
   double step(double old_energy) {
     assemble(false);
-    if (factorisation_.factorize(matrix_); factorisation_.info() != Eigen::Success) return old_energy;
-    const Eigen::VectorXd solution = factorisation_.solve(right_side_);
-    if (!solution.allFinite()) return old_energy;
-    Uvs move(chart_.uvs.size());
+    if (!solver_.factorise(diagonal_, off_diagonal_)) return old_energy;
+    Uvs move = solver_.solve(right_side_);
+    if (!all_finite(move)) return old_energy;
     for (std::size_t v = 0; v < move.size(); ++v)
-      move[v] = pinned_[v] ? Eigen::Vector2d(0, 0)
-                           : Eigen::Vector2d(solution.segment<2>(2 * static_cast<Eigen::Index>(v)) - chart_.uvs[v]);
+      move[v] = pinned_[v] ? Eigen::Vector2d(0, 0) : Eigen::Vector2d(move[v] - chart_.uvs[v]);
 
     double length = std::min(1.0, 0.8 * largest_step(chart_, chart_.uvs, move));
     Uvs trial(move.size());
@@ -130,74 +134,74 @@ class Relaxation {
   }
 
  private:
-  /// The matrix's pattern is the same in every step: remember where each triangle's entries lie.
-  void build_pattern() {
-    const auto size = 2 * static_cast<Eigen::Index>(chart_.uvs.size());
-    std::vector<Eigen::Triplet<double>> triplets;
-    triplets.reserve(chart_.triangles.size() * 21 + size);
-    for_each_entry([&](std::size_t, std::size_t, Eigen::Index row, Eigen::Index column) {
-      triplets.emplace_back(row, column, 0.0);
-    });
-    for (Eigen::Index i = 0; i < size; ++i) triplets.emplace_back(i, i, 0.0);
-    matrix_.resize(size, size);
-    matrix_.setFromTriplets(triplets.begin(), triplets.end());
-    slots_.assign(chart_.triangles.size(), {});
-    for_each_entry([&](std::size_t triangle, std::size_t entry, Eigen::Index row, Eigen::Index column) {
-      slots_[triangle][entry] = &matrix_.coeffRef(row, column) - matrix_.valuePtr();
-    });
-    right_side_.resize(size);
-    factorisation_.analyzePattern(matrix_);
+  static bool all_finite(const Uvs& uvs) {
+    return std::all_of(uvs.begin(), uvs.end(), [](const Eigen::Vector2d& uv) { return uv.allFinite(); });
   }
 
-  /// The entries of the lower triangle that each chart triangle adds to.
-  template <class Visit>
-  void for_each_entry(Visit&& visit) const {
-    for (std::size_t i = 0; i < chart_.triangles.size(); ++i) {
-      const Triangle& t = chart_.triangles[i];
-      std::size_t entry = 0;
-      for (int a = 0; a < 6; ++a)
-        for (int b = 0; b < 6; ++b) {
-          const Eigen::Index row = 2 * Eigen::Index{t[a / 2]} + a % 2, column = 2 * Eigen::Index{t[b / 2]} + b % 2;
-          if (row >= column) visit(i, entry++, row, column);
+  /// Numbers the edges and remembers which a triangle has.
+  std::vector<BlockCholesky::Edge> number_edges() {
+    // Per vertex, its edges to vertices of higher numbers, few enough to be looked through.
+    std::vector<std::uint32_t> offsets(chart_.uvs.size() + 1, 0);
+    const auto edge_of = [](const Triangle& t, int k) -> BlockCholesky::Edge {
+      return std::minmax(t[k], t[(k + 1) % 3]);
+    };
+    for (const Triangle& t : chart_.triangles)
+      for (int k = 0; k < 3; ++k) ++offsets[edge_of(t, k).first + 1];
+    for (std::size_t v = 0; v < chart_.uvs.size(); ++v) offsets[v + 1] += offsets[v];
+    std::vector<std::uint32_t> others(offsets.back()), numbers(offsets.back());
+    std::vector<std::uint32_t> ends(offsets.begin(), offsets.end() - 1);
+
+    std::vector<BlockCholesky::Edge> edges;
+    edges_of_triangles_.resize(chart_.triangles.size());
+    for (std::size_t i = 0; i < chart_.triangles.size(); ++i)
+      for (int k = 0; k < 3; ++k) {
+        const BlockCholesky::Edge edge = edge_of(chart_.triangles[i], k);
+        std::uint32_t at = offsets[edge.first];
+        while (at < ends[edge.first] && others[at] != edge.second) ++at;
+        if (at == ends[edge.first]) {
+          ++ends[edge.first];
+          others[at] = edge.second;
+          numbers[at] = static_cast<std::uint32_t>(edges.size());
+          edges.push_back(edge);
         }
-    }
+        edges_of_triangles_[i][k] = numbers[at];
+      }
+    edge_count_ = edges.size();
+    return edges;
   }
 
   /// The quadratic proxy around the present uvs; `rigid` weighs all directions alike.
   void assemble(bool rigid) {
-    const auto proximal = [&](std::size_t v) { return pinned_[v] ? 1e9 : 1e-5; };  // the latter fixes the translation
-    std::fill_n(matrix_.valuePtr(), matrix_.nonZeros(), 0.0);
-    for (Eigen::Index i = 0; i < matrix_.rows(); ++i)
-      matrix_.valuePtr()[matrix_.outerIndexPtr()[i]] = proximal(static_cast<std::size_t>(i / 2));
-    for (std::size_t v = 0; v < chart_.uvs.size(); ++v)
-      right_side_.segment<2>(2 * static_cast<Eigen::Index>(v)) = proximal(v) * chart_.uvs[v];
-
+    for (std::size_t v = 0; v < chart_.uvs.size(); ++v) {
+      const double proximal = pinned_[v] ? 1e9 : 1e-5;  // the latter fixes the translation
+      diagonal_[v] = {proximal, 0, proximal};
+      right_side_[v] = proximal * chart_.uvs[v];
+    }
+    std::fill(off_diagonal_.begin(), off_diagonal_.end(), SymmetricBlock{});
     for (std::size_t i = 0; i < chart_.triangles.size(); ++i) {
       const Triangle& t = chart_.triangles[i];
       const RestTriangle& rest = surface_.rest[chart_.faces[i]];
       const Matrix2 j = jacobian(rest, t, chart_.uvs);
       const Decomposition d = decompose(j);
       const Matrix2 metric = rest.area * (rigid ? Matrix2(Matrix2::Identity()) : proxy_metric(j, d));
+      const SymmetricBlock block{metric(0, 0), metric(0, 1), metric(1, 1)};
       const Matrix2 goal = metric * d.rotation;
-      std::size_t entry = 0;
-      for (int a = 0; a < 6; ++a)
-        for (int b = 0; b < 6; ++b) {
-          const std::uint32_t row = 2 * t[a / 2] + a % 2, column = 2 * t[b / 2] + b % 2;
-          if (row < column) continue;
-          matrix_.valuePtr()[slots_[i][entry++]] +=
-              rest.gradients[a / 2].dot(rest.gradients[b / 2]) * metric(a % 2, b % 2);
-        }
-      for (int k = 0; k < 3; ++k) right_side_.segment<2>(2 * Eigen::Index{t[k]}) += goal * rest.gradients[k];
+      for (int k = 0; k < 3; ++k) {
+        diagonal_[t[k]].add(rest.gradients[k].squaredNorm(), block);
+        off_diagonal_[edges_of_triangles_[i][k]].add(rest.gradients[k].dot(rest.gradients[(k + 1) % 3]), block);
+        right_side_[t[k]] += goal * rest.gradients[k];
+      }
     }
   }
 
   const Surface& surface_;
   Chart& chart_;
   std::vector<std::uint8_t> pinned_;
-  Eigen::SparseMatrix<double> matrix_;  // lower triangle; the first entry of a column is its diagonal
-  Eigen::VectorXd right_side_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factorisation_;
-  std::vector<std::array<Eigen::Index, 21>> slots_;
+  std::vector<std::array<std::uint32_t, 3>> edges_of_triangles_;  ///< edge k goes from corner k to the next
+  std::size_t edge_count_ = 0;
+  BlockCholesky solver_;
+  std::vector<SymmetricBlock> diagonal_, off_diagonal_;
+  Uvs right_side_;
 };
 
 /// A part of a chart, with its own copy of the uvs.
@@ -262,11 +266,24 @@ double run(Relaxation& relaxation, const Chart& chart, const RelaxSettings& sett
 
 }  // namespace
 
-bool unflip(const Surface& surface, Chart& chart) { return Relaxation(surface, chart).unflip(6); }
-
 double relax(const Surface& surface, Chart& chart, const RelaxSettings& settings) {
   Relaxation relaxation(surface, chart);
   return run(relaxation, chart, settings);
+}
+
+bool relax_until(const Surface& surface, Chart& chart, const std::function<bool(double)>& goes_on) {
+  std::optional<Relaxation> relaxation;  // made when a step is needed
+  if (!is_flip_free(chart)) {
+    relaxation.emplace(surface, chart);
+    if (!relaxation->unflip(6)) return false;
+  }
+  for (double energy = mean_energy(surface, chart, chart.uvs); goes_on(energy);) {
+    if (!relaxation) relaxation.emplace(surface, chart);
+    const double lower = relaxation->step(energy);
+    if (!(lower < energy)) break;
+    energy = lower;
+  }
+  return true;
 }
 
 bool relax_around(const Surface& surface, Chart& chart, const std::vector<std::uint32_t>& seeds, std::size_t most_faces,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "atlas/chart.h"
 
 namespace kiln {
@@ -15,13 +17,14 @@ struct RelaxSettings {
 /// least squares steps. Returns the energy.
 double relax(const Surface& surface, Chart& chart, const RelaxSettings& settings);
 
-/// The same for some triangles around the vertices `seeds` of a large chart, the rest of which stays as it is;
+/// The same, step by step: after each, and before the first, `goes_on` is told the chart's energy and says whether
+/// to go on. A chart that has flipped triangles is first brought to a map near by that has none by a few
+/// as-rigid-as-possible steps; false where these find none.
+bool relax_until(const Surface& surface, Chart& chart, const std::function<bool(double energy)>& goes_on);
+
+/// `relax` for some triangles around the vertices `seeds` of a large chart, the rest of which stays as it is;
 /// triangles there may be flipped before. False where they stay so.
 bool relax_around(const Surface& surface, Chart& chart, const std::vector<std::uint32_t>& seeds, std::size_t most_faces,
                   const RelaxSettings& settings);
-
-/// Moves the uvs of a chart that has flipped triangles to a map near by that has none, if a few as-rigid-as-possible
-/// steps find one.
-bool unflip(const Surface& surface, Chart& chart);
 
 }  // namespace kiln

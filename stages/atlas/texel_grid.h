@@ -25,17 +25,9 @@ class TexelGrid {
     return longest_free_[row];
   }
 
-  /// The last taken column from `first` to `last`, both inside the grid; -1 if none is.
-  int last_taken(int row, int first, int last) const {
-    const std::uint64_t* words = words_.data() + static_cast<std::size_t>(row) * words_per_row_;
-    const int first_word = first / 64, last_word = last / 64;
-    for (int word = last_word; word >= first_word; --word) {
-      std::uint64_t bits = words[word];
-      if (word == last_word) bits &= ~std::uint64_t{0} >> (63 - last % 64);
-      if (word == first_word) bits &= ~std::uint64_t{0} << (first % 64);
-      if (bits != 0) return word * 64 + 63 - __builtin_clzll(bits);
-    }
-    return -1;
+  /// The row's bits, 64 columns a word.
+  const std::uint64_t* row_words(int row) const {
+    return words_.data() + static_cast<std::size_t>(row) * words_per_row_;
   }
 
  private:

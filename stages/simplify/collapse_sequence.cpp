@@ -41,6 +41,7 @@ TriangleMesh CollapseSequence::after(std::size_t count, std::vector<std::uint32_
   for (std::size_t i = 0; i < count; ++i) positions[collapses[i].kept] = collapses[i].position;
   const std::vector<std::uint32_t> now = vertices_after(*this, count);
   TriangleMesh mesh;
+  mesh.triangles.reserve(static_cast<std::size_t>(faces_after(count)));
   std::vector<std::uint32_t> new_index(positions.size(), 0);
   for (const Triangle& triangle : start.triangles) {
     const Triangle left = {now[triangle[0]], now[triangle[1]], now[triangle[2]]};

@@ -8,6 +8,7 @@
 #include <limits>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
+#include <tuple>
 
 #include "simplify/triangle_shape.h"
 
@@ -16,6 +17,8 @@ namespace kiln {
 namespace {
 
 using Vector = Eigen::Vector3d;
+template <class T>
+using Few = boost::container::small_vector<T, 24>;
 
 /// v'Av + 2b'v + c, the sum of squared distances to planes times triangles' areas; A has xx, yy, zz, xy, xz, yz.
 struct Quadric {
@@ -93,7 +96,6 @@ class QuickCollapser {
     for (const auto& [a, b] : lines) is_fixed_[a] = is_fixed_[b] = 1;
     became_.resize(vertices);
     for (std::uint32_t i = 0; i < vertices; ++i) became_[i] = i;
-    mark_.resize(vertices, 0);
     list_triangles_around();
     quadrics_.resize(vertices);
     tbb::parallel_for(std::size_t{0}, vertices,
@@ -101,6 +103,9 @@ class QuickCollapser {
   }
 
   void run(int target, const ProgressFunction& progress) {
+    candidates_.reserve(triangles_.size() * 3 / 2);  // the edges of a closed mesh
+    sequence_.collapses.reserve(sequence_.collapses.size() +
+                                static_cast<std::size_t>(std::max(0, faces_ - target)) / 2);
     for (const int start = faces_; faces_ > target;) {
       const int before = faces_;
       run_round(target);
@@ -250,42 +255,21 @@ class QuickCollapser {
     const Quadric both = quadrics_[a] + quadrics_[b];
     if (both.mean_square(both(place.position)) > largest_mean_square_) return;
 
-    // Nothing turns over.
-    bool allowed = true;
+    Few<Triangle> at_a, at_b;
+    for_each_around(a, [&](const Triangle& t) { at_a.push_back(t); });
+    for_each_around(b, [&](const Triangle& t) { at_b.push_back(t); });
     std::uint32_t opposite[2] = {};
-    int on_edge = 0;
-    for (const auto& [end, other] : {std::pair(a, b), std::pair(b, a)})
-      for_each_around(end, [&, moving = end, fixed = other](const Triangle& t) {
-        if (!allowed) return;
-        if (t[0] == fixed || t[1] == fixed || t[2] == fixed) {
-          if (moving == b) return;
-          if (on_edge == 2) return;
-          opposite[on_edge++] = t[0] + t[1] + t[2] - a - b;
-          return;
-        }
-        const int k = t[0] == moving ? 0 : t[1] == moving ? 1 : 2;
+    if (!keeps_topology(a, b, {at_a.data(), at_a.size()}, {at_b.data(), at_b.size()}, opposite)) return;
+    // Nothing turns over.
+    for (const auto& [end, other, fan] : {std::tuple(a, b, &at_a), std::tuple(b, a, &at_b)})
+      for (const Triangle& t : *fan) {
+        if (t[0] == other || t[1] == other || t[2] == other) continue;
+        const int k = t[0] == end ? 0 : t[1] == end ? 1 : 2;
         const Vector &first = positions_[t[(k + 1) % 3]], &second = positions_[t[(k + 2) % 3]];
-        allowed = keeps_shape({positions_[moving], first, second}, {place.position, first, second},
-                              {smallest_slenderness, thinnest_[a]}, [&] { return normal_around(a, b); });
-      });
-    // The link condition; a vertex of three triangles may not lose one.
-    if (!allowed || on_edge != 2) return;
-    for (std::uint32_t vertex : opposite)
-      if (size_[vertex] <= 3) return;
-    mark_now_ += 2;
-    for_each_around(a, [&](const Triangle& t) {
-      for (std::uint32_t vertex : t) mark_[vertex] = mark_now_;
-    });
-    mark_[a] = mark_[b] = mark_now_ + 1;
-    int common = 0;
-    for_each_around(b, [&](const Triangle& t) {
-      for (std::uint32_t vertex : t)
-        if (mark_[vertex] == mark_now_) {
-          mark_[vertex] = mark_now_ + 1;
-          ++common;
-        }
-    });
-    if (common != 2) return;
+        if (!keeps_shape({positions_[end], first, second}, {place.position, first, second},
+                         {smallest_slenderness, thinnest_[a]}, [&] { return normal_around(a, b); }))
+          return;
+      }
 
     const std::uint32_t kept = is_fixed_[b] ? b : a, removed = is_fixed_[b] ? a : b;
     became_[removed] = kept;
@@ -297,6 +281,28 @@ class QuickCollapser {
     is_touched_[a] = is_touched_[b] = 1;
     faces_ -= 2;
     sequence_.collapses.push_back({removed, kept, faces_, frame_.to_object(place.position).cast<float>()});
+  }
+
+  /// The link condition, of the triangles left around both ends: two are on the edge, and the ends have no neighbours
+  /// in common but the `opposite` corners of these. A vertex of three triangles may not lose one.
+  bool keeps_topology(std::uint32_t a, std::uint32_t b, std::span<const Triangle> at_a, std::span<const Triangle> at_b,
+                      std::uint32_t (&opposite)[2]) const {
+    int on_edge = 0;
+    for (const Triangle& t : at_a) {
+      if (t[0] != b && t[1] != b && t[2] != b) continue;
+      if (on_edge == 2) return false;
+      opposite[on_edge++] = t[0] + t[1] + t[2] - a - b;
+    }
+    if (on_edge != 2 || size_[opposite[0]] <= 3 || size_[opposite[1]] <= 3) return false;
+    // So few that looking through them is quicker than marking them.
+    Few<std::uint32_t> neighbours;
+    for (const Triangle& t : at_a)
+      for (const std::uint32_t vertex : t)
+        if (vertex != opposite[0] && vertex != opposite[1] && vertex != a && vertex != b) neighbours.push_back(vertex);
+    for (const Triangle& t : at_b)
+      for (const std::uint32_t vertex : t)
+        if (std::find(neighbours.begin(), neighbours.end(), vertex) != neighbours.end()) return false;
+    return opposite[0] != opposite[1];
   }
 
   /// Twice the sum of the triangles' areas, as a vector.
@@ -329,8 +335,6 @@ class QuickCollapser {
   std::vector<std::uint32_t> around_begin_, around_, next_;
   std::vector<std::uint32_t> size_;  ///< triangles around each vertex, kept up within a round
   std::vector<Candidate> candidates_;
-  std::vector<std::uint32_t> mark_;
-  std::uint32_t mark_now_ = 0;
 };
 
 }  // namespace

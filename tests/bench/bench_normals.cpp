@@ -10,45 +10,22 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
-#include <fstream>
-#include <map>
 #include <string>
-#include <tuple>
 
 #include "detail/asset_hints.h"
 #include "detail/detail_maps.h"
 #include "detail/seams.h"
 #include "image/image_file.h"
-#include "mesh/draco_file.h"
 #include "import/import_mesh.h"
+#include "mesh/draco_file.h"
 #include "normals/map_error.h"
 #include "normals/normals.h"
+#include "obj_writer.h"
 
 namespace {
 
 using namespace kiln;
 namespace fs = std::filesystem;
-
-void write_obj(const fs::path& file, const TriangleMesh& mesh) {
-  std::ofstream out(file);
-  out.precision(9);
-  std::map<std::tuple<float, float, float>, std::size_t> numbers;
-  std::vector<std::size_t> number;
-  for (const Eigen::Vector3f& p : mesh.positions) {
-    const auto [place, is_new] = numbers.try_emplace({p.x(), p.y(), p.z()}, numbers.size() + 1);
-    number.push_back(place->second);
-    if (is_new) out << "v " << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
-  }
-  for (const Eigen::Vector2f& uv : mesh.uvs) out << "vt " << uv.x() << ' ' << uv.y() << '\n';
-  for (const Triangle& t : mesh.triangles) {
-    out << 'f';
-    for (const std::uint32_t vertex : t) {
-      out << ' ' << number[vertex];
-      if (!mesh.uvs.empty()) out << '/' << vertex + 1;
-    }
-    out << '\n';
-  }
-}
 
 Image<float> load_map(const fs::path& file) {
   if (file.extension() == ".png") return dequantise_normals(read_png16(file));
@@ -88,8 +65,8 @@ int main(int argc, char** argv) {
   const TriangleMesh high = load_mesh(high_file);
   const TriangleMesh atlas = load_atlas(atlas_file);
   if (export_mode->parsed()) {
-    write_obj(fs::path(output) / "high.obj", high);
-    write_obj(fs::path(output) / "low.obj", atlas);
+    write_peer_obj(fs::path(output) / "high.obj", high);
+    write_peer_obj(fs::path(output) / "low.obj", atlas);
   } else if (bake_mode->parsed()) {
     NormalsSettings settings;
     settings.size = Extent(size);

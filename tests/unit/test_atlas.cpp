@@ -397,8 +397,9 @@ TEST(Packing, AtAGivenScaleTakesTheLeastHeightOrSquare) {
     EXPECT_EQ(packing.texels_per_unit, 40);
     EXPECT_EQ(packing.height % 4, 0);
     EXPECT_EQ(packing.width, width == 0 ? packing.height : width);
-    // About half of the atlas is covered even where one chart more would not have fitted beside the others.
-    EXPECT_GT(area * 40 * 40 / packing.width / packing.height, width == 1000 ? 0.3 : 0.45);
+    // About half of the atlas is covered even where one chart more would not have fitted beside the others. The widest
+    // has a single row of charts, and is as high as the highest of them.
+    EXPECT_GT(area * 40 * 40 / packing.width / packing.height, width == 1000 ? 0.25 : 0.45);
     for (std::size_t c = 0; c < cut.charts.size(); ++c)
       for (const Eigen::Vector2d& uv : cut.charts[c].uvs) {
         const Eigen::Vector2d texel = turned(uv, packing.placements[c].angle) * 40 + packing.placements[c].offset;
