@@ -70,17 +70,24 @@ int receivers_that_differ(const TransferSums& a, const TransferSums& b) {
 TEST(RayTransfer, BeamsSeeWhatEmbreeSees) {
   TriangleMesh open_torus = shapes::torus(40);
   open_torus.triangles.resize(open_torus.triangles.size() * 3 / 4);
+  TriangleMesh dense_open = shapes::torus(200);
+  dense_open.triangles.resize(dense_open.triangles.size() * 3 / 4);
   TriangleMesh crossing = shapes::joined(shapes::torus(30), shapes::cube(6), {1, 0.1f, 0.05f});
   struct Case {
     const char* name;
     TriangleMesh mesh;
     std::size_t step;
   };
-  const std::vector<Case> cases = {{"torus: closed", shapes::torus(40), 1},
-                                   {"open torus: receivers see back faces", open_torus, 1},
-                                   {"crossing: receivers inside another solid", crossing, 1},
-                                   {"sheet", shapes::wavy_sheet(30, 3, 0.1f), 1},
-                                   {"bunny", load_mesh("/usr/share/glmark2/models/bunny.obj"), 17}};
+  const std::vector<Case> cases = {
+      {"torus: closed", shapes::torus(40), 1},
+      {"open torus: receivers see back faces", open_torus, 1},
+      {"crossing: receivers inside another solid", crossing, 1},
+      {"dense: many triangles under 16 receivers", shapes::torus(200), 31},
+      {"dense and open", dense_open, 31},
+      {"dense, few receivers far apart", shapes::torus(200), 499},
+      {"dense, crossing", shapes::joined(shapes::torus(150), shapes::icosphere(6), {1, 0.1f, 0.05f}), 53},
+      {"sheet", shapes::wavy_sheet(30, 3, 0.1f), 1},
+      {"bunny", load_mesh("/usr/share/glmark2/models/bunny.obj"), 17}};
   for (const Case& c : cases) {
     const Points points = vertices_of(c.mesh, c.step);
     for (const int count : {1, 31, 1000}) {

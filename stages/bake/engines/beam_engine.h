@@ -6,8 +6,9 @@
 namespace kiln {
 
 /// Shadows by beams: the parallel rays of 16 neighbouring receivers through one search of the occluders' tree for a
-/// whole block of directions. Finds the exact visibility that EmbreeEngine finds, up to roundings of rays that pass an
-/// edge, in less than half the time from a thousand directions on: the fast way of a machine without a GPU. Kin of the
+/// whole block of directions, and one ray for all of them where only sheets of triangles stand before them. Finds the
+/// exact visibility that EmbreeEngine finds, up to roundings of rays that pass an edge, in a fraction of the time that
+/// docs/benchmarks.md states by mesh: the fast way of a machine without a GPU. Kin of the
 /// patent's conservative regions (section 5), and of shaft culling (Haines and Wallace, "Shaft culling for efficient
 /// ray-cast radiosity", 1991).
 class BeamEngine : public TransferEngine {
