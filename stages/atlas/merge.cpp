@@ -192,7 +192,7 @@ bool within_bounds(const Surface& surface, const Chart& chart, const ChartSettin
 /// Whether relaxing may still bring a chart within the bounds, as far as its energy tells.
 class Prospect {
  public:
-  /// Of singular values 1 + e the energy's excess is 4 e^2 to second order, summed over both, and that of the L2
+  /// Excess of the energy: of singular values 1 + e it is 4 e^2 to second order, summed over both, and that of the L2
   /// stretch of a chart of equal area an eighth to a quarter of it (Sander et al. 2001, section 3, expanded).
   explicit Prospect(const ChartSettings& settings) : most_(8 * (settings.largest_l2 - 1)) {}
 

@@ -17,7 +17,7 @@ struct RelaxSettings {
 /// least squares steps. Returns the energy.
 double relax(const Surface& surface, Chart& chart, const RelaxSettings& settings);
 
-/// The same, step by step: after each, and before the first, `goes_on` is told the chart's energy and says whether
+/// Relaxes step by step: after each, and before the first, `goes_on` is told the chart's energy and says whether
 /// to go on. A chart that has flipped triangles is first brought to a map near by that has none by a few
 /// as-rigid-as-possible steps; false where these find none.
 bool relax_until(const Surface& surface, Chart& chart, const std::function<bool(double energy)>& goes_on);

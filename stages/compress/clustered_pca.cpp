@@ -123,7 +123,7 @@ float subspace_distance(const Eigen::VectorXf& x, const PcaModel& model, std::si
   return centred.squaredNorm() - (model.bases[cluster].transpose() * centred).squaredNorm();
 }
 
-/// Of texels in a list: the cluster of each, and the mean next to it, which says what subspaces it tries.
+/// Clusters of the texels of a list, and the mean next to each, which says what subspaces it tries.
 struct Assignment {
   Ids ids, near;
 };

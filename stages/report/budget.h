@@ -29,7 +29,7 @@ Budget parse_budget(const std::string& text);
 /// budget, a truth counts 1 or 0. Throws WrongUsage where there is no such number, and says which there are.
 BudgetVerdict judge_budget(const Budget& budget, const Json& metrics);
 
-/// Of each text that parse_budget reads, in order.
+/// Verdicts on all texts that parse_budget reads, in order.
 std::vector<BudgetVerdict> judge_budgets(const std::vector<std::string>& texts, const Json& metrics);
 
 Json to_json(const BudgetVerdict& verdict);

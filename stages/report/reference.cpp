@@ -48,7 +48,7 @@ VisiblePoints visible_points(const RayScene& scene, const TriangleMesh& mesh, co
   return points;
 }
 
-/// Of receivers under one light, at an albedo of 1.
+/// Radiance that receivers send out under one light, at an albedo of 1.
 std::vector<Eigen::Vector3f> radiance_of(const TransferVectors& transfer, const LightSpec& light,
                                          const ReferenceView& view, const Receivers& receivers) {
   std::vector<Eigen::Vector3f> radiance(receivers.size());

@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 
 constexpr float unoccluded = 0.28209479f;
 
-/// Of one map, as Image has it.
+/// Openness in one map, rows as Image has them.
 struct Occlusion {
   int width = 0, height = 0;
   std::vector<float> open;  ///< per texel, 1 where nothing is in the way

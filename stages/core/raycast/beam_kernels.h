@@ -94,7 +94,7 @@ struct BeamKernels {
   void (*add_products)(const BeamWeights&, const float* basis, int coefficients, std::int64_t (*sums)[beam_lanes]);
 };
 
-/// Those for the widest vectors that this machine has. All give the same bits: multiplications and additions stay
+/// Kernels for the widest vectors that this machine has. All give the same bits: multiplications and additions stay
 /// apart.
 const BeamKernels& beam_kernels();
 

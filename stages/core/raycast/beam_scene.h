@@ -17,7 +17,7 @@ struct alignas(64) BeamBoxes {
   float upper[3][beam_lanes];
   float cone_axis[3][beam_lanes];
   float cone_sine[beam_lanes];  ///< of the half-angle; 2 where the normals spread over a hemisphere or more
-  /// Of a cone about the same axis that also holds the normals of the triangles across the outline; 2 where these
+  /// Sine of a cone about the same axis that also holds the normals of the triangles across the outline; 2 where these
   /// spread over a hemisphere or more, where the surface ends, and where more than two triangles meet at an edge.
   float sheet_sine[beam_lanes];
 };
