@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
     command.inputs("PRT", paths.assets, "Output folders of kiln-bake or kiln-compress; nothing else is read");
     command.output(file, "The picture: .png, or .exr for linear float radiance as it is");
     command.input_option("compressed", paths.compressed,
-                         "The asset as kiln-compress made it, for --technique compressed, all");
+                         "The asset as kiln-compress made it, for --technique compressed");
     command.list_option(
         "place", paths.places, "Picture",
         "Where an asset stands, once for each in their order: X,Y,Z[,AZIMUTH[,SCALE]], object units and "
