@@ -20,11 +20,10 @@ int main(int argc, char** argv) {
     command.output(file, "The picture: .png, or .exr for linear float radiance as it is");
     command.input_option("compressed", paths.compressed,
                          "The asset as kiln-compress made it, for --technique compressed");
-    command.list_option(
-        "place", paths.places, "Picture",
-        "Where an asset stands, once for each in their order: X,Y,Z[,AZIMUTH[,SCALE]], object units and "
-        "degrees about +Y (default: the first where it is, the others side by side to its right as the "
-        "camera sees them, on its ground line, a tenth of their width apart)");
+    command.list_option("place", paths.places, "Picture",
+                        "Where an asset stands, once for each in their order: X,Y,Z[,AZIMUTH[,SCALE]], degrees about "
+                        "+Y (default: the first where it is, the others side by side to its right as the camera sees "
+                        "them, on its ground line, a tenth of their width apart)");
     add_light_options(command, lights, paths.light_file);
     command.app()
         .add_flag("--each-light", paths.each_light,
