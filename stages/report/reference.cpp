@@ -5,10 +5,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "raycast/beam_transfer.h"
 #include "raycast/ray_scene.h"
-#include "sh/basis.h"
-#include "sh/directions.h"
+#include "raycast/ray_transfer.h"
 #include "sh/ray_offset.h"
 
 namespace kiln {
@@ -88,9 +86,7 @@ std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const Ref
                                              const ProgressFunction& progress) {
   const VisiblePoints points = visible_points(RayScene(mesh), mesh, view);
   const TriangleMesh occluders = joined(mesh, view.surroundings);
-  const BeamScene scene(occluders.positions, occluders.triangles);
-  std::vector<Eigen::Vector3f> ordered(directions.begin(), directions.end());
-  order_coherently(ordered);
+  const RayScene scene(occluders);  // Embree's, since bakes are made by beams: no fault is on both sides
   const float ray_offset = rounding_offset(occluders.positions);                      // as kiln-bake has it
   const float share = 1.f / static_cast<float>(view.supersample * view.supersample);  // of a pixel that one sample has
   std::vector<Image<float>> pictures(lights.size(), Image<float>(view.width, view.height, 4));
@@ -101,9 +97,7 @@ std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const Ref
     const std::size_t size = std::min(batch_receivers, count - begin);
     const Receivers receivers{std::span(points.positions).subspan(begin, size),
                               std::span(points.normals).subspan(begin, size)};
-    TransferSums sums(size, coefficient_count(view.bands));
-    add_transfer_by_beams(scene, BeamReceivers(receivers, ray_offset), ordered, sums);
-    const TransferVectors transfer = sums.transfer();
+    const TransferVectors transfer = transfer_by_rays(scene, receivers, directions, view.bands, ray_offset);
     for (std::size_t light = 0; light < lights.size(); ++light) {
       const std::vector<Eigen::Vector3f> radiance = radiance_of(transfer, lights[light], view, receivers);
       for (std::size_t r = 0; r < size; ++r) {
