@@ -76,6 +76,11 @@ struct BeamKernels {
 
   BeamMeetings (*meet)(const BeamShaft&, const BeamBoxes&);
 
+  /// The triangles of `count` clusters that a shaft can meet, in clusters that are full but for the last, and their
+  /// boxes as BeamRay has them; how many clusters these are.
+  int (*pack)(const BeamShaft&, const BeamSpan&, const BeamScene::Cluster* const* clusters, int count,
+              BeamScene::Cluster* packed, BeamBoxes* boxes);
+
   /// Whether the ray from the span's centre along `direction` hits a triangle of the cluster.
   bool (*hits)(const BeamSpan&, const float* direction, bool outside, const BeamScene::Cluster&);
 

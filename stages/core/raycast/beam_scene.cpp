@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 #include <tuple>
 
+#include "mesh/mesh_components.h"
 #include "raycast/exact_side.h"
 
 namespace kiln {
@@ -29,11 +31,12 @@ std::vector<std::uint32_t> places_of(std::span<const Eigen::Vector3f> positions)
   return place;
 }
 
-/// The triangles across the sides of each, corner 0 to 1 first; none where a side does not have just two, which run
-/// through it in opposite ways.
 struct Neighbours {
+  /// Triangles across the sides of each, corner 0 to 1 first; none where a side does not have just two, which run
+  /// through it in opposite ways.
   std::vector<std::array<std::uint32_t, 3>> across;
-  bool closed = true;  // every edge is run through as often one way as the other
+  /// Sides, from vertex to vertex, that are run through this way more often than the other; once for each time.
+  std::vector<std::array<std::uint32_t, 2>> borders;
 };
 
 Neighbours neighbours_of(std::span<const Eigen::Vector3f> positions,
@@ -60,7 +63,12 @@ Neighbours neighbours_of(std::span<const Eigen::Vector3f> positions,
     for (; last < sides.size() && sides[last].edge == sides[first].edge; ++last)
       surplus += (sides[last].side & 1) == 0 ? 1 : -1;
     if (sides[first].edge >> 32 == (sides[first].edge & 0xffffffffu)) continue;
-    if (surplus != 0) neighbours.closed = false;
+    if (surplus != 0) {
+      const std::uint32_t side = sides[first].side / 2;
+      std::array<std::uint32_t, 2> border = {triangles[side / 3][side % 3], triangles[side / 3][(side % 3 + 1) % 3]};
+      if (((sides[first].side & 1) == 0) != (surplus > 0)) std::swap(border[0], border[1]);
+      neighbours.borders.insert(neighbours.borders.end(), static_cast<std::size_t>(std::abs(surplus)), border);
+    }
     if (surplus != 0 || last - first != 2) continue;
     const std::uint32_t a = sides[first].side / 2, b = sides[first + 1].side / 2;
     neighbours.across[a / 3][a % 3] = b / 3;
@@ -69,15 +77,47 @@ Neighbours neighbours_of(std::span<const Eigen::Vector3f> positions,
   return neighbours;
 }
 
-/// Builds the tree from the top: ranges of triangles are halved, at whole clusters, until a node has 16 children.
+/// Lids: what closes a surface.
+struct Lids {
+  std::vector<Eigen::Vector3f> positions;  ///< the surface's, then a middle for each border
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Fans from the middle of each connected border. A cone over a cycle of edges closes it, whatever its shape.
+Lids lids_over(std::span<const Eigen::Vector3f> positions, std::span<const std::array<std::uint32_t, 2>> borders) {
+  Lids lids{{positions.begin(), positions.end()}, {}};
+  const std::vector<std::uint32_t> place = places_of(positions);
+  DisjointSets sets(positions.size());
+  for (const auto& [from, to] : borders) sets.join(place[from], place[to]);
+  struct Middle {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    std::size_t count = 0;
+    std::uint32_t vertex = 0;
+  };
+  std::map<std::uint32_t, Middle> middles;
+  for (const auto& [from, to] : borders) {
+    Middle& middle = middles[sets.root(place[from])];
+    middle.sum += (positions[from].cast<double>() + positions[to].cast<double>()) / 2;
+    ++middle.count;
+  }
+  for (auto& [set, middle] : middles) {
+    middle.vertex = static_cast<std::uint32_t>(lids.positions.size());
+    lids.positions.emplace_back((middle.sum / static_cast<double>(middle.count)).cast<float>());
+  }
+  for (const auto& [from, to] : borders) lids.triangles.push_back({to, from, middles[sets.root(place[from])].vertex});
+  return lids;
+}
+
+/// Builds a tree from the top: ranges of triangles are halved, at whole clusters, until a node has 16 children.
+/// `across` are the triangles' neighbours.
 class Builder {
  public:
   Builder(BeamScene& scene, std::span<const Eigen::Vector3f> positions,
-          std::span<const std::array<std::uint32_t, 3>> triangles)
+          std::span<const std::array<std::uint32_t, 3>> triangles, std::span<const std::array<std::uint32_t, 3>> across)
       : scene_(scene),
         positions_(positions),
         triangles_(triangles),
-        neighbours_(neighbours_of(positions, triangles)),
+        across_(across),
         order_(triangles.size()),
         centres_(triangles.size()),
         normals_(triangles.size()) {
@@ -86,13 +126,14 @@ class Builder {
       const auto& t = triangles[k];
       centres_[k] = (positions[t[0]] + positions[t[1]] + positions[t[2]]) / 3;
       const Eigen::Vector3d a = positions[t[0]].cast<double>();
-      const Eigen::Vector3d across = (positions[t[1]].cast<double>() - a).cross(positions[t[2]].cast<double>() - a);
-      normals_[k] = across.squaredNorm() > 0 ? Eigen::Vector3f(across.normalized().cast<float>())
+      const Eigen::Vector3d normal = (positions[t[1]].cast<double>() - a).cross(positions[t[2]].cast<double>() - a);
+      normals_[k] = normal.squaredNorm() > 0 ? Eigen::Vector3f(normal.normalized().cast<float>())
                                              : Eigen::Vector3f(Eigen::Vector3f::Zero());
     });
-    scene.closed = neighbours_.closed;
-    if (!triangles.empty()) node({0, triangles.size()});
   }
+
+  /// Index of the topmost node.
+  std::uint32_t build() { return triangles_.empty() ? BeamScene::no_node : node({0, triangles_.size()}); }
 
  private:
   struct Range {
@@ -130,7 +171,7 @@ class Builder {
       const float cosine = flat ? 1 : normal.dot(axis);
       least_cosine = std::min(least_cosine, cosine);
       least_around = std::min(least_around, flat ? -1 : cosine);
-      for (std::uint32_t neighbour : neighbours_.across[order_[k]])
+      for (std::uint32_t neighbour : across_[order_[k]])
         least_around =
             std::min(least_around,
                      neighbour == no_neighbour || normals_[neighbour].isZero(0) ? -1 : normals_[neighbour].dot(axis));
@@ -199,7 +240,7 @@ class Builder {
   BeamScene& scene_;
   std::span<const Eigen::Vector3f> positions_;
   std::span<const std::array<std::uint32_t, 3>> triangles_;
-  Neighbours neighbours_;
+  std::span<const std::array<std::uint32_t, 3>> across_;
   std::vector<std::uint32_t> order_;
   std::vector<Eigen::Vector3f> centres_, normals_;
 };
@@ -208,7 +249,14 @@ class Builder {
 
 BeamScene::BeamScene(std::span<const Eigen::Vector3f> positions,
                      std::span<const std::array<std::uint32_t, 3>> triangles) {
-  Builder(*this, positions, triangles);
+  const Neighbours neighbours = neighbours_of(positions, triangles);
+  root = Builder(*this, positions, triangles, neighbours.across).build();
+  if (!neighbours.borders.empty()) {
+    const Lids made = lids_over(positions, neighbours.borders);
+    const std::vector<std::array<std::uint32_t, 3>> alone(made.triangles.size(),
+                                                          {no_neighbour, no_neighbour, no_neighbour});
+    lids = Builder(*this, made.positions, made.triangles, alone).build();
+  }
   float largest = 0;
   Eigen::AlignedBox3f box;
   for (const auto& triangle : triangles)

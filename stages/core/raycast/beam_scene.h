@@ -37,11 +37,15 @@ struct BeamScene {
     std::uint32_t child[beam_lanes];  ///< its index
   };
 
-  std::vector<Node> nodes;  ///< the root first; none for no triangles
+  static constexpr std::uint32_t no_node = 0xffffffff;
+
+  std::vector<Node> nodes;
   std::vector<Cluster> clusters;
-  /// Whether the surface ends nowhere: every edge is run through as often one way as the other, edges with ends at the
-  /// same places being one.
-  bool closed = false;
+  std::uint32_t root = no_node;  ///< node above all triangles; no_node for no triangles
+  /// Node above the lids: triangles that close the surface. Edges with ends at the same places being one, each edge of
+  /// triangles and lids together is run through as often one way as the other. no_node where the triangles alone are
+  /// so.
+  std::uint32_t lids = no_node;
   /// A few roundings of the largest coordinate: the slack that makes all tests on boxes and planes conservative.
   float slack = 0;
   /// Hits nearer than this (object units) are looked at again by is_before.

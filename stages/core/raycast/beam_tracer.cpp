@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -15,6 +16,7 @@ constexpr std::uint32_t all_lanes = (1u << beam_lanes) - 1;
 constexpr std::size_t most_of_block = 128, most_of_quarter = 128;
 constexpr float direction_rounding = 1e-6f;  // of unit vectors in float32, with room
 constexpr int few_clusters = 64;             // tested rather than searched
+constexpr int few_directions = 3;            // for which triangles are not packed
 constexpr std::size_t all_of_them = std::numeric_limits<std::size_t>::max();
 
 /// 1 / x, of a tiny number instead of 0; the number's sign is x's.
@@ -98,8 +100,9 @@ BeamTracer::BeamTracer(const BeamScene& scene)
     : scene_(scene),
       kernels_(beam_kernels()),
       node_places_(scene.nodes.size(), unknown_places),
-      cluster_slots_(scene.clusters.size(), unknown) {
-  if (!scene.nodes.empty()) root_.nodes.push_back(0);
+      cluster_slots_(scene.clusters.size(), unknown),
+      packed_(few_clusters) {
+  if (scene.root != BeamScene::no_node) root_.nodes.push_back(scene.root);
 }
 
 void BeamTracer::begin(const BeamPacket& packet) {
@@ -122,6 +125,21 @@ void BeamTracer::begin(const BeamPacket& packet) {
   known_clusters_.clear();
   local_count_ = 0;
   outside_ = stands_outside();
+}
+
+bool BeamTracer::culls_backs(const BeamShaft& shaft) {
+  if (!outside_ || scene_.lids == BeamScene::no_node) return outside_;
+  BeamShaft facing = shaft;
+  facing.outside = true;
+  queue_.assign(1, scene_.lids);
+  while (!queue_.empty()) {
+    const BeamScene::Node& node = scene_.nodes[queue_.back()];
+    queue_.pop_back();
+    const std::uint32_t met = kernels_.meet(facing, node.boxes).met & first_bits(node.count);
+    if ((met & node.is_cluster) != 0) return false;
+    for (std::uint32_t left = met; left != 0; left &= left - 1) queue_.push_back(node.child[__builtin_ctz(left)]);
+  }
+  return true;
 }
 
 BeamShaft BeamTracer::shaft_along(const float (*direction)[3], std::uint32_t which) const {
@@ -147,7 +165,7 @@ BeamShaft BeamTracer::shaft_along(const float (*direction)[3], std::uint32_t whi
   shaft.cone_sine = 2;
   const float scale = squared_length > 0 ? 1 / std::sqrt(squared_length) : 0;
   for (float& along : shaft.cone_axis) along *= scale;
-  shaft.outside = outside_;
+  shaft.outside = false;
   float least_cosine = 1;
   for (std::uint32_t left = which; left != 0; left &= left - 1) {
     const float* along = direction[__builtin_ctz(left)];
@@ -160,12 +178,13 @@ BeamShaft BeamTracer::shaft_along(const float (*direction)[3], std::uint32_t whi
 
 bool BeamTracer::stands_outside() {
   outside_ = false;
-  if (!scene_.closed || scene_.nodes.empty()) return false;
+  if (scene_.root == BeamScene::no_node) return false;
   float direction[3];
   for (int axis = 0; axis < 3; ++axis) direction[axis] = packet_.normal[axis][0];
   const BeamShaft shaft = shaft_along(&direction, 1u);
   alignas(64) float winding[beam_lanes] = {}, doubt[beam_lanes] = {};
-  queue_.assign(1, 0);
+  queue_.assign(1, scene_.root);
+  if (scene_.lids != BeamScene::no_node) queue_.push_back(scene_.lids);
   while (!queue_.empty()) {
     const BeamScene::Node& node = scene_.nodes[queue_.back()];
     queue_.pop_back();
@@ -179,7 +198,7 @@ bool BeamTracer::stands_outside() {
     }
   }
   for (int r = 0; r < beam_lanes; ++r)
-    if (winding[r] != 0 || doubt[r] != 0) return false;
+    if (winding[r] > 0 || doubt[r] != 0) return false;
   return true;
 }
 
@@ -301,7 +320,7 @@ bool BeamTracer::meets_sheet(const Front& front, const BeamShaft& shaft) {
     for (std::uint32_t left =
              kernels_.meet(about_zero, front.boxes[group]).met & own_lanes(front.clusters.size(), group);
          left != 0; left &= left - 1)
-      if (kernels_.hits(span_, direction, outside_, *front.clusters[group * beam_lanes + __builtin_ctz(left)]))
+      if (kernels_.hits(span_, direction, shaft.outside, *front.clusters[group * beam_lanes + __builtin_ctz(left)]))
         return true;
   queue_.assign(front.sheets.begin(), front.sheets.end());
   while (!queue_.empty()) {
@@ -312,7 +331,7 @@ bool BeamTracer::meets_sheet(const Front& front, const BeamShaft& shaft) {
       const int i = __builtin_ctz(left);
       if ((node.is_cluster >> i & 1) == 0)
         queue_.push_back(node.child[i]);
-      else if (kernels_.hits(span_, direction, outside_, scene_.clusters[node.child[i]]))
+      else if (kernels_.hits(span_, direction, shaft.outside, scene_.clusters[node.child[i]]))
         return true;
     }
   }
@@ -348,46 +367,73 @@ bool BeamTracer::add_cluster(const BeamScene::Node& node, int child, bool whole,
   return true;
 }
 
-BeamTracer::Verdict BeamTracer::search_along(const float (*direction)[3], int d, const Front*& front) {
-  front = &of_quarter_;
-  if (of_quarter_.nodes.empty() && of_quarter_.sheets.empty() &&
-      static_cast<int>(of_quarter_.clusters.size()) <= few_clusters)
-    return Verdict::mixed;
-  const BeamShaft shaft = shaft_along(direction, 1u << d);
-  const Verdict verdict = search(of_quarter_, shaft, all_of_them, of_direction_);
-  if (verdict == Verdict::mixed) open_sheets(shaft, of_direction_);
-  front = &of_direction_;
-  return verdict;
+BeamShaft BeamTracer::shaft_within(const BeamShaft* wider, const float (*direction)[3], std::uint32_t which) {
+  BeamShaft shaft = shaft_along(direction, which);
+  shaft.outside = (wider != nullptr && wider->outside) || culls_backs(shaft);
+  return shaft;
+}
+
+void BeamTracer::settle(Verdict verdict, std::uint32_t which, BeamWeights& weights) {
+  if (verdict == Verdict::lit) weights.lit |= which;
+  if (verdict == Verdict::hidden)
+    for (; which != 0; which &= which - 1) std::fill_n(weights.weight[__builtin_ctz(which)], beam_lanes, 0.f);
 }
 
 void BeamTracer::trace(const BeamBlock& block, BeamWeights& weights) {
   weights.facing = kernels_.face(packet_, block.direction, block.count, weights);
   weights.lit = 0;
-  // Settles a verdict on some directions; returns whether it does.
-  const auto settle = [&](Verdict verdict, std::uint32_t which) {
-    if (verdict == Verdict::lit) weights.lit |= which;
-    if (verdict == Verdict::hidden)
-      for (; which != 0; which &= which - 1) std::fill_n(weights.weight[__builtin_ctz(which)], beam_lanes, 0.f);
-    return verdict != Verdict::mixed;
-  };
   if (weights.facing == 0) return;
-  if (settle(search(root_, shaft_along(block.direction, weights.facing), most_of_block, of_block_), weights.facing))
-    return;
-  for (const std::uint32_t quarter : block.quarter) {
-    const std::uint32_t facing = weights.facing & quarter;
-    if (facing == 0) continue;
-    if (settle(search(of_block_, shaft_along(block.direction, facing), most_of_quarter, of_quarter_), facing)) continue;
-    int first = 0;
-    for (std::uint32_t left = facing; left != 0; left &= left - 1) {
-      const int d = __builtin_ctz(left);
-      const Front* front = nullptr;
-      if (settle(search_along(block.direction, d, front), 1u << d)) continue;
-      const BeamRay ray{
-          block.direction[d], front->clusters.data(), static_cast<int>(front->clusters.size()), front->boxes.data(),
-          outside_,           scene_.doubtful};
-      const auto shade = ray.candidate_count > few_clusters ? kernels_.shade_crowded : kernels_.shade;
-      if (!shade(packet_, span_, ray, first, weights.weight[d])) weights.lit |= 1u << d;
+  const BeamShaft shaft = shaft_within(nullptr, block.direction, weights.facing);
+  const Verdict verdict = search(root_, shaft, most_of_block, of_block_);
+  settle(verdict, weights.facing, weights);
+  if (verdict != Verdict::mixed) return;
+  for (const std::uint32_t quarter : block.quarter)
+    if ((weights.facing & quarter) != 0) trace_quarter(block, weights.facing & quarter, shaft, weights);
+}
+
+void BeamTracer::pack(const BeamShaft& shaft) {
+  Front& front = of_quarter_;
+  const std::size_t count = static_cast<std::size_t>(kernels_.pack(shaft, span_, front.clusters.data(),
+                                                                   static_cast<int>(front.clusters.size()),
+                                                                   packed_.data(), front.boxes.data()));
+  front.clusters.resize(count);
+  for (std::size_t k = 0; k < count; ++k) front.clusters[k] = &packed_[k];
+}
+
+void BeamTracer::trace_quarter(const BeamBlock& block, std::uint32_t facing, const BeamShaft& of_block,
+                               BeamWeights& weights) {
+  const BeamShaft of_quarter = shaft_within(&of_block, block.direction, facing);
+  const Verdict verdict = search(of_block_, of_quarter, most_of_quarter, of_quarter_);
+  settle(verdict, facing, weights);
+  if (verdict != Verdict::mixed) return;
+  const bool is_small = of_quarter_.nodes.empty() && of_quarter_.sheets.empty() &&
+                        static_cast<int>(of_quarter_.clusters.size()) <= few_clusters;
+  if (is_small && std::popcount(facing) >= few_directions) pack(of_quarter);
+  const bool knows_culling = of_quarter.outside || !outside_ || scene_.lids == BeamScene::no_node;
+  int first = 0;
+  for (; facing != 0; facing &= facing - 1) {
+    const int d = __builtin_ctz(facing);
+    const Front* front = &of_quarter_;
+    bool outside = of_quarter.outside;
+    if (!is_small || !knows_culling) {
+      const BeamShaft along = shaft_within(&of_quarter, block.direction, 1u << d);
+      outside = along.outside;
+      if (!is_small) {
+        front = &of_direction_;
+        const Verdict alone = search(of_quarter_, along, all_of_them, of_direction_);
+        settle(alone, 1u << d, weights);
+        if (alone != Verdict::mixed) continue;
+        open_sheets(along, of_direction_);
+      }
     }
+    const BeamRay ray{block.direction[d],
+                      front->clusters.data(),
+                      static_cast<int>(front->clusters.size()),
+                      front->boxes.data(),
+                      outside,
+                      scene_.doubtful};
+    const auto shade = ray.candidate_count > few_clusters ? kernels_.shade_crowded : kernels_.shade;
+    if (!shade(packet_, span_, ray, first, weights.weight[d])) weights.lit |= 1u << d;
   }
 }
 

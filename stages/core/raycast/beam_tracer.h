@@ -69,8 +69,11 @@ class BeamTracer {
   /// neighbours do so, too. Then no ray passes an edge of the union of these sheets, so that each crosses it as often
   /// as every other: one ray tells for all.
   Verdict search(const Front& from, const BeamShaft& shaft, std::size_t most, Front& found);
-  /// Verdict on a single direction; `front` becomes what is to be tested where it is mixed.
-  Verdict search_along(const float (*direction)[3], int d, const Front*& front);
+  /// Notes what a verdict says of the directions whose bit is set.
+  static void settle(Verdict verdict, std::uint32_t which, BeamWeights& weights);
+  /// Leaves only the triangles of the quarter's clusters that its shaft can meet.
+  void pack(const BeamShaft& shaft);
+  void trace_quarter(const BeamBlock& block, std::uint32_t facing, const BeamShaft& of_block, BeamWeights& weights);
   std::size_t open(std::uint32_t node, const BeamShaft& shaft, Front& found);
   void open_sheets(const BeamShaft& shaft, Front& front);
   bool meets_sheet(const Front& front, const BeamShaft& shaft);
@@ -80,18 +83,29 @@ class BeamTracer {
                BeamBoxes& to) const;
   /// The beam along the directions whose bit is set.
   BeamShaft shaft_along(const float (*direction)[3], std::uint32_t which) const;
+  /// The same within a wider beam, none for nullptr, and whether backs are culled.
+  BeamShaft shaft_within(const BeamShaft* wider, const float (*direction)[3], std::uint32_t which);
+  /// Whether no receiver lies within the surface that triangles and lids make together, by winding numbers.
   bool stands_outside();
+  /// Whether only triangles that face the rays of the shaft count, because what turns its back to a ray lies behind one
+  /// that faces it.
+  ///
+  /// From a place whose winding number is not above 0, a ray enters the closed surface of triangles and lids at least
+  /// as often as it leaves it. Where it enters through no lid, it enters through as many triangles as it leaves through
+  /// or more: if it meets any triangle, it meets one that faces it.
+  bool culls_backs(const BeamShaft& shaft);
 
   const BeamScene& scene_;
   const BeamKernels& kernels_;
   BeamPacket packet_;
   BeamSpan span_;
-  bool outside_ = false;                     ///< only triangles that face the ray count
+  bool outside_ = false;                     ///< no receiver is within the surface that lids close
   std::vector<BeamPlaces> node_places_;      ///< by node, of its children
   std::vector<std::int32_t> cluster_slots_;  ///< by cluster: its index in local_, none or unknown
   std::vector<std::uint32_t> known_nodes_, known_clusters_;
   std::deque<LocalCluster> local_;  ///< the first local_count_ are the packet's
   std::size_t local_count_ = 0;
+  std::vector<BeamScene::Cluster> packed_;  ///< of the quarter
   std::vector<std::uint32_t> queue_;
   Front root_, of_block_, of_quarter_, of_direction_;
 };
