@@ -224,8 +224,10 @@ BakeVerification verify(const BakeResult& result, const std::vector<TransferVect
   const bool is_scattered = !result.arriving.empty();
   const std::vector<TransferVectors>& baked = is_scattered ? result.arriving : result.channels;
 
-  // Step 1: the other backend, over the very same directions.
-  const BakeBackend other = result.backend == BakeBackend::embree ? BakeBackend::egl : BakeBackend::embree;
+  // Step 1: another backend, over the very same directions.
+  const BakeBackend other = result.backend != BakeBackend::embree        ? BakeBackend::embree
+                            : settings.backend == BakeBackend::automatic ? BakeBackend::beams
+                                                                         : BakeBackend::egl;
   BakeSettings other_settings = settings;
   other_settings.backend = other;
   other_settings.max_error = "none";

@@ -105,7 +105,7 @@ OptionSet bake_options(BakeSettings& settings) {
               "vectors as texels held out say; 0 bakes every texel")
       .choice("backend", settings.backend, backend_words,
               "Shadows from depth maps on the GPU, from beams of rays on the CPU, or ray by ray from Embree, the "
-              "reference; auto: egl if EGL has a GPU, else beams")
+              "reference; auto: egl if EGL has a GPU, else beams, but embree below 192 directions")
       .choice(
           "receiver", settings.receiver, {{"high", BakeReceiver::high}, {"low", BakeReceiver::low}},
           "Which surface receives light: the high mesh's point of a texel (needs --detail) or of a vertex (the closest "

@@ -11,9 +11,19 @@
 
 namespace kiln {
 
+namespace {
+
+/// Directions from which on beams are faster than rays, on all meshes measured (docs/benchmarks.md): blocks of fewer
+/// directions are too wide for one search to settle many of them.
+constexpr int enough_for_beams = 192;
+
+}  // namespace
+
 BakeBackend choose_backend(const BakeSettings& settings) {
   if (settings.backend != BakeBackend::automatic) return settings.backend;
-  return has_hardware_egl(settings.gl_device) ? BakeBackend::egl : BakeBackend::beams;
+  if (has_hardware_egl(settings.gl_device)) return BakeBackend::egl;
+  const bool is_few = settings.directions < enough_for_beams && settings.max_error == "none";
+  return is_few ? BakeBackend::embree : BakeBackend::beams;
 }
 
 float ray_offset_of(const BakeSettings& settings, std::span<const Eigen::Vector3f> hull) {

@@ -11,7 +11,8 @@
 
 namespace kiln {
 
-/// `automatic` becomes egl where EGL has a GPU, else beams.
+/// `automatic` becomes egl where EGL has a GPU, else beams, but embree for few directions. The settings alone decide,
+/// not a clock, so that the same bake has the same bytes.
 BakeBackend choose_backend(const BakeSettings& settings);
 
 /// How far rays start off their receivers, object units: what the settings say of the diagonal of the occluders, or
