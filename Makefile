@@ -3,19 +3,25 @@
 #   make          build everything into build/release
 #   make demo     build the programs, then run pipeline.yaml; ends by naming the report
 #   make test     build, then run all tests
+#   make install  install programs, the runtime and its headers; PREFIX=/usr/local, DESTDIR for packagers
+#   make package  a .deb of the same, in build/release
 #   make clean    remove what was built and made
 
 PRESET ?= release
 JOBS   ?= $(shell nproc)
 BUILD  := build/$(PRESET)
+PREFIX ?= /usr/local
 
-.PHONY: build programs configure demo test clean
+.PHONY: build programs pages configure demo test install package clean
 
 build: configure
 	cmake --build $(BUILD) -j $(JOBS)
 
 programs: configure
 	cmake --build $(BUILD) -j $(JOBS) --target programs
+
+pages: configure
+	cmake --build $(BUILD) -j $(JOBS) --target programs pages
 
 configure:
 	@tools/setup
@@ -26,6 +32,12 @@ demo: programs
 
 test: build
 	ctest --preset $(PRESET) -j $(JOBS)
+
+install: pages
+	cmake --install $(BUILD) --prefix $(PREFIX)
+
+package: pages
+	cd $(BUILD) && cpack
 
 clean:
 	rm -rf $(BUILD) out

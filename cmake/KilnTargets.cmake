@@ -14,7 +14,7 @@ endif()
 add_library(kiln_flags INTERFACE)
 # -Wrestrict of GCC 12 misfires on std::string concatenation (GCC bug 105651).
 target_compile_options(kiln_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wno-restrict -Werror)
-target_include_directories(kiln_flags INTERFACE ${PROJECT_SOURCE_DIR}/stages/core ${PROJECT_SOURCE_DIR}/stages)
+target_include_directories(kiln_flags INTERFACE ${PROJECT_SOURCE_DIR}/stages/core ${PROJECT_SOURCE_DIR}/stages ${PROJECT_SOURCE_DIR})
 target_compile_definitions(kiln_flags INTERFACE KILN_VERSION="${PROJECT_VERSION}")
 if(KILN_SANITIZE)
   target_compile_options(kiln_flags INTERFACE -fsanitize=${KILN_SANITIZE} -fno-omit-frame-pointer)

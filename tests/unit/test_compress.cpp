@@ -23,7 +23,7 @@
 #include "image/image_file.h"
 #include "mesh/draco_file.h"
 #include "prt_folders.h"
-#include "relight/decode/plane_weights.h"
+#include "runtime/decode/plane_weights.h"
 #include "scratch.h"
 #include "sh/light_spec.h"
 #include "shapes.h"

@@ -7,11 +7,19 @@ fault() { echo "FAULT: $*"; faults=1; }
 
 for folder in "$source_folder"/stages/*/; do
   stage=$(basename "$folder")
-  for other in simplify atlas normals bake compress probes relight report; do
+  for other in simplify atlas normals bake compress probes report; do
     [ "$stage" = "$other" ] && continue
     grep -rnE "#include \"(stages/)?$other/" "$folder" --include=*.h --include=*.cpp && fault "$stage includes $other"
   done
 done
+
+# The runtime stands on core alone, and its headers on none of the house.
+grep -rnE '#include "(tools|lights|render|view|kiln)/' "$source_folder/runtime" --include=*.h --include=*.cpp |
+  grep -v '"kiln/[a-z_/]*\.h"' && fault "the runtime includes tools"
+for stage in simplify atlas normals bake compress probes report; do
+  grep -rnE "#include \"$stage/" "$source_folder/runtime" --include=*.h --include=*.cpp && fault "the runtime includes $stage"
+done
+grep -rnE '#include' "$source_folder/runtime/include" | grep -vE '#include (<[a-z_]+>|"kiln/)' && fault "installed headers include the house"
 
 # The EGL engine can be carried to a bare machine.
 ldd "$engine_program" | grep -E 'OpenImageIO|embree|draco|OpenMesh|tbb|gmp|fmt|xxhash' && fault "the EGL engine links more than EGL, GL and Eigen"
@@ -20,7 +28,7 @@ ldd "$engine_program" | grep -q EGL || fault "$engine_program does not look like
 lines() { wc -l < "$1"; }
 while IFS= read -r file; do
   [ "$(lines "$file")" -le 600 ] || fault "$file has more than 600 lines"
-done < <(find "$source_folder/stages" "$source_folder/tools" "$source_folder/shaders" "$source_folder/tests" \( -name '*.cpp' -o -name '*.h' -o -name '*.glsl' -o -name '*.comp' -o -name '*.vert' -o -name '*.frag' \))
+done < <(find "$source_folder/stages" "$source_folder/runtime" "$source_folder/tools" "$source_folder/examples" "$source_folder/shaders" "$source_folder/tests" \( -name '*.cpp' -o -name '*.h' -o -name '*.glsl' -o -name '*.comp' -o -name '*.vert' -o -name '*.frag' \))
 
 [ $faults = 0 ] && echo "the house keeps its arrows"
 exit $faults

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-#include "relight/light/scene_lights.h"
+#include "runtime/light/scene_lights.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 #include "sh/light_spec.h"

@@ -5,9 +5,9 @@
 
 #include "base/errors.h"
 #include "prt_folders.h"
-#include "relight/decode/plane_weights.h"
-#include "relight/light/incident_samples.h"
-#include "relight/light/scene_lights.h"
+#include "runtime/decode/plane_weights.h"
+#include "runtime/light/incident_samples.h"
+#include "runtime/light/scene_lights.h"
 #include "scratch.h"
 #include "sh/light_spec.h"
 #include "sh/rotation.h"

@@ -4,15 +4,15 @@
 
 #include "base/command_line.h"
 #include "base/errors.h"
+#include "base/help_pages.h"
 #include "kiln/commands.h"
 
 namespace {
 
 constexpr const char* purpose =
     "Runs a content pipeline: every stage of every asset, through make, where something changed.\n"
-    "Exit status: 0 done, 1 failed inside, 2 wrong usage, 3 bad input, 4 a quality budget was missed, 5 the machine "
-    "lacks\n"
-    "something; where several stages fail, the first of 1, 5, 3, 2, 4 that occurred.";
+    "Exit status: 0 done, 1 failed inside, 2 wrong usage, 3 bad input, 4 a quality budget was missed,\n"
+    "5 the machine lacks something; where several stages fail, the first of 1, 5, 3, 2, 4 that occurred.";
 
 }  // namespace
 
@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
     CLI::App app(purpose, "kiln");
     app.set_version_flag("--version", std::string(KILN_VERSION));
     app.require_subcommand(1);
+    add_help_forms(app);
     Commands commands(app);
     try {
       app.parse(argc, argv);

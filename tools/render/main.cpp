@@ -3,8 +3,7 @@
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "base/stopwatch.h"
-#include "gpu/egl_context.h"
-#include "relight/light/light_command.h"
+#include "lights/light_command.h"
 #include "render/render.h"
 
 int main(int argc, char** argv) {
@@ -52,9 +51,8 @@ int main(int argc, char** argv) {
 
     // Run, and save picture after picture.
     const Stopwatch watch;
-    const EglContext context(settings.gl_device, command.threads());
-    const Json metrics =
-        render_to_files(outputs, file.filename().string(), scene, settings, context, command.progress("render"));
+    const Json metrics = render_to_files(outputs, file.filename().string(), scene, settings, command.threads(),
+                                         command.progress("render"));
     command.finish_without_record(outputs, command.result(watch.seconds(), metrics));
   });
 }

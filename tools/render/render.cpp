@@ -8,13 +8,15 @@
 #include <numbers>
 
 #include "base/errors.h"
+#include "gpu/egl_context.h"
 #include "image/image_file.h"
+#include "lights/light_command.h"
 #include "mesh/camera_record.h"
-#include "relight/draw/scene_renderer.h"
-#include "relight/light/light_command.h"
-#include "relight/output/contact_sheet.h"
-#include "relight/output/picture.h"
-#include "relight/render_metrics.h"
+#include "render/output/contact_sheet.h"
+#include "render/output/picture.h"
+#include "render/render_metrics.h"
+#include "render/texture_space.h"
+#include "runtime/draw/scene_renderer.h"
 
 namespace kiln {
 
@@ -165,6 +167,13 @@ RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& lig
                      " of the first asset; expected 0,0,0, where the probes are its own");
   if ((paths.each_light || paths.each_asset) && (is_sheet(settings) || settings.frames > 1))
     throw WrongUsage("each-light and each-asset: found a sheet or --frames; expected one picture");
+  if (settings.space == PictureSpace::texture &&
+      (paths.assets.size() > 1 || is_sheet(settings) || settings.frames > 1 || paths.each_light || paths.each_asset ||
+       !paths.places.empty() || !paths.probes.empty() || settings.technique == TechniqueChoice::phong ||
+       settings.technique == TechniqueChoice::normal_map || settings.technique == TechniqueChoice::vertex_prt))
+    throw WrongUsage(
+        "space: found texture with several pictures or assets, a place, probes, or a technique without "
+        "planes; expected one asset, lit where it was baked");
   if (paths.each_asset && (!paths.places.empty() || !paths.probes.empty()))
     throw WrongUsage("each-asset: found --place or --probes; expected assets where they were baked");
   const LightSettings given = chosen_lights(light_settings, paths.light_file);
@@ -246,10 +255,22 @@ class PictureSeries {
   int drawn_ = 0;  ///< pictures
 };
 
+/// The relit atlas of the only asset.
+Json render_texture(OutputSet& outputs, const std::string& name, const RenderScene& scene,
+                    const RenderSettings& settings) {
+  const bool other_form = settings.technique == TechniqueChoice::compressed && scene.compressed;
+  const PrtAsset& asset = other_form ? *scene.compressed : scene.assets.front();
+  const Image<float> radiance = relit_atlas(asset, scene.lights, look_of(settings));
+  write_picture(outputs.add(name), radiance, picture_of(settings));
+  return texture_metrics(asset, scene.specs);
+}
+
 }  // namespace
 
 Json render_to_files(OutputSet& outputs, const std::string& name, const RenderScene& scene,
-                     const RenderSettings& settings, const EglContext& context, const ProgressFunction& progress) {
+                     const RenderSettings& settings, int threads, const ProgressFunction& progress) {
+  if (settings.space == PictureSpace::texture) return render_texture(outputs, name, scene, settings);
+  const EglContext context(settings.gl_device, threads);
   if (is_sheet(settings)) return write_sheet(outputs, name, scene, settings, context);
   PictureSeries series(outputs, name, scene, settings, progress);
   const std::size_t count = scene.assets.size();

@@ -9,11 +9,10 @@
 #include "base/options.h"
 #include "base/outputs.h"
 #include "base/progress.h"
-#include "gpu/egl_context.h"
+#include "lights/light_settings.h"
 #include "mesh/placement.h"
-#include "relight/light/light_settings.h"
-#include "relight/light/scene_lights.h"
-#include "relight/render_settings.h"
+#include "render/render_settings.h"
+#include "runtime/light/scene_lights.h"
 
 namespace kiln {
 
@@ -45,8 +44,9 @@ struct RenderScene {
 RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& lights, const RenderSettings& settings);
 
 /// Draws a picture, one for each light or asset, a turntable or a sheet of techniques into files of `outputs`, `name`
-/// being the picture's, and gives the metrics, those of the first picture.
+/// being the picture's, and gives the metrics, those of the first picture; in texture space that of relit_atlas.
+/// `threads` is for a software GL renderer. Throws MachineLacks where there is no GL.
 Json render_to_files(OutputSet& outputs, const std::string& name, const RenderScene& scene,
-                     const RenderSettings& settings, const EglContext& context, const ProgressFunction& progress);
+                     const RenderSettings& settings, int threads, const ProgressFunction& progress);
 
 }  // namespace kiln

@@ -2,7 +2,7 @@
 
 #include "base/command_line.h"
 #include "base/stopwatch.h"
-#include "relight/light/light_command.h"
+#include "lights/light_command.h"
 #include "view/viewer.h"
 
 int main(int argc, char** argv) {

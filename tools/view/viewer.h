@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "base/options.h"
-#include "relight/light/light_settings.h"
-#include "relight/render_settings.h"
+#include "lights/light_settings.h"
+#include "render/render_settings.h"
 #include "view/draw/asset_view.h"
 #include "view/draw/screen.h"
 #include "view/files/file_watch.h"

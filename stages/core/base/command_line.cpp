@@ -17,6 +17,7 @@
 
 #include "base/errors.h"
 #include "base/file_names.h"
+#include "base/help_pages.h"
 #include "base/stopwatch.h"
 
 namespace kiln {
@@ -51,6 +52,7 @@ CommandLine::CommandLine(std::string program, const std::string& purpose)
       app_(std::make_unique<CLI::App>(purpose, program_)) {
   app_->set_version_flag("--version", std::string(KILN_VERSION));
   app_->get_formatter()->column_width(38);
+  add_help_forms(*app_);
   app_->add_flag("--json", json_, "Print the result as one JSON object on stdout")->group("Common");
   app_->add_flag("--quiet", quiet_, "Print warnings and errors only")->group("Common");
   app_->add_option("--threads", threads_, "Threads, 0 for all cores (default 0; 0 to 1024)")

@@ -16,11 +16,14 @@ Eigen::Vector3f vector_of(const Json& json) {
 }  // namespace
 
 Json to_json(const Camera& camera) {
-  return {{"position", list(camera.position)},  {"target", list(camera.target)},
-          {"right", list(camera.right)},        {"up", list(camera.up)},
-          {"forward", list(camera.forward)},    {"half_width", camera.half_width},
-          {"half_height", camera.half_height},  {"near_distance", camera.near_distance},
-          {"far_distance", camera.far_distance}};
+  const Eigen::Matrix4f matrix = camera.clip_from_object();
+  Json rows = Json::array();
+  for (int row = 0; row < 4; ++row) rows.push_back({matrix(row, 0), matrix(row, 1), matrix(row, 2), matrix(row, 3)});
+  return {{"position", list(camera.position)},   {"target", list(camera.target)},
+          {"right", list(camera.right)},         {"up", list(camera.up)},
+          {"forward", list(camera.forward)},     {"half_width", camera.half_width},
+          {"half_height", camera.half_height},   {"near_distance", camera.near_distance},
+          {"far_distance", camera.far_distance}, {"clip_from_object", rows}};
 }
 
 Camera camera_of_json(const Json& json) {

@@ -6,7 +6,8 @@
 namespace kiln {
 
 /// A camera as results have it: position, target and unit axes in object space, half the width and height of the
-/// picture's plane at distance 1, the nearest and the farthest depth.
+/// picture's plane at distance 1, the nearest and the farthest depth,
+/// and the rows of the matrix from object space to GL clip space, for column vectors.
 Json to_json(const Camera& camera);
 
 /// The same camera, to the bit. Throws what nlohmann::json throws for anything else.

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "relight/draw/asset_renderer.h"
-#include "relight/render_settings.h"
+#include "render/render_settings.h"
+#include "runtime/draw/asset_renderer.h"
 #include "view/draw/canvas.h"
 #include "view/draw/inspection.h"
 #include "view/files/view_scene.h"

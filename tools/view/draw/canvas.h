@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "relight/draw/frame.h"
+#include "runtime/draw/frame.h"
 
 namespace kiln {
 

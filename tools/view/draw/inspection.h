@@ -4,8 +4,8 @@
 
 #include "asset/prt_asset.h"
 #include "gpu/gl_objects.h"
-#include "relight/draw/asset_uploads.h"
-#include "relight/draw/frame.h"
+#include "runtime/draw/asset_uploads.h"
+#include "runtime/draw/frame.h"
 
 namespace kiln {
 

@@ -10,7 +10,7 @@
 #include "base/options.h"
 #include "gpu/gl_objects.h"
 #include "image/image.h"
-#include "relight/output/picture.h"
+#include "render/output/picture.h"
 #include "view/draw/canvas.h"
 #include "view/draw/panel.h"
 #include "view/state/view_state.h"

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "base/errors.h"
-#include "relight/decode/plane_weights.h"
+#include "runtime/decode/plane_weights.h"
 
 namespace kiln {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "asset/prt_asset.h"
-#include "relight/draw/technique.h"
+#include "runtime/draw/technique.h"
 #include "view/state/view_state.h"
 
 namespace kiln {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "relight/light/light_settings.h"
+#include "lights/light_settings.h"
 #include "view/files/asset_forms.h"
 #include "view/state/view_lights.h"
 

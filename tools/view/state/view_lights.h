@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "asset/prt_asset.h"
-#include "relight/light/incident_samples.h"
-#include "relight/light/scene_lights.h"
+#include "runtime/light/incident_samples.h"
+#include "runtime/light/scene_lights.h"
 #include "view/state/view_state.h"
 
 namespace kiln {

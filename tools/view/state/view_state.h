@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "relight/draw/scene_renderer.h"
-#include "relight/draw/technique.h"
+#include "runtime/draw/scene_renderer.h"
+#include "runtime/draw/technique.h"
 #include "sh/windows.h"
 #include "view/state/orbit.h"
 

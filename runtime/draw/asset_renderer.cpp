@@ -1,0 +1,201 @@
+#include "runtime/draw/asset_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "gpu/program.h"
+#include "runtime/decode/plane_weights.h"
+
+namespace kiln {
+
+namespace {
+
+// Bindings and locations as shaders/common_prt.glsl and shaders/render_* have them.
+constexpr GLuint planes_unit = 0, cluster_ids_unit = 1, light_unit = 2, albedo_unit = 3, vertex_transfer_unit = 4,
+                 normal_map_unit = 5, phong_binding = 1;
+constexpr GLint clip_from_object_location = 0, layers_location = 1, clusters_location = 2, asset_number_location = 3;
+
+bool is_textured(Technique technique) {
+  return technique == Technique::textured_prt || technique == Technique::compressed;
+}
+
+/// The buffer of shaders/render_phong.frag.
+std::vector<float> phong_buffer(const AssetLight& light, const std::array<float, 3>& albedo, const SurfaceLook& look,
+                                const Eigen::Vector3f& eye) {
+  std::vector<float> values = {albedo[0], albedo[1], albedo[2], look.specular, eye[0], eye[1], eye[2], look.shininess};
+  const LightCoefficients rest = scale_light(irradiance(light.rest), 1 / std::numbers::pi);
+  for (std::size_t i = 0; i < 9; ++i)
+    for (std::size_t c = 0; c < 4; ++c) values.push_back(c < 3 ? rest.channels[c][i] : 0);
+  for (const DirectLight& direct : light.direct) {
+    values.insert(values.end(), {direct.place[0], direct.place[1], direct.place[2], direct.radius});
+    values.insert(values.end(), {direct.radiance[0], direct.radiance[1], direct.radiance[2], 0});
+  }
+  return values;
+}
+
+}  // namespace
+
+AssetRenderer::AssetRenderer(const PrtAsset& asset, int incident_samples)
+    : asset_(asset),
+      samples_(place_incident_samples(asset.mesh, incident_samples)),
+      mesh_(upload_mesh(asset.mesh, samples_)),
+      albedo_map_(upload_albedo(asset.albedo.picture)),
+      white_(upload_albedo(Image<std::uint8_t>(1, 1, 3, 255))) {}
+
+std::array<float, 3> AssetRenderer::albedo() const {
+  constexpr float grey = 0.8f;
+  const bool own = look_.own_albedo && asset_.albedo.known;
+  std::array<float, 3> albedo = look_.albedo.value_or(own ? std::array{1.f, 1.f, 1.f} : std::array{grey, grey, grey});
+  for (std::size_t c = 0; own && c < 3; ++c) albedo[c] *= asset_.albedo.constant[static_cast<Eigen::Index>(c)];
+  return albedo;
+}
+
+void AssetRenderer::bind_albedo() const {
+  if (albedo_map_.texture.name() != 0)
+    glBindTextureUnit(albedo_unit, (look_.own_albedo ? albedo_map_ : white_).texture.name());
+}
+
+const GlProgram& AssetRenderer::program(Pass pass) {
+  if (const auto found = programs_.find(pass); found != programs_.end()) return found->second;
+  ShaderDefines defines = {{"PRT_SAMPLES", std::to_string(samples_.count())}};
+  if (is_clustered()) defines.emplace_back("PRT_CLUSTERED", "1");
+  if (albedo_map_.texture.name() != 0) defines.emplace_back("ALBEDO_MAP", "1");
+  ShaderDefines phong = defines;
+  phong.emplace_back("PHONG", "1");
+  ShaderDefines normal_mapped = phong;
+  normal_mapped.emplace_back("NORMAL_MAP", "1");
+  GlProgram made;
+  switch (pass) {
+    case Pass::phong:
+      made = load_program({"render_surface.vert", "render_phong.frag"}, phong);
+      break;
+    case Pass::normal_map:
+      made = load_program({"render_surface.vert", "render_phong.frag"}, normal_mapped);
+      break;
+    case Pass::vertex_prt:
+      made = load_program({"render_vertex_prt.vert", "render_vertex_prt.frag"}, defines);
+      break;
+    case Pass::prt:
+      made = load_program({"render_surface.vert", "render_prt.frag"}, defines);
+      break;
+    case Pass::appearance:
+      made = load_program({"render_surface.vert", "render_appearance.frag"}, defines);
+      break;
+    case Pass::deferred:
+      made = load_program({"render_deferred.vert", "render_deferred.frag"}, defines);
+      break;
+  }
+  return programs_.emplace(pass, std::move(made)).first->second;
+}
+
+void AssetRenderer::prepare(Technique technique) {
+  require_technique(technique, asset_);
+  if (is_textured(technique) && planes_.texture.name() == 0) {
+    planes_ = upload_planes(asset_);
+    cluster_ids_ = upload_cluster_ids(asset_);
+  }
+  if (technique == Technique::normal_map && normal_map_.texture.name() == 0) normal_map_ = upload_normal_map(asset_);
+  if (technique == Technique::vertex_prt && vertex_transfer_.texture.name() == 0)
+    vertex_transfer_ = upload_vertex_transfer(asset_);
+}
+
+void AssetRenderer::set_light(const AssetLight& light, const SurfaceLook& look) {
+  if (light.samples.size() != samples_.points.size())
+    throw std::invalid_argument("AssetRenderer: the light must have one sample for each of the asset's points");
+  set_light_ = light;
+  look_ = look;
+  std::vector<std::vector<PlaneWeights>> plane_weights, vertex_weights;
+  for (const LightCoefficients& sample : light.samples) {
+    if (!asset_.is_per_vertex()) plane_weights.push_back(cluster_weights(asset_, sample, albedo()));
+    vertex_weights.push_back({vector_weights(asset_, sample, albedo())});
+  }
+  if (!plane_weights.empty()) light_ = upload_light(plane_weights);
+  vertex_light_ = upload_light(vertex_weights);
+}
+
+void AssetRenderer::bind_prt(const GlProgram& used, const UploadedTexture& light, int layers, int clusters) const {
+  glBindTextureUnit(light_unit, light.texture.name());
+  glProgramUniform1i(used.name(), layers_location, layers);
+  glProgramUniform1i(used.name(), clusters_location, clusters);
+}
+
+void AssetRenderer::draw_triangles(const GlProgram& used, const Eigen::Matrix4f& clip_from_object) const {
+  glProgramUniformMatrix4fv(used.name(), clip_from_object_location, 1, GL_FALSE, clip_from_object.data());
+  glUseProgram(used.name());
+  glBindVertexArray(mesh_.vertices.name());
+  glDrawElements(GL_TRIANGLES, mesh_.index_count, GL_UNSIGNED_INT, nullptr);
+}
+
+void AssetRenderer::draw(Technique technique, const Eigen::Matrix4f& clip_from_object,
+                         const Eigen::Vector3f& eye_object) {
+  prepare(technique);
+  if (!set_light_) throw std::logic_error("AssetRenderer: no light was set");
+  bind_albedo();
+  if (technique == Technique::phong || technique == Technique::normal_map) {
+    const GlProgram& used = program(technique == Technique::phong ? Pass::phong : Pass::normal_map);
+    std::vector<float> values = phong_buffer(*set_light_, albedo(), look_, eye_object);
+    phong_lights_ = make_buffer(std::span<const float>(values));
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, phong_binding, phong_lights_.name());
+    glBindTextureUnit(normal_map_unit, normal_map_.texture.name());
+    draw_triangles(used, clip_from_object);
+  } else if (technique == Technique::vertex_prt) {
+    const GlProgram& used = program(Pass::vertex_prt);
+    bind_prt(used, vertex_light_, layer_count(asset_.vector_length()), 1);
+    glBindTextureUnit(vertex_transfer_unit, vertex_transfer_.texture.name());
+    draw_triangles(used, clip_from_object);
+  } else {
+    const GlProgram& used = program(Pass::prt);
+    bind_planes(used);
+    draw_triangles(used, clip_from_object);
+  }
+  check_gl("drawing the asset");
+}
+
+void AssetRenderer::bind_planes(const GlProgram& used) const {
+  bind_prt(used, light_, layer_count(asset_.planes.size()), asset_.clusters ? asset_.clusters->count : 1);
+  glBindTextureUnit(planes_unit, planes_.texture.name());
+  if (is_clustered()) glBindTextureUnit(cluster_ids_unit, cluster_ids_.texture.name());
+}
+
+void AssetRenderer::draw_appearance(const Eigen::Matrix4f& clip_from_object, int number) {
+  const GlProgram& used = program(Pass::appearance);
+  glProgramUniform1f(used.name(), asset_number_location, static_cast<float>(number));
+  draw_triangles(used, clip_from_object);
+}
+
+void AssetRenderer::shade_appearance(int number) {
+  prepare(natural_technique(asset_));
+  if (!set_light_) throw std::logic_error("AssetRenderer: no light was set");
+  const GlProgram& used = program(Pass::deferred);
+  bind_planes(used);
+  bind_albedo();
+  glProgramUniform1f(used.name(), asset_number_location, static_cast<float>(number));
+  glUseProgram(used.name());
+  glBindVertexArray(mesh_.vertices.name());  // core profile wants one, the shader reads nothing of it
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  check_gl("shading the asset");
+}
+
+GpuMemory AssetRenderer::memory(Technique technique) const {
+  constexpr std::uint64_t number = sizeof(float);
+  GpuMemory memory;
+  memory.indices = static_cast<std::uint64_t>(mesh_.index_count) * sizeof(std::uint32_t);
+  memory.per_vertex = 3 * number;
+  const bool phong = technique == Technique::phong || technique == Technique::normal_map;
+  if (phong) memory.per_vertex += 3 * number;
+  if (technique != Technique::phong && technique != Technique::vertex_prt) memory.per_vertex += 2 * number;
+  if (!phong && samples_.count() > 1) memory.per_vertex += most_incident_samples * number;
+  if (technique == Technique::normal_map) memory.per_mesh += normal_map_.bytes;
+  if (technique == Technique::vertex_prt) {
+    memory.per_mesh += vertex_light_.bytes;
+    memory.per_vertex += vertex_transfer_.bytes / std::max<std::size_t>(1, mesh_.vertex_count);
+  }
+  memory.per_mesh += albedo_map_.bytes;
+  if (is_textured(technique)) memory.per_mesh += planes_.bytes + cluster_ids_.bytes + light_.bytes;
+  return memory;
+}
+
+}  // namespace kiln

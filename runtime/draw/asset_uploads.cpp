@@ -1,0 +1,217 @@
+#include "runtime/draw/asset_uploads.h"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+#include "base/errors.h"
+#include "detail/detail_maps.h"
+#include "detail/seams.h"
+#include "gpu/program.h"
+#include "image/image_file.h"
+
+namespace kiln {
+
+namespace {
+
+// As shaders/common_prt.glsl has it.
+constexpr int light_width = 1024;
+
+// As shaders/render_*.vert have them.
+constexpr GLuint position_location = 0, uv_location = 1, normal_location = 2, contributions_location = 3;
+
+/// Four planes as the channels of one picture; channels without a plane are 0.
+template <class Value>
+std::vector<Value> interleaved(const std::vector<Image<Value>>& planes, std::size_t first) {
+  std::vector<Value> texels(planes_per_layer * planes[first].values().size(), Value{0});
+  for (std::size_t k = first; k < std::min(planes.size(), first + planes_per_layer); ++k)
+    for (std::size_t i = 0; i < planes[k].values().size(); ++i)
+      texels[planes_per_layer * i + k - first] = planes[k].values()[i];
+  return texels;
+}
+
+void set_sampling(const GlTexture& texture, GLint filter) {
+  glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, filter);
+  glTextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, filter);
+  glTextureParameteri(texture.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTextureParameteri(texture.name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+}
+
+void add_attribute(GLuint vertices, GLuint location, const GlBuffer& buffer, int components, int offset = 0,
+                   int stride = 0) {
+  constexpr int bytes = sizeof(float);
+  glVertexArrayVertexBuffer(vertices, location, buffer.name(), offset * bytes,
+                            (stride > 0 ? stride : components) * bytes);
+  glVertexArrayAttribFormat(vertices, location, components, GL_FLOAT, GL_FALSE, 0);
+  glVertexArrayAttribBinding(vertices, location, location);
+  glEnableVertexArrayAttrib(vertices, location);
+}
+
+/// Transfer vectors at the vertices of a textured asset: bilinear lookups at their uvs.
+std::vector<float> looked_up_transfer(const PrtAsset& asset) {
+  const std::size_t length = asset.vector_length();
+  std::vector<float> vectors(asset.mesh.positions.size() * length, 0.f), texels(4 * length);
+  for (std::size_t v = 0; v < asset.mesh.positions.size(); ++v) {
+    const Footprint footprint(asset.mesh.uvs[v], asset.width, asset.height);
+    decode_transfer(asset, footprint.texels, texels);
+    for (std::size_t corner = 0; corner < 4; ++corner)
+      for (std::size_t i = 0; i < length; ++i)
+        vectors[v * length + i] += footprint.weights[corner] * texels[corner * length + i];
+  }
+  return vectors;
+}
+
+}  // namespace
+
+int layer_count(std::size_t planes) { return static_cast<int>((planes + planes_per_layer - 1) / planes_per_layer); }
+
+void require_at_most(GLenum limit, int wanted, const char* what) {
+  GLint most = 0;
+  glGetIntegerv(limit, &most);
+  if (wanted > most)
+    throw MachineLacks(std::string("the GL device takes ") + what + " of at most " + std::to_string(most) + ", and " +
+                       std::to_string(wanted) + " are needed; ask for less, or try --gl-device software");
+}
+
+UploadedTexture upload_planes(const PrtAsset& asset) {
+  const int layers = layer_count(asset.planes.size());
+  require_at_most(GL_MAX_TEXTURE_SIZE, std::max(asset.width, asset.height), "textures with a side");
+  require_at_most(GL_MAX_ARRAY_TEXTURE_LAYERS, layers, "texture arrays with layers");
+  UploadedTexture planes{make_texture(GL_TEXTURE_2D_ARRAY), 0};
+  const bool deep = asset.bits == 16;
+  glTextureStorage3D(planes.texture.name(), 1, deep ? GL_RGBA16 : GL_RGBA8, asset.width, asset.height, layers);
+  check_gl("making room for the coefficient planes");
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  const auto upload = [&](const auto& pictures) {
+    for (int layer = 0; layer < layers; ++layer)
+      glTextureSubImage3D(planes.texture.name(), 0, 0, 0, layer, asset.width, asset.height, 1, GL_RGBA,
+                          deep ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE,
+                          interleaved(pictures, planes_per_layer * static_cast<std::size_t>(layer)).data());
+  };
+  std::visit(upload, asset.pictures);
+  set_sampling(planes.texture, GL_LINEAR);
+  planes.bytes = std::uint64_t{planes_per_layer} * (deep ? 2u : 1u) * static_cast<std::uint64_t>(layers) *
+                 static_cast<std::uint64_t>(asset.width) * static_cast<std::uint64_t>(asset.height);
+  check_gl("uploading the coefficient planes");
+  return planes;
+}
+
+UploadedTexture upload_cluster_ids(const PrtAsset& asset) {
+  if (!asset.clusters || asset.clusters->count == 1) return {};
+  UploadedTexture ids{make_texture(GL_TEXTURE_2D), asset.clusters->ids.values().size()};
+  glTextureStorage2D(ids.texture.name(), 1, GL_R8UI, asset.width, asset.height);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage2D(ids.texture.name(), 0, 0, 0, asset.width, asset.height, GL_RED_INTEGER, GL_UNSIGNED_BYTE,
+                      asset.clusters->ids.values().data());
+  set_sampling(ids.texture, GL_NEAREST);
+  check_gl("uploading the clusters");
+  return ids;
+}
+
+UploadedTexture upload_normal_map(const PrtAsset& asset) {
+  const std::filesystem::path file = asset.ranges_file.parent_path() / asset.normals_file;
+  Image<std::uint16_t> encoded = read_png16(file);
+  if (encoded.channels() != 3)
+    throw BadInput(file.string(), "has " + std::to_string(encoded.channels()) + " channels", "an RGB normal map",
+                   "bake the asset again with kiln-bake");
+  require_at_most(GL_MAX_TEXTURE_SIZE, std::max(encoded.width(), encoded.height()), "textures with a side");
+  if (asset.normal_space == NormalSpace::tangent)
+    encoded = quantise_normals(decode_normals(encoded, asset.normal_space, asset.mesh,
+                                              rasterise_uvs(asset.mesh, encoded.width(), encoded.height())));
+  UploadedTexture map{make_texture(GL_TEXTURE_2D), 8 * encoded.values().size() / 3};  // drivers pad RGB to four
+  glTextureStorage2D(map.texture.name(), 1, GL_RGB16, encoded.width(), encoded.height());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage2D(map.texture.name(), 0, 0, 0, encoded.width(), encoded.height(), GL_RGB, GL_UNSIGNED_SHORT,
+                      encoded.values().data());
+  set_sampling(map.texture, GL_LINEAR);
+  check_gl("uploading the normal map");
+  return map;
+}
+
+UploadedTexture upload_albedo(const Image<std::uint8_t>& picture) {
+  if (picture.values().empty()) return {};
+  require_at_most(GL_MAX_TEXTURE_SIZE, std::max(picture.width(), picture.height()), "textures with a side");
+  UploadedTexture map{make_texture(GL_TEXTURE_2D), 4 * picture.values().size() / 3};  // drivers pad RGB to four
+  glTextureStorage2D(map.texture.name(), 1, GL_SRGB8, picture.width(), picture.height());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage2D(map.texture.name(), 0, 0, 0, picture.width(), picture.height(), GL_RGB, GL_UNSIGNED_BYTE,
+                      picture.values().data());
+  set_sampling(map.texture, GL_LINEAR);
+  check_gl("uploading the albedo");
+  return map;
+}
+
+UploadedVertexTransfer upload_vertex_transfer(const PrtAsset& asset) {
+  const std::vector<float> vectors = asset.is_per_vertex() ? asset.vertex_transfer : looked_up_transfer(asset);
+  const std::size_t length = asset.vector_length(), vertices = asset.mesh.positions.size();
+  const std::size_t stride = planes_per_layer * static_cast<std::size_t>(layer_count(length));
+  require_at_most(GL_MAX_TEXTURE_BUFFER_SIZE, static_cast<int>(stride / planes_per_layer * vertices),
+                  "buffer textures with texels");
+  std::vector<float> padded(stride * vertices, 0.f);
+  for (std::size_t v = 0; v < vertices; ++v)
+    std::copy_n(vectors.begin() + static_cast<std::ptrdiff_t>(v * length), length,
+                padded.begin() + static_cast<std::ptrdiff_t>(v * stride));
+  UploadedVertexTransfer transfer{make_buffer(std::span<const float>(padded)), make_texture(GL_TEXTURE_BUFFER),
+                                  padded.size() * sizeof(float)};
+  glTextureBuffer(transfer.texture.name(), GL_RGBA32F, transfer.buffer.name());
+  check_gl("uploading the vertices' transfer");
+  return transfer;
+}
+
+UploadedTexture upload_light(const std::vector<std::vector<PlaneWeights>>& samples) {
+  const auto layers = static_cast<std::size_t>(layer_count(samples.front().front().scales.size()));
+  const std::size_t clusters = samples.front().size(), stride = 1 + 3 * layers;  // texels
+  const std::size_t texels = samples.size() * clusters * stride;
+  const int rows = static_cast<int>((texels + light_width - 1) / light_width);
+  std::vector<float> values(4 * static_cast<std::size_t>(light_width) * static_cast<std::size_t>(rows), 0.f);
+  float* to = values.data();
+  for (const std::vector<PlaneWeights>& sample : samples)
+    for (const PlaneWeights& weights : sample) {
+      for (std::size_t colour = 0; colour < 3; ++colour) {
+        to[colour] = weights.constant[static_cast<Eigen::Index>(colour)];
+        for (std::size_t plane = 0; plane < weights.scales.size(); ++plane)
+          to[4 * (1 + 3 * (plane / planes_per_layer) + colour) + plane % planes_per_layer] =
+              weights.scales[plane][static_cast<Eigen::Index>(colour)];
+      }
+      to += 4 * stride;
+    }
+  require_at_most(GL_MAX_TEXTURE_SIZE, rows, "textures with a side");
+  UploadedTexture light{make_texture(GL_TEXTURE_2D), values.size() * sizeof(float)};
+  glTextureStorage2D(light.texture.name(), 1, GL_RGBA32F, light_width, rows);
+  glTextureSubImage2D(light.texture.name(), 0, 0, 0, light_width, rows, GL_RGBA, GL_FLOAT, values.data());
+  set_sampling(light.texture, GL_NEAREST);
+  check_gl("uploading the light");
+  return light;
+}
+
+UploadedMesh upload_mesh(const TriangleMesh& mesh, const IncidentSamples& samples) {
+  UploadedMesh uploaded;
+  uploaded.vertex_count = mesh.positions.size();
+  uploaded.index_count = static_cast<GLsizei>(3 * mesh.triangles.size());
+  uploaded.positions = make_buffer(std::span<const Eigen::Vector3f>(mesh.positions));
+  uploaded.normals = make_buffer(std::span<const Eigen::Vector3f>(mesh.normals));
+  uploaded.indices = make_buffer(std::span<const Triangle>(mesh.triangles));
+  uploaded.vertices = make_vertex_array();
+  const GLuint vertices = uploaded.vertices.name();
+  add_attribute(vertices, position_location, uploaded.positions, 3);
+  add_attribute(vertices, normal_location, uploaded.normals, 3);
+  if (!mesh.uvs.empty()) {
+    uploaded.uvs = make_buffer(std::span<const Eigen::Vector2f>(mesh.uvs));
+    add_attribute(vertices, uv_location, uploaded.uvs, 2);
+  }
+  if (samples.count() > 1) {
+    const auto count = static_cast<std::size_t>(samples.count());
+    std::vector<float> padded(most_incident_samples * mesh.positions.size(), 0.f);
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v)
+      std::copy_n(samples.contributions.begin() + static_cast<std::ptrdiff_t>(v * count), count,
+                  padded.begin() + static_cast<std::ptrdiff_t>(v * most_incident_samples));
+    uploaded.contributions = make_buffer(std::span<const float>(padded));
+    add_attribute(vertices, contributions_location, uploaded.contributions, 4, 0, most_incident_samples);
+    add_attribute(vertices, contributions_location + 1, uploaded.contributions, 4, 4, most_incident_samples);
+  }
+  glVertexArrayElementBuffer(vertices, uploaded.indices.name());
+  check_gl("uploading the mesh");
+  return uploaded;
+}
+
+}  // namespace kiln

@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# Installs Kiln into a scratch prefix and uses it as a stranger would: test_install.sh SOURCE_FOLDER BUILD_FOLDER
+set -eu
+source_folder=$1 build_folder=$2
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+fault() { echo "FAULT: $*"; exit 1; }
+
+cmake --install "$build_folder" --prefix "$scratch/prefix" > "$scratch/install.log"
+programs=$scratch/prefix/bin
+
+# A small asset, by the installed programs.
+awk 'BEGIN { pi = 3.14159265; for (j = 1; j < 8; ++j) for (i = 0; i < 16; ++i) print "v", sin(pi * j / 8) * sin(pi * i / 8),
+  cos(pi * j / 8), sin(pi * j / 8) * cos(pi * i / 8); print "v 0 1 0\nv 0 -1 0"
+  for (i = 0; i < 16; ++i) { n = (i + 1) % 16; print "f", 113, 1 + i, 1 + n; print "f", 114, 97 + n, 97 + i
+    for (j = 0; j < 6; ++j) { print "f", 16 * j + 1 + i, 16 * j + 17 + i, 16 * j + 17 + n
+      print "f", 16 * j + 1 + i, 16 * j + 17 + n, 16 * j + 1 + n } } }' > "$scratch/ball.obj"
+cd "$scratch"
+"$programs/kiln-simplify" ball.obj -o low.drc --faces 100 --quiet
+"$programs/kiln-atlas" low.drc -o atlas.drc --size 64 --gutter 2 --quiet
+"$programs/kiln-normals" ball.obj atlas.drc -o normals/ --quiet
+"$programs/kiln-bake" atlas.drc --detail normals/ --occluder ball.obj -o prt/ --bands 3 --directions 256 --quiet
+
+# The examples, by CMake; and one by pkg-config.
+cmake -S "$source_folder/examples" -B examples -DCMAKE_PREFIX_PATH="$scratch/prefix" -DCMAKE_BUILD_TYPE=Release > cmake.log
+cmake --build examples > build.log || { cat build.log; fault "the examples do not build"; }
+export PKG_CONFIG_PATH
+PKG_CONFIG_PATH=$(dirname "$(find prefix -name kiln-runtime.pc)")
+[ "$(pkg-config --modversion kiln-runtime)" = "$("$programs/kiln" --version | awk '{print $NF}')" ] || fault "versions differ"
+library_folder=$(pkg-config --variable=libdir kiln-runtime)
+g++ "$source_folder/examples/cpu_radiance/main.cpp" -o by_pkg_config $(pkg-config --cflags --libs kiln-runtime) \
+  -Wl,-rpath,"$library_folder"
+
+# A convex solid whose facing side a light of radiance 1 reaches: texels of a furnace have radiance 1, in all forms.
+point=$((64 * 32 + 32))
+furnace=$(examples/cpu_radiance prt/ ambient:1 $point)
+echo "$furnace" | awk '{ exit !($2 > .97 && $2 < 1.01 && $2 == $3 && $3 == $4) }' || fault "in a furnace: $furnace"
+[ "$furnace" = "$(./by_pkg_config prt/ ambient:1 $point)" ] || fault "pkg-config's program says otherwise"
+if examples/cpu_radiance nowhere/ 45,30 0 2> error.txt; then fault "a missing folder is no fault"; fi
+grep -q "nowhere.*expected" error.txt || fault "the fault says: $(cat error.txt)"
+
+# A picture of it: as many lit pixels as a ball that fills three quarters of it has.
+examples/gl_viewer prt/ --picture ball.ppm
+tail -c +16 ball.ppm | od -An -v -tu1 -w3 | awk '{ if ($1 > 120) ++lit; if ($1 > 60) ++seen } END { print lit, seen
+  exit !(lit > 20000 && seen > 80000 && seen < 200000) }' || fault "the picture's lit and seen pixels"
+
+# Nothing but the runtime is shown, and nothing under the GPL is in it.
+for library in "$build_folder"/lib/libkiln-runtime*.so; do
+  nm -DC --defined-only "$library" | grep " T " | grep -v "kiln::runtime" && fault "$library shows more than its headers"
+  nm -C "$library" | grep -E "CGAL::" && fault "$library has code of CGAL in it"
+done
+ldd "$build_folder/lib/libkiln-runtime.so" | grep -E "libGL|libepoxy|libEGL|embree|gmp" && fault "the plain runtime links more than it needs"
+grep -rlE "nlohmann|CLI11|epoxy" prefix/include && fault "installed headers need libraries that users do not have"
+echo "installed, built against, and right"

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+
+#include "lights/light_settings.h"
+
+namespace kiln {
+
+/// Reads the lights of a scene from a JSON file: {"lights": ["45,30", "sphere:1,2,1,0.1"], ...}, the other keys being
+/// those of light_options, and "environment", a path relative to the file. Throws BadInput for a file that is no such
+/// object, has a key that is none, or a value that the option refuses.
+LightSettings read_light_file(const std::filesystem::path& file);
+
+}  // namespace kiln
