@@ -4,10 +4,12 @@
 #include <cstdio>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <stdexcept>
 
 #include "base/errors.h"
 #include "base/file_names.h"
 #include "base/process.h"
+#include "base/progress.h"
 #include "kiln/build.h"
 #include "kiln/clean.h"
 #include "kiln/init.h"
@@ -109,6 +111,16 @@ Stage stage_of(const std::string& name) {
   throw WrongUsage(fmt::format("until: found '{}'; expected one of {}", name, fmt::join(stage_words(), ", ")));
 }
 
+/// Runs a program that lies beside this one; gives its exit status.
+int run_sibling(const std::string& name, const std::vector<std::string>& words) {
+  std::vector<std::string> arguments = {(program_folder() / name).string()};
+  arguments.insert(arguments.end(), words.begin(), words.end());
+  const ProcessEnd end = run_process(arguments);
+  throw_if_interrupted();
+  if (end.signal != 0) throw std::runtime_error(fmt::format("{} ended by signal {}", name, end.signal));
+  return end.exit_status;
+}
+
 }  // namespace
 
 Commands::Commands(CLI::App& app) : values_(std::make_unique<Values>()) {
@@ -151,6 +163,12 @@ Commands::Commands(CLI::App& app) : values_(std::make_unique<Values>()) {
     std::fprintf(stderr, "kiln: wrote %s; 'kiln build%s' makes what it says\n", v.file.c_str(),
                  v.file == "pipeline.yaml" ? "" : (" " + shell_quoted(v.file.string())).c_str());
   });
+
+  // A program of its own, since it reads pictures and meshes, and every step of a build starts this one.
+  CLI::App& check = *app.add_subcommand("check", "Hold assets' folders against the format (kiln-check)");
+  check.set_help_flag();
+  check.prefix_command();
+  check.callback([&v, &check] { v.status = run_sibling("kiln-check", check.remaining()); });
 
   // What the Makefile calls.
   CLI::App& step = *app.add_subcommand("step", "Run one stage")->group("");
