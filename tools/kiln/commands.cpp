@@ -15,6 +15,7 @@
 #include "kiln/init.h"
 #include "kiln/makefile.h"
 #include "kiln/pipeline.h"
+#include "kiln/schema.h"
 #include "kiln/step.h"
 
 namespace kiln {
@@ -169,6 +170,11 @@ Commands::Commands(CLI::App& app) : values_(std::make_unique<Values>()) {
   check.set_help_flag();
   check.prefix_command();
   check.callback([&v, &check] { v.status = run_sibling("kiln-check", check.remaining()); });
+
+  // What docs/schema/pipeline.schema.json is made by.
+  app.add_subcommand("schema", "Print the JSON Schema of pipeline.yaml")->group("")->callback([] {
+    std::printf("%s\n", json_text(pipeline_schema(), 2).c_str());
+  });
 
   // What the Makefile calls.
   CLI::App& step = *app.add_subcommand("step", "Run one stage")->group("");
