@@ -10,7 +10,7 @@
 //
 //   R_p = M_k . L' + sum_j w_pj (B_kj . L').
 //
-// Either is a constant and a scale for each stored value, which cluster_weights (stages/relight/decode) computes once
+// Either is a constant and a scale for each stored value, which cluster_weights (runtime/decode) computes once
 // per light. A plane of a colour's own transfer has zeros for the other colours. So any number of bands, channels and
 // components goes through here.
 //

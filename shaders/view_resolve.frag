@@ -1,4 +1,4 @@
-// Samples to the pixels of the finished picture, straight alpha, as stages/relight/output/picture.h has it.
+// Samples to the pixels of the finished picture, straight alpha, as tools/render/output/picture.h has it.
 //
 // VIEW_RADIANCE: linear radiance through exposure and tone curve.
 // VIEW_SIGNED: a number, or its difference from that of another picture, from blue (below 0) by grey to red.

@@ -31,8 +31,8 @@ PlaneWeights coefficient_weights(const PrtAsset& asset, const LightCoefficients&
     for (int colour = 0; colour < 3; ++colour)
       if (asset.channels == 1 || plane.channel == colour)
         level[colour] = albedo[colour] * light.channels[colour][plane.coefficient];
-    constant += level * plane.lowest;
-    weights.scales.emplace_back((level * (plane.highest - plane.lowest)).cast<float>());
+    constant += level * plane.range.lowest;
+    weights.scales.emplace_back((level * plane.range.width()).cast<float>());
   }
   weights.constant = constant.cast<float>();
   return weights;
@@ -46,8 +46,8 @@ PlaneWeights basis_weights(const PrtAsset& asset, int cluster, const LightCoeffi
   for (const PrtPlane& plane : asset.planes) {
     const Eigen::Vector3d level =
         albedo.cwiseProduct(lit(asset, light, asset.clusters->vector(cluster, plane.coefficient)));
-    constant += level * plane.lowest;
-    weights.scales.emplace_back((level * (plane.highest - plane.lowest)).cast<float>());
+    constant += level * plane.range.lowest;
+    weights.scales.emplace_back((level * plane.range.width()).cast<float>());
   }
   weights.constant = constant.cast<float>();
   return weights;

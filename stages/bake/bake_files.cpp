@@ -22,7 +22,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int default_size_texels = 512;
-constexpr const char* albedo_name = "albedo.png";  ///< of the normals stage and of what ships
 
 /// The size that kiln-atlas packed for, from the record beside the atlas.
 Extent packed_size(const fs::path& atlas) {
@@ -126,9 +125,10 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
   if (settings.bake_albedo) take_albedos(scene.receivers, scene.occluders);
   scene.vertex_metrics = {{"receiver_distance_largest", vertices.largest_distance},
                           {"vertices_facing_away", vertices.facing_away}};
-  if (has_albedo_within(settings)) scene.albedo = Json{1, 1, 1};
-  if (const auto given = settings.material.constant(); given && !has_albedo_within(settings))
-    scene.albedo = Json{(*given)[0], (*given)[1], (*given)[2]};
+  if (has_albedo_within(settings))
+    scene.albedo = PrtAlbedo::of_transfer();
+  else if (const auto given = settings.material.constant())
+    scene.albedo = PrtAlbedo::of_constant({(*given)[0], (*given)[1], (*given)[2]});
   return scene;
 }
 
@@ -146,13 +146,12 @@ Json describe_adaptive(const AdaptiveReport& report, int directions) {
           {"share_saved", all > 0 ? static_cast<double>(report.interpolated) / all : 0}};
 }
 
-/// What ranges.json says of the reflectance: that of the settings, else what the normals stage found.
-Json albedo_entry(const DetailMaps& detail, const MaterialSettings& material) {
+/// What ranges.json is to say of the reflectance: that of the settings, else what the normals stage found.
+PrtAlbedo shipped_albedo(const DetailMaps& detail, const MaterialSettings& material) {
   const auto given = material.constant();
-  const Eigen::Vector3f constant =
-      given ? Eigen::Vector3f((*given)[0], (*given)[1], (*given)[2]) : detail.constant_albedo;
-  if (!given && !detail.albedo.values().empty()) return albedo_name;
-  return given || detail.albedo_known ? Json{constant.x(), constant.y(), constant.z()} : Json();
+  if (given) return PrtAlbedo::of_constant({(*given)[0], (*given)[1], (*given)[2]});
+  if (!detail.albedo.values().empty()) return PrtAlbedo::of_picture(albedo_map_name);
+  return detail.albedo_known ? PrtAlbedo::of_constant(detail.constant_albedo) : PrtAlbedo();
 }
 
 Json describe_subsurface(const SubsurfaceReport& report) {
@@ -171,21 +170,24 @@ Json describe_subsurface(const SubsurfaceReport& report) {
 /// Gives what came of storing and of the seams, for bake.json.
 Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeResult& result,
                     const BakeSettings& settings) {
-  AssetFiles files{"atlas.drc", "", scene.albedo, scene.normal_space};
-  fs::copy_file(paths.atlas, outputs.add(files.mesh), fs::copy_options::overwrite_existing);
+  PrtDescription asset;
+  asset.mesh_file = atlas_mesh_name;
+  asset.albedo = scene.albedo;
+  asset.bits = settings.bits;
+  fs::copy_file(paths.atlas, outputs.add(atlas_mesh_name), fs::copy_options::overwrite_existing);
   if (!paths.detail.empty()) {
-    files.normals = "normal.png";
-    fs::copy_file(paths.detail / files.normals, outputs.add(files.normals), fs::copy_options::overwrite_existing);
+    asset.normals_file = normal_map_name;
+    asset.normal_space = scene.normal_space;
+    fs::copy_file(paths.detail / normal_map_name, outputs.add(normal_map_name), fs::copy_options::overwrite_existing);
   } else {
-    outputs.remove_stale("normal.png");
+    outputs.remove_stale(normal_map_name);
   }
-  if (files.albedo == albedo_name)
-    fs::copy_file(paths.detail / albedo_name, outputs.add(albedo_name), fs::copy_options::overwrite_existing);
+  if (!asset.albedo.file.empty())
+    fs::copy_file(paths.detail / albedo_map_name, outputs.add(albedo_map_name), fs::copy_options::overwrite_existing);
   else
-    outputs.remove_stale(albedo_name);
+    outputs.remove_stale(albedo_map_name);
   const Seams seams(scene.atlas, scene.receivers.width, scene.receivers.height);
-  const WrittenPlanes done =
-      write_planes(outputs, result.channels, scene.receivers, settings.bits, files, seams, settings.seams);
+  const WrittenPlanes done = write_planes(outputs, result.channels, scene.receivers, asset, seams, settings.seams);
   outputs.remove_stale(vertex_mesh_name);
   return {{"quantisation_error", done.quantisation_error},
           {"seams",
@@ -230,7 +232,7 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
   std::optional<DetailMaps> detail;
   if (!paths.detail.empty()) {
     detail = load_detail_maps(paths.detail, atlas);
-    scene.albedo = has_albedo_within(settings) ? Json{1, 1, 1} : albedo_entry(*detail, settings.material);
+    scene.albedo = has_albedo_within(settings) ? PrtAlbedo::of_transfer() : shipped_albedo(*detail, settings.material);
     scene.normal_space = detail->normal_space;
   }
 
@@ -332,12 +334,12 @@ Json save_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scen
   if (settings.per_vertex) {
     const std::vector<std::uint32_t> sources =
         write_vertex_planes(outputs, result.channels, scene.receivers, scene.vertex_mesh, settings.bits, scene.albedo);
-    stored = read_vertex_planes(outputs.staging(), scene.receivers, sources);
+    stored = read_transfer(outputs.staging(), stored_vertices(scene.receivers, sources));
     places = {{"vertices", sources.size()}, {"quantisation_error", relative_l2(stored, result.channels)}};
     places.update(scene.vertex_metrics);
   } else {
     places = write_textured(outputs, paths, scene, result, settings);
-    stored = read_planes(outputs.staging(), scene.receivers);
+    stored = read_transfer(outputs.staging(), scene.receivers.texels);
     places.update({{"width", scene.receivers.width}, {"height", scene.receivers.height}});
   }
 

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "asset/prt_asset.h"
 #include "bake/bake.h"
 #include "bake/scene/buried_receivers.h"
 #include "base/command_line.h"
@@ -27,8 +28,8 @@ struct BakeScene {
   void add_warnings(const std::vector<std::string>& further);
 
   NormalSpace normal_space = NormalSpace::object;  ///< of the normal map
-  Json albedo;           ///< of the receivers, as ranges.json has it (AssetFiles); null: unknown
-  BuriedReport buried;   ///< what is not among the receivers
+  PrtAlbedo albedo;                                ///< of the receivers, as ranges.json is to have it
+  BuriedReport buried;                             ///< what is not among the receivers
   double high_area = 0;  ///< of the mesh that receivers on the high mesh stand on, square object units; else 0
 
   // Of a bake per vertex alone.

@@ -69,8 +69,7 @@ class Search {
   double rounding_error() const {
     double sum = 0;
     for (std::size_t k = 0; k < asset_.planes.size(); ++k) {
-      const double step = source_.scale()[static_cast<Eigen::Index>(k)] *
-                          (asset_.planes[k].highest - asset_.planes[k].lowest) / ((1 << asset_.bits) - 1);
+      const double step = source_.scale()[static_cast<Eigen::Index>(k)] * asset_.planes[k].range.step(asset_.bits);
       sum += step * step / 12;
     }
     return error_of(sum * static_cast<double>(source_.covered().size()));

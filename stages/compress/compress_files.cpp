@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fmt/format.h>
 #include <fstream>
 #include <functional>
 #include <tbb/parallel_for.h>
 
+#include "asset/write_asset.h"
 #include "base/errors.h"
 #include "base/outputs.h"
 
@@ -15,8 +15,6 @@ namespace kiln {
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr const char* basis_of_files = "real-sh-orthonormal";
 
 /// A picture to be encoded, made when its turn comes, so that few are in memory at a time.
 struct Work {
@@ -33,24 +31,12 @@ EncodedFiles encode_all(const std::vector<Work>& work, PngEffort effort) {
   return files;
 }
 
-Json shared_head(const char* format, const PrtAsset& asset) {
-  return {{"format", format}, {"version", 1}, {"bands", asset.bands}, {"channels", asset.channels}};
-}
-
-void add_names(Json& head, const PrtAsset& asset) {
-  head["width"] = asset.width;
-  head["height"] = asset.height;
-  head["basis"] = basis_of_files;
-  head["mesh"] = asset.mesh_file;
-  if (!asset.normals_file.empty()) head["normals"] = asset.normals_file;
-  if (asset.normal_space == NormalSpace::tangent) head["normal_space"] = "tangent";
-  if (const Eigen::Vector3d& origin = asset.mesh.frame.origin; !origin.isZero(0))
-    head["origin"] = {origin.x(), origin.y(), origin.z()};
-  const Eigen::Vector3f& constant = asset.albedo.constant;
-  if (!asset.albedo.file.empty())
-    head["albedo"] = asset.albedo.file;
-  else if (asset.albedo.known)
-    head["albedo"] = {constant.x(), constant.y(), constant.z()};
+/// What a form of `asset` says of all but its planes.
+PrtDescription shared_description(const PrtAsset& asset) {
+  PrtDescription form = asset;
+  form.albedo.picture = {};
+  form.planes.clear();
+  return form;
 }
 
 std::uint8_t eight_of_sixteen_bits(std::uint16_t value) { return static_cast<std::uint8_t>((value + 128) / 257); }
@@ -65,53 +51,33 @@ void copy_into(OutputSet& outputs, const fs::path& input, const std::string& nam
                    "bake the asset again with kiln-bake");
 }
 
-/// Planes, weights and descriptions of an earlier run that are not among `written`.
-void remove_stale_files(OutputSet& outputs, const EncodedFiles& written) {
-  for (const auto& entry : fs::directory_iterator(outputs.folder())) {
-    const std::string name = entry.path().filename().string();
-    const bool picture = name.ends_with(".png") && (name.starts_with("coeff_") || name.starts_with("weight_") ||
-                                                    name == "vectors.png" || name == "clusters.png");
-    if (!picture && name != ranges_name && name != pca_name) continue;
-    if (std::none_of(written.begin(), written.end(), [&](const auto& file) { return file.first == name; }))
-      outputs.remove_stale(name);
-  }
-}
-
 }  // namespace
 
 EncodedFiles encode_pca(const StoredPca& stored, const TransferSource& source, PngEffort effort) {
   const PrtAsset& asset = source.asset();
+  PrtDescription form = shared_description(asset);
+  PcaTables& tables = form.pca.emplace();
   std::vector<Work> work;
-  Json planes = Json::array();
   for (std::size_t j = 0; j < stored.weights.size(); ++j) {
     const StoredPicture& plane = stored.weights[j];
-    work.push_back({fmt::format("weight_{:02d}.png", j), [&plane] { return plane.values; }, plane.bits});
-    planes.push_back({{"file", work.back().name}, {"bits", plane.bits}, {"min", plane.lowest}, {"max", plane.highest}});
+    form.planes.push_back({weight_file(static_cast<int>(j)), 0, static_cast<int>(j), plane.range, plane.bits});
+    work.push_back({form.planes.back().file, [&plane] { return plane.values; }, plane.bits});
   }
-  work.push_back({"vectors.png", [&] { return stored.vectors; }, 16});
+  tables.vectors_file = vectors_name;
+  work.push_back({tables.vectors_file, [&] { return stored.vectors; }, 16});
   Image<std::uint16_t> ids;
-  const int clusters = stored.decoded.model.clusters();
-  if (clusters > 1) {
+  tables.clusters = stored.decoded.model.clusters();
+  if (tables.clusters > 1) {
     ids = Image<std::uint16_t>(asset.width, asset.height, 1);
     std::copy(stored.decoded.ids.begin(), stored.decoded.ids.end(), ids.values().begin());
-    work.push_back({"clusters.png", [&] { return ids; }, 8});
+    tables.ids_file = cluster_ids_name;
+    work.push_back({tables.ids_file, [&] { return ids; }, 8});
   }
-  EncodedFiles files = encode_all(work, effort);
-
-  Json head = shared_head("kiln-prt-pca", asset);
-  add_names(head, asset);
-  head["clusters"] = clusters;
-  head["components"] = stored.weights.size();
-  if (clusters > 1) head["cluster_ids"] = "clusters.png";
-  head["coefficient_scales"] = Json::array();
   for (int i = 0; i < asset.bands * asset.bands; ++i)
-    head["coefficient_scales"].push_back(1 / static_cast<double>(source.scale()[i]));
-  head["vectors_file"] = "vectors.png";
-  head["vector_ranges"] = Json::array();
-  for (const StoredPicture& row : stored.vector_rows)
-    head["vector_ranges"].push_back({{"min", row.lowest}, {"max", row.highest}});
-  head["planes"] = planes;
-  files.emplace_back(pca_name, head.dump(2) + "\n");
+    tables.coefficient_scales.push_back(1 / static_cast<double>(source.scale()[i]));
+  for (const StoredPicture& row : stored.vector_rows) tables.vector_ranges.push_back(row.range);
+  EncodedFiles files = encode_all(work, effort);
+  files.emplace_back(pca_name, description_text(form));
   return files;
 }
 
@@ -119,6 +85,7 @@ PrtAsset with_eight_bits(const PrtAsset& asset) {
   if (asset.bits == 8) return asset;
   PrtAsset narrow = asset;
   narrow.bits = 8;
+  for (PrtPlane& plane : narrow.planes) plane.bits = 8;
   std::vector<Image<std::uint8_t>> pictures;
   for (const Image<std::uint16_t>& wide : std::get<std::vector<Image<std::uint16_t>>>(asset.pictures)) {
     Image<std::uint8_t>& picture = pictures.emplace_back(asset.width, asset.height, 1);
@@ -139,24 +106,18 @@ EncodedFiles encode_planes(const PrtAsset& asset, int bits, PngEffort effort) {
       std::transform(wide.values().begin(), wide.values().end(), wide.values().begin(), eight_of_sixteen_bits);
     return wide;
   };
+  PrtDescription form = shared_description(asset);
+  form.bits = bits;
   std::vector<Work> work;
-  Json planes = Json::array();
   for (std::size_t k = 0; k < asset.planes.size(); ++k) {
-    const PrtPlane& plane = asset.planes[k];
-    work.push_back({fmt::format("coeff_{}_{:02d}.png", plane.channel, plane.coefficient),
-                    [&picture, k] { return picture(k); }, bits});
-    planes.push_back({{"file", work.back().name},
-                      {"channel", plane.channel},
-                      {"coefficient", plane.coefficient},
-                      {"min", plane.lowest},
-                      {"max", plane.highest}});
+    PrtPlane plane = asset.planes[k];
+    plane.file = plane_file(plane.channel, plane.coefficient);
+    plane.bits = bits;
+    work.push_back({plane.file, [&picture, k] { return picture(k); }, bits});
+    form.planes.push_back(plane);
   }
   EncodedFiles files = encode_all(work, effort);
-  Json head = shared_head("kiln-prt", asset);
-  head["bits"] = bits;
-  add_names(head, asset);
-  head["planes"] = planes;
-  files.emplace_back(ranges_name, head.dump(2) + "\n");
+  files.emplace_back(ranges_name, description_text(form));
   return files;
 }
 
@@ -166,14 +127,14 @@ Json save_compressed(OutputSet& outputs, const fs::path& input, const PrtAsset& 
   if (!asset.albedo.file.empty())
     copy_into(outputs, input, asset.albedo.file);
   else
-    outputs.remove_stale("albedo.png");
+    outputs.remove_stale(albedo_map_name);
   for (const auto& [name, bytes] : result.files) {
     const fs::path file = outputs.add(name);
     std::ofstream stream(file, std::ios::binary);
     stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     if (!stream.flush()) fail_to_write(file, "");
   }
-  remove_stale_files(outputs, result.files);
+  remove_stale_planes(outputs);
 
   // Measure what was written.
   const TransferSource source(asset);

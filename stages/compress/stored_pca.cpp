@@ -118,7 +118,7 @@ PcaModel rounded_model(const PcaModel& model, const TransferSource& source, cons
     }
     const double step_j = std::max(steps[static_cast<std::size_t>(j)], (highest - lowest) / most_steps);
     const double unit = step_j > 0 ? step_j : 1;
-    if (stored != nullptr) stored->vector_rows.push_back({{}, 16, lowest, lowest + most_steps * unit});
+    if (stored != nullptr) stored->vector_rows.push_back({{}, 16, PlaneRange::of_steps(lowest, unit, 16)});
     for (std::size_t c = 0; c < model.means.size(); ++c) {
       Eigen::Map<Eigen::VectorXf> values = row(c);
       for (int i = 0; i < values.size(); ++i) {
@@ -188,19 +188,20 @@ StoredPca store_pca(const TransferSource& source, const TexelModel& model, const
     lowest = unit * std::round(lowest / unit);
     const double steps = std::round((highest - lowest) / unit);
     const int bits = steps > 255 ? 16 : 8;
-    stored.weights.push_back({Image<std::uint16_t>(source.asset().width, source.asset().height, 1), bits, lowest,
-                              lowest + unit * ((1 << bits) - 1)});
+    stored.weights.push_back({Image<std::uint16_t>(source.asset().width, source.asset().height, 1), bits,
+                              PlaneRange::of_steps(lowest, unit, bits)});
     units.push_back(unit);
   }
   for_each_chunk(kept.size(), [&](std::size_t first, std::size_t count) {
     const Eigen::MatrixXf weights = weights_of(first, count);
     for (int j = 0; j < components; ++j) {
       StoredPicture& plane = stored.weights[static_cast<std::size_t>(j)];
-      const double top = (1 << plane.bits) - 1;
+      const double top = PlaneRange::largest_stored(plane.bits);
       for (std::size_t k = 0; k < count; ++k)
-        plane.values.values()[kept[first + k]] = static_cast<std::uint16_t>(std::clamp(
-            std::round((weights(j, static_cast<Eigen::Index>(k)) - plane.lowest) / units[static_cast<std::size_t>(j)]),
-            0.0, top));
+        plane.values.values()[kept[first + k]] = static_cast<std::uint16_t>(
+            std::clamp(std::round((weights(j, static_cast<Eigen::Index>(k)) - plane.range.lowest) /
+                                  units[static_cast<std::size_t>(j)]),
+                       0.0, top));
     }
   });
 

@@ -26,12 +26,11 @@ TexelModel texel_model(const TransferSource& source, const ClusteredPca& cluster
                        const std::vector<std::uint32_t>& owners);
 TexelModel texel_model(const TransferSource& source, const PcaModel& one, const std::vector<std::uint32_t>& owners);
 
-/// Values of 0 to 2^bits - 1 that stand for `lowest` to `highest`.
+/// Values of 0 to 2^bits - 1 that stand for what `range` says.
 struct StoredPicture {
   Image<std::uint16_t> values;
   int bits = 8;
-  double lowest = 0;
-  double highest = 0;
+  PlaneRange range;
 
   /// The last value that is used, so that log2(levels + 1) bits would do.
   int largest() const;

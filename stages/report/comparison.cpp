@@ -206,7 +206,7 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   view.albedo = static_cast<float>(albedo);
   view.surface_albedo = high_albedo(asset, imported);
   view.surroundings = surroundings_of(asset, high);
-  view.bands = asset.bands;
+  view.bands = asset.baked.bands;
   // Not the bake's own directions: an error of theirs must not cancel.
   const std::vector<Eigen::Vector3f> directions =
       sample_directions(Sampling::fibonacci, settings.directions, static_cast<std::uint64_t>(run.seed) + 1);

@@ -68,7 +68,7 @@ std::string header(const AssetFolder& asset, const Report& report, const Json& m
   html += fmt::format(
       "<p class=lead>A mesh of {} triangles as {} triangles, a texture atlas, a normal map and {} transfer coefficient "
       "planes of {} bits.</p>\n",
-      value(simplify, "input_triangles"), value(simplify, "triangles"), asset.planes.size(), asset.bits);
+      value(simplify, "input_triangles"), value(simplify, "triangles"), asset.baked.planes.size(), asset.baked.bits);
   html += marked_badge(report.budgets) + "\n" + software_alarm(asset, report);
   html += "<dl class=figures>\n";
   const auto figure_of = [&](const std::string& name, const std::string& number, const std::string& more) {
@@ -128,7 +128,8 @@ std::string relit_section(const AssetFolder& asset, const Report& report, const 
       "Differences are "
       "taken in linear radiance over the {} pixels that both cover; the silhouettes differ in {} of their "
       "pixels.</p>\n",
-      settings.value("directions", Json("–")).dump(), asset.bands, metric_value("pixels", comparison.compared_pixels),
+      settings.value("directions", Json("–")).dump(), asset.baked.bands,
+      metric_value("pixels", comparison.compared_pixels),
       metric_value("silhouette_difference", comparison.silhouette_difference));
   if (scatters_light(asset.record("bake")))
     html +=
@@ -232,12 +233,12 @@ std::string textures_section(const AssetFolder& asset, const fs::path& scratch) 
   return html + "</div></section>\n";
 }
 
-std::string plane_figure(const CoefficientPlane& plane, int bits, int pixels, const fs::path& scratch) {
+std::string plane_figure(const AssetFolder& asset, const PrtPlane& plane, int pixels, const fs::path& scratch) {
   const int l = band_of(plane.coefficient), m = plane.coefficient - coefficient_index(l, 0);
   const std::string name = fmt::format("({}, {}{})", l, m < 0 ? "−" : "", std::abs(m));
   return fmt::format("<figure class=plane>{}<figcaption><b>{}</b>{} … {}</figcaption></figure>\n",
-                     image(thumbnail(plane.file, bits, pixels), "Coefficient " + name, scratch), name,
-                     rounded(plane.lowest, 3), rounded(plane.highest, 3));
+                     image(thumbnail(asset.prt() / plane.file, plane.bits, pixels), "Coefficient " + name, scratch),
+                     name, rounded(plane.range.lowest, 3), rounded(plane.range.highest, 3));
 }
 
 std::string coefficients_section(const AssetFolder& asset, const fs::path& scratch) {
@@ -245,24 +246,24 @@ std::string coefficients_section(const AssetFolder& asset, const fs::path& scrat
       "<section><h2>Transfer coefficients</h2>\n<p class=note>Each plane as it is stored, black its lowest and white "
       "its highest value: band and order "
       "(l, m), and the range. One row is one band.</p>\n";
-  for (int channel = 0; channel < asset.channels; ++channel) {
-    if (asset.channels > 1) html += fmt::format("<h3>Channel {}</h3>\n", channel);
-    if (asset.bands > pyramid_bands) {
+  for (int channel = 0; channel < asset.baked.channels; ++channel) {
+    if (asset.baked.channels > 1) html += fmt::format("<h3>Channel {}</h3>\n", channel);
+    if (asset.baked.bands > pyramid_bands) {
       html += "<div class=sheet>\n";
-      for (const CoefficientPlane& plane : asset.planes)
-        if (plane.channel == channel) html += plane_figure(plane, asset.bits, sheet_pixels, scratch);
+      for (const PrtPlane& plane : asset.baked.planes)
+        if (plane.channel == channel) html += plane_figure(asset, plane, sheet_pixels, scratch);
       html += "</div>\n";
       continue;
     }
     // All rows share the width of one plane, so that they form a pyramid.
-    const int longest_row = 2 * asset.bands - 1;
-    for (int l = 0; l < asset.bands; ++l) {
+    const int longest_row = 2 * asset.baked.bands - 1;
+    for (int l = 0; l < asset.baked.bands; ++l) {
       html +=
           fmt::format("<div class=band style='grid-template-columns:repeat({},minmax(0,calc((100% - {}px)/{})))'>\n",
                       2 * l + 1, 8 * (longest_row - 1), longest_row);
-      for (const CoefficientPlane& plane : asset.planes)
+      for (const PrtPlane& plane : asset.baked.planes)
         if (plane.channel == channel && band_of(plane.coefficient) == l)
-          html += plane_figure(plane, asset.bits, pyramid_pixels, scratch);
+          html += plane_figure(asset, plane, pyramid_pixels, scratch);
       html += "</div>\n";
     }
   }

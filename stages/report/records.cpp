@@ -52,21 +52,10 @@ AssetFolder load_asset_folder(const fs::path& folder, const fs::path& compressed
   asset.compressed = compressed;
   if (!compressed.empty()) asset.records.push_back(load_record(compressed / "compress.json", "compress"));
 
-  const fs::path ranges_file = asset.prt() / "ranges.json";
-  const Json ranges = load_json(ranges_file, "bake");
-  try {
-    asset.bands = ranges.at("bands").get<int>();
-    asset.channels = ranges.at("channels").get<int>();
-    asset.bits = ranges.at("bits").get<int>();
-    for (const Json& plane : ranges.at("planes"))
-      asset.planes.push_back({asset.prt() / plane.at("file").get<std::string>(), plane.at("channel").get<int>(),
-                              plane.at("coefficient").get<int>(), plane.at("min").get<double>(),
-                              plane.at("max").get<double>()});
-  } catch (const Json::exception& error) {
-    throw BadInput(ranges_file.string(), error.what(), "the ranges of kiln-bake", "run kiln-bake again");
-  }
-  if ((asset.bits != 8 && asset.bits != 16) || asset.planes.empty())
-    throw BadInput(ranges_file.string(), "no planes of 8 or 16 bits", "the ranges of kiln-bake", "run kiln-bake again");
+  asset.baked = load_prt_description(asset.prt());
+  if (asset.baked.vertices > 0 || asset.baked.pca)
+    throw BadInput(asset.baked.ranges_file.string(), "has no planes of coefficients in pictures",
+                   "the ranges of kiln-bake for an atlas", "run kiln-bake again");
   return asset;
 }
 

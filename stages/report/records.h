@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "base/options.h"
+#include "asset/prt_asset.h"
+#include "base/json.h"
 
 namespace kiln {
 
@@ -15,24 +16,12 @@ struct StageRecord {
   Json json;
 };
 
-/// One stored plane of coefficients, as ranges.json has it.
-struct CoefficientPlane {
-  std::filesystem::path file;
-  int channel = 0;
-  int coefficient = 0;
-  double lowest = 0;
-  double highest = 0;
-};
-
 /// The folder of an asset that has passed all stages up to the bake.
 struct AssetFolder {
   std::filesystem::path folder;
   std::string name;                  ///< of the asset: the folder's
   std::vector<StageRecord> records;  ///< simplify, atlas, normals, bake; compress where there is `compressed`
-  int bands = 0;
-  int channels = 0;
-  int bits = 0;
-  std::vector<CoefficientPlane> planes;
+  PrtDescription baked;              ///< what ranges.json says
   std::filesystem::path compressed;  ///< what kiln-compress made of it; empty: nothing
 
   std::filesystem::path prt() const { return folder / "prt"; }

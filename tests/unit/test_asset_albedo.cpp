@@ -24,18 +24,18 @@ class AssetAlbedo : public testing::Test {
   fs::path folder(const std::string& name = "prt") const { return scratch_.folder() / name; }
 
   /// A baked folder of two bands whose ranges.json has `albedo`.
-  void write(const Json& albedo) const {
+  void write(const PrtAlbedo& albedo) const {
     OutputSet outputs(folder());
     const TriangleMesh mesh = shapes::plane(2);
     save_draco(outputs.add("atlas.drc"), mesh);
-    if (albedo.is_string()) write_png(outputs.add(albedo), picture());
+    if (!albedo.file.empty()) write_png(outputs.add(albedo.file), picture());
     const TriangleMesh atlas = load_atlas(outputs.staging() / "atlas.drc");
     const TexelReceivers receivers = receivers_on_low(atlas, size, size, nullptr);
     TransferVectors transfer(receivers.texels.size(), 4);
     for (int i = 0; i < 4; ++i)
       for (std::size_t r = 0; r < receivers.texels.size(); ++r)
         transfer.plane(i)[r] = 0.1f * static_cast<float>(i) + 0.001f * static_cast<float>(r % 17);
-    write_planes(outputs, {transfer}, receivers, 8, {"atlas.drc", "", albedo}, Seams(atlas, size, size),
+    write_planes(outputs, {transfer}, receivers, {.mesh_file = "atlas.drc", .albedo = albedo}, Seams(atlas, size, size),
                  SeamChoice::keep);
     outputs.commit();
   }
@@ -71,15 +71,15 @@ class AssetAlbedo : public testing::Test {
 };
 
 TEST_F(AssetAlbedo, IsReadAsItWasBaked) {
-  write("albedo.png");
+  write(PrtAlbedo::of_picture("albedo.png"));
   const PrtAlbedo painted = load_prt_asset(folder()).albedo;
   EXPECT_EQ(painted.file, "albedo.png");
   EXPECT_EQ(painted.picture.values(), picture().values());
-  write({0.5, 0.25, 0.125});
+  write(PrtAlbedo::of_constant({0.5f, 0.25f, 0.125f}));
   const PrtAlbedo plain = load_prt_asset(folder()).albedo;
   EXPECT_TRUE(plain.file.empty() && plain.picture.values().empty());
   EXPECT_EQ(plain.constant, Eigen::Vector3f(0.5f, 0.25f, 0.125f));
-  write(nullptr);
+  write({});
   EXPECT_FALSE(Json::parse(read_text(folder() / "ranges.json")).contains("albedo"));
   EXPECT_EQ(load_prt_asset(folder()).albedo.constant, Eigen::Vector3f::Ones());
 }
@@ -87,10 +87,10 @@ TEST_F(AssetAlbedo, IsReadAsItWasBaked) {
 TEST_F(AssetAlbedo, SurvivesCompression) {
   for (const int components : {0, 2}) {
     SCOPED_TRACE(components);
-    write("albedo.png");
+    write(PrtAlbedo::of_picture("albedo.png"));
     compress_as(components);
     EXPECT_EQ(load_prt_asset(folder("small")).albedo.picture.values(), picture().values());
-    write({0.5, 0.25, 0.125});
+    write(PrtAlbedo::of_constant({0.5f, 0.25f, 0.125f}));
     compress_as(components);
     EXPECT_EQ(load_prt_asset(folder("small")).albedo.constant, Eigen::Vector3f(0.5f, 0.25f, 0.125f));
     EXPECT_FALSE(fs::exists(folder("small") / "albedo.png")) << "of the run before";
@@ -102,7 +102,7 @@ TEST_F(AssetAlbedo, WhatDoesNotFitIsRefused) {
     const std::string found = refusal();
     EXPECT_NE(found.find(words), std::string::npos) << found;
   };
-  write("albedo.png");
+  write(PrtAlbedo::of_picture("albedo.png"));
   write_png(folder() / "albedo.png", Image<std::uint8_t>(size, size / 2, 3));
   expect_words("albedo.png: is 16 x 8 texels; expected 16 x 16");
   write_png(folder() / "albedo.png", Image<std::uint8_t>(size, size, 1));

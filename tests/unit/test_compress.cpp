@@ -60,7 +60,7 @@ PrtAsset make_asset(int width, int height, int bands, int channels, const Transf
     const std::vector<float>& values = planes[static_cast<std::size_t>(k)].values();
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     const double lowest = *low, highest = *high;
-    asset.planes.push_back({"coeff.png", k / (bands * bands), k % (bands * bands), lowest, highest});
+    asset.planes.push_back({"coeff.png", k / (bands * bands), k % (bands * bands), {lowest, highest}, 16});
     Image<std::uint16_t>& picture = pictures.emplace_back(width, height, 1);
     if (highest > lowest)
       std::transform(values.begin(), values.end(), picture.values().begin(), [&](float value) {
@@ -454,7 +454,7 @@ TEST(PcaAsset, RefusesMalformedFolders) {
     const char* words;
   };
   const std::vector<Case> cases = {{"/format", "kiln-prt", "kiln-prt-pca"},
-                                   {"/version", 2, "version is 2"},
+                                   {"/version", 3, "version is 3"},
                                    {"/bands", 3, "9 numbers"},
                                    {"/channels", 2, "4 x"},
                                    {"/width", 31, "31 x 24"},

@@ -372,7 +372,7 @@ TEST(ProbeFiles, RefuseWhatIsMalformed) {
     const char *pointer, *value, *said;
   };
   for (const Case& c : {Case{"/format", "\"kiln-prt\"", "kiln-probes"},
-                        {"/version", "2", "version"},
+                        {"/version", "3", "version"},
                         {"/bands", "9", "bands"},
                         {"/channels", "2", "channels"},
                         {"/grid/size", "[2,2]", "grid.size"},

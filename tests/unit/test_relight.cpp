@@ -161,7 +161,7 @@ TEST(PrtAsset, GivesWhatWasWritten) {
     ASSERT_EQ(asset.planes.size(), 12u);
     EXPECT_EQ(asset.planes[7].channel, 1);
     EXPECT_EQ(asset.planes[7].coefficient, 3);
-    EXPECT_EQ(asset.planes[2].lowest, asset.planes[2].highest);
+    EXPECT_EQ(asset.planes[2].range.lowest, asset.planes[2].range.highest);
     EXPECT_EQ(asset.mesh.triangles.size(), 8u);
     EXPECT_EQ(asset.pictures.index(), bits == 8 ? 0u : 1u);
   }
@@ -194,7 +194,7 @@ TEST(PrtAsset, RefusesMalformedFolders) {
       {"no planes", drop("planes"), "has no planes"},
       {"other format", set("/format", "png-stack"), "kiln-prt"},
       {"other basis", set("/basis", "complex"), "real-sh-orthonormal"},
-      {"newer version", set("/version", 2), "version is 2"},
+      {"newer version", set("/version", 3), "version is 3"},
       {"bands as text", set("/bands", "2"), "bands is \"2\""},
       {"bands as real", set("/bands", 2.5), "bands is 2.5"},
       {"no bands at all", set("/bands", 0), "1 to 24"},

@@ -119,7 +119,7 @@ TEST_F(VertexBake, FurnaceGoesThroughTheFileWithinHalfAStep) {
                                                    furnace_transfer(receivers, 3, 0.25f)};
     OutputSet outputs(folder());
     const std::vector<std::uint32_t> sources = write_vertex_planes(outputs, channels, receivers, mesh, bits);
-    const std::vector<TransferVectors> stored = read_vertex_planes(outputs.staging(), receivers, sources);
+    const std::vector<TransferVectors> stored = read_transfer(outputs.staging(), stored_vertices(receivers, sources));
     ASSERT_EQ(stored.size(), 2u);
     for (std::size_t c = 0; c < 2; ++c) expect_within_half_a_step(stored[c], channels[c], bits);
     outputs.commit();
@@ -160,8 +160,8 @@ TEST_F(VertexBake, BakeOfASphereIsTheFurnace) {
   OutputSet outputs(folder());
   const std::vector<std::uint32_t> sources =
       write_vertex_planes(outputs, result.channels, receivers, mesh, settings.bits);
-  expect_within_half_a_step(read_vertex_planes(outputs.staging(), receivers, sources).front(), result.channels.front(),
-                            settings.bits);
+  expect_within_half_a_step(read_transfer(outputs.staging(), stored_vertices(receivers, sources)).front(),
+                            result.channels.front(), settings.bits);
 }
 
 TEST_F(VertexBake, TouchingSheetsAreSplitInTheFileAndReadBack) {
@@ -176,7 +176,8 @@ TEST_F(VertexBake, TouchingSheetsAreSplitInTheFileAndReadBack) {
   const std::vector<std::uint32_t> sources = write_vertex_planes(outputs, {transfer}, receivers, mesh, 16);
   EXPECT_EQ(std::count(sources.begin(), sources.end(), 0u), 2);
   EXPECT_EQ(sources.size(), 8u);
-  expect_within_half_a_step(read_vertex_planes(outputs.staging(), receivers, sources).front(), transfer, 16);
+  expect_within_half_a_step(read_transfer(outputs.staging(), stored_vertices(receivers, sources)).front(), transfer,
+                            16);
 }
 
 TEST_F(VertexBake, UnusedVerticesAreLeftOut) {
@@ -263,7 +264,8 @@ TEST_F(VertexBake, RuntimesReadTheFolderOrSayWhatIsWrong) {
   const TexelReceivers receivers = receivers_on_vertices(mesh).receivers;
   const auto write = [&] {
     OutputSet outputs(folder());
-    write_vertex_planes(outputs, {furnace_transfer(receivers, 3, 1)}, receivers, mesh, 16, Json{0.5, 0.25, 1});
+    write_vertex_planes(outputs, {furnace_transfer(receivers, 3, 1)}, receivers, mesh, 16,
+                        PrtAlbedo::of_constant({0.5f, 0.25f, 1}));
     outputs.commit();
   };
   write();

@@ -4,15 +4,18 @@
 #include <cstdio>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <stdexcept>
 
 #include "base/errors.h"
 #include "base/file_names.h"
 #include "base/process.h"
+#include "base/progress.h"
 #include "kiln/build.h"
 #include "kiln/clean.h"
 #include "kiln/init.h"
 #include "kiln/makefile.h"
 #include "kiln/pipeline.h"
+#include "kiln/schema.h"
 #include "kiln/step.h"
 
 namespace kiln {
@@ -109,6 +112,16 @@ Stage stage_of(const std::string& name) {
   throw WrongUsage(fmt::format("until: found '{}'; expected one of {}", name, fmt::join(stage_words(), ", ")));
 }
 
+/// Runs a program that lies beside this one; gives its exit status.
+int run_sibling(const std::string& name, const std::vector<std::string>& words) {
+  std::vector<std::string> arguments = {(program_folder() / name).string()};
+  arguments.insert(arguments.end(), words.begin(), words.end());
+  const ProcessEnd end = run_process(arguments);
+  throw_if_interrupted();
+  if (end.signal != 0) throw std::runtime_error(fmt::format("{} ended by signal {}", name, end.signal));
+  return end.exit_status;
+}
+
 }  // namespace
 
 Commands::Commands(CLI::App& app) : values_(std::make_unique<Values>()) {
@@ -150,6 +163,17 @@ Commands::Commands(CLI::App& app) : values_(std::make_unique<Values>()) {
     init_pipeline(v.meshes, v.file);
     std::fprintf(stderr, "kiln: wrote %s; 'kiln build%s' makes what it says\n", v.file.c_str(),
                  v.file == "pipeline.yaml" ? "" : (" " + shell_quoted(v.file.string())).c_str());
+  });
+
+  // A program of its own, since it reads pictures and meshes, and every step of a build starts this one.
+  CLI::App& check = *app.add_subcommand("check", "Hold assets' folders against the format (kiln-check)");
+  check.set_help_flag();
+  check.prefix_command();
+  check.callback([&v, &check] { v.status = run_sibling("kiln-check", check.remaining()); });
+
+  // What docs/schema/pipeline.schema.json is made by.
+  app.add_subcommand("schema", "Print the JSON Schema of pipeline.yaml")->group("")->callback([] {
+    std::printf("%s\n", json_text(pipeline_schema(), 2).c_str());
   });
 
   // What the Makefile calls.

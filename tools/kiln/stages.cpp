@@ -3,6 +3,7 @@
 #include <cctype>
 #include <fmt/format.h>
 
+#include "asset/format.h"
 #include "atlas/atlas_settings.h"
 #include "bake/bake_settings.h"
 #include "compress/compress_settings.h"
@@ -95,8 +96,8 @@ StageRun bake_run(const AssetPlan& plan, const std::string& mesh, const fs::path
   }
   append_settings(bake.command, plan, Stage::bake);
   const int bands = effective_setting(plan.settings, Stage::bake, "bands").get<int>();
-  for (int i = 0; i < bands * bands; ++i) bake.outputs.push_back(prt / fmt::format("coeff_0_{:02}.png", i));
-  for (const char* name : {"atlas.drc", "normal.png", "ranges.json"}) bake.outputs.push_back(prt / name);
+  for (int i = 0; i < bands * bands; ++i) bake.outputs.push_back(prt / plane_file(0, i));
+  for (const char* name : {atlas_mesh_name, normal_map_name, ranges_name}) bake.outputs.push_back(prt / name);
   // A bake that interpolates texels does not go by blocks of directions, and has no checkpoints.
   if (effective_setting(plan.settings, Stage::bake, "adaptive") == 0) bake.checkpoint = plan.folder / "prt.checkpoint";
   return bake;
@@ -210,7 +211,7 @@ std::vector<StageRun> stage_runs(const AssetPlan& plan) {
                       {"kiln-compress", prt_folder, "-o", small_folder},
                       {},
                       {bake_record},
-                      {compress_record, small / "atlas.drc", small / "normal.png"},
+                      {compress_record, small / atlas_mesh_name, small / normal_map_name},
                       {}};
     append_settings(compress.command, plan, Stage::compress);
     runs.push_back(compress);

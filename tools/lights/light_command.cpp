@@ -16,7 +16,7 @@ void add_light_options(CommandLine& command, LightSettings& settings, std::files
       "environment", settings.environment,
       "A latitude-longitude picture of radiance of any size, EXR or HDR, or a folder of the six faces of "
       "a cube map, px to nz");
-  command.input_option("light-file", light_file, "All of the lights, in a JSON file (stages/relight/README.md)");
+  command.input_option("light-file", light_file, "All of the lights, in a JSON file (tools/render/README.md)");
   command.options("Light", light_options(settings));
 }
 

@@ -5,8 +5,8 @@
 namespace kiln {
 
 LightSettings read_light_file(const std::filesystem::path& file) {
-  const std::string remedy = "see kiln-render --help and stages/relight/README.md for what a light file has";
-  const nlohmann::json document = parse_json(file, "stages/relight/README.md", remedy);
+  const std::string remedy = "see kiln-render --help and tools/render/README.md for what a light file has";
+  const Json document = parse_json(file, "tools/render/README.md", remedy);
   const Fields fields(file.string(), "", document, remedy);
   LightSettings settings;
   const OptionSet options = light_options(settings);
@@ -17,7 +17,7 @@ LightSettings read_light_file(const std::filesystem::path& file) {
     try {
       if (key == "lights") {
         if (!value.is_array()) fail("a list of lights, each a text as --light takes it");
-        for (const nlohmann::json& light : value) {
+        for (const Json& light : value) {
           if (!light.is_string()) fail("a list of lights, each a text as --light takes it");
           parse_light_spec(light.get<std::string>());
           settings.lights.push_back(light);

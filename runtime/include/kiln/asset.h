@@ -49,6 +49,9 @@ class KILN_RUNTIME_API Asset {
   std::span<const float> uvs() const;
   std::span<const std::uint32_t> triangles() const;
 
+  /// Where positions count from, in the coordinates of the file that the mesh was made of.
+  std::array<double, 3> origin() const;
+
   /// Transfer vectors of points, one after another, each channel after channel. `vectors` holds vector_length() numbers
   /// for each point. Throws Error for a point that is none, or too short a span.
   void transfer(std::span<const std::uint32_t> points, std::span<float> vectors) const;

@@ -1,99 +1,82 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
-#include <utility>
+#include <vector>
 
-#include "base/errors.h"
-#include "base/outputs.h"
+#include "asset/faults.h"
+#include "base/json.h"
 
 namespace kiln {
 
-/// The keys of a JSON object, each fetched with its type and range checked; faults name the file and the key.
+/// The keys of a JSON object, each fetched with its type and range checked. Faults name the file and the key; without
+/// a place to tell of them the first is thrown. Where they are kept, a key at fault reads as the value that each
+/// function names.
 class Fields {
  public:
-  Fields(std::string file, std::string where, const nlohmann::json& object, std::string remedy)
-      : file_(std::move(file)), where_(std::move(where)), remedy_(std::move(remedy)), object_(object) {
-    if (!object.is_object()) fail(where_.empty() ? "the file" : where_, shown(object), "a JSON object");
-  }
+  /// `where` is the place of the object in the file, such as "planes[3]"; empty: the whole. The object, and `faults`,
+  /// must outlive these fields.
+  Fields(std::string file, std::string where, const Json& object, std::string remedy, Faults* faults = nullptr);
 
-  bool has(const char* key) const { return object_.contains(key); }
+  /// An object of the same file, under `key` or, with an index, in the list there.
+  Fields child(const char* key, const Json& object) const;
+  Fields child(const char* key, std::size_t index, const Json& object) const;
 
-  const nlohmann::json& get(const char* key, const std::string& expected) const {
-    if (!has(key)) throw BadInput(file_, "has no " + path(key), expected, remedy_);
-    return object_[key];
-  }
+  bool has(const char* key) const { return object_.is_object() && object_.contains(key); }
 
-  int integer(const char* key, int lowest, int highest) const {
-    const std::string expected = "a whole number of " + std::to_string(lowest) + " to " + std::to_string(highest);
-    const nlohmann::json& value = get(key, expected);
-    const bool fits = value.is_number_unsigned() ? value.get<std::uint64_t>() <= static_cast<std::uint64_t>(highest)
-                                                 : value.is_number_integer() && value.get<std::int64_t>() <= highest;
-    if (!fits || value.get<std::int64_t>() < lowest) fail(path(key), shown(value), expected);
-    return value.get<int>();
-  }
+  /// Null where the key is not there, which is a fault.
+  const Json* find(const char* key, const std::string& expected) const;
 
-  double number(const char* key) const {
-    const std::string expected = "a finite number";
-    const nlohmann::json& value = get(key, expected);
-    if (!value.is_number() || !std::isfinite(value.get<float>())) fail(path(key), shown(value), expected);
-    return value.get<double>();
-  }
+  /// `otherwise` where it is at fault.
+  int integer(const char* key, int lowest, int highest, int otherwise = 0) const;
 
-  std::string text(const char* key, const std::string& expected) const {
-    const nlohmann::json& value = get(key, expected);
-    if (!value.is_string()) fail(path(key), shown(value), expected);
-    return value.get<std::string>();
-  }
+  /// 8 or 16; 8 where it is at fault.
+  int bits(const char* key) const;
 
-  void constant(const char* key, const std::string& expected) const {
-    if (const std::string found = text(key, expected); found != expected) fail(path(key), shown(found), expected);
-  }
+  /// A number that a float can hold; no number (NaN) where it is at fault.
+  double number(const char* key) const;
 
-  /// A path that stays inside the folder of the file.
-  std::string safe_path(const char* key) const {
-    const std::string expected = "the path of a file inside the folder, relative to it";
-    const std::string found = text(key, expected);
-    const std::filesystem::path as_path(found);
-    const bool odd = found.empty() || std::any_of(found.begin(), found.end(), [](unsigned char c) { return c < 32; });
-    const bool outside = as_path.is_absolute() || std::find(as_path.begin(), as_path.end(), "..") != as_path.end();
-    if (odd || outside) fail(path(key), shown(found), expected);
-    return found;
-  }
+  /// Text; empty where it is at fault.
+  std::string text(const char* key, const std::string& expected) const;
 
-  [[noreturn]] void fail(const std::string& what, const std::string& found, const std::string& expected) const {
-    throw BadInput(file_, what + " is " + found, expected, remedy_);
-  }
+  /// Tells of a fault unless the text is `expected`.
+  void constant(const char* key, const std::string& expected) const;
+
+  /// A path that stays inside the folder of the file; empty where it is at fault.
+  std::string safe_path(const char* key) const;
+
+  /// The list under `key`, of `count` entries, any number of them where that is nothing; null where it is at fault.
+  const Json* list(const char* key, std::optional<std::size_t> count, const std::string& what) const;
+
+  /// The list of `count` finite numbers under `key`; empty where it is at fault.
+  std::vector<double> numbers(const char* key, std::size_t count) const;
+
+  /// Tells that `what` is `found`.
+  void fail(const std::string& what, const std::string& found, const std::string& expected) const;
+
+  void tell(const BadInput& fault) const;
 
   const std::string& file() const { return file_; }
+  const std::string& remedy() const { return remedy_; }
 
   std::string path(const char* key) const { return where_.empty() ? key : where_ + "." + key; }
 
- private:
-  static std::string shown(const nlohmann::json& value) {
-    std::string text = value.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
-    constexpr std::size_t longest = 60;
-    return text.size() <= longest ? text : text.substr(0, longest) + "...";
-  }
+  /// JSON text of a value for a message, cut where it is long.
+  static std::string shown(const Json& value);
 
+ private:
   std::string file_;
   std::string where_;
   std::string remedy_;
-  const nlohmann::json& object_;
+  const Json& object_;
+  Faults* faults_;
 };
 
+/// Whether a value is a number that is finite as a float.
+bool is_finite_float(const Json& value);
+
 /// Throws BadInput where `file` is no whole JSON; `writer` is the program that writes such files.
-inline nlohmann::json parse_json(const std::filesystem::path& file, const std::string& writer,
-                                 const std::string& remedy) {
-  try {
-    return nlohmann::json::parse(read_text(file));
-  } catch (const nlohmann::json::exception&) {
-    throw BadInput(file.string(), "is no whole JSON file", "what " + writer + " writes", remedy);
-  }
-}
+Json parse_json(const std::filesystem::path& file, const std::string& writer, const std::string& remedy);
 
 }  // namespace kiln

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "asset/faults.h"
+#include "asset/format.h"
 #include "base/outputs.h"
 #include "sh/lights.h"
 
@@ -45,16 +47,16 @@ struct ProbeSet {
   }
 };
 
-inline constexpr const char* probes_name = "matrices.json";
-inline constexpr int most_probe_bands = 8;
-inline constexpr std::size_t most_probes = 1u << 18;
-
-/// Writes matrices.json and matrices.png (docs/probes.md). Values are rounded to 65,535 steps of the range that their
+/// Writes matrices.json and matrices.png (docs/format.md). Values are rounded to 65,535 steps of the range that their
 /// entry has over all valid points.
 void save_probes(OutputSet& outputs, const ProbeSet& probes);
 
 /// Reads what save_probes wrote. Throws BadInput where a file is missing, damaged or not of that format.
 ProbeSet load_probes(const std::filesystem::path& folder);
+
+/// The same with all faults told of, and the version of the format, 0 where that is at fault. What is at fault is left
+/// out of the set.
+std::pair<ProbeSet, int> read_probes(const std::filesystem::path& folder, Faults& faults);
 
 /// Which probes make up the light at `position`, with weights that add up to 1. Of a grid the corners of the cell
 /// around it, trilinear, `position` clamped to the grid; of other points the eight nearest, by the inverse of the

@@ -1,7 +1,11 @@
 #include "asset/prt_asset.h"
 
-#include "asset/asset_parts.h"
-#include "asset/fields.h"
+#include <algorithm>
+#include <numeric>
+
+#include "asset/read_description.h"
+#include "asset/read_parts.h"
+#include "base/errors.h"
 
 namespace kiln {
 
@@ -9,83 +13,83 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using nlohmann::json;
-
-constexpr const char* remedy = "bake the asset again with kiln-bake";
-
-PrtPlane read_plane(const Fields& fields, const PrtAsset& asset, int index, bool in_a_file) {
-  const int coefficients = asset.bands * asset.bands;
-  PrtPlane plane;
-  if (in_a_file) plane.file = fields.safe_path("file");
-  plane.channel = fields.integer("channel", 0, asset.channels - 1);
-  plane.coefficient = fields.integer("coefficient", 0, coefficients - 1);
-  if (plane.channel != index / coefficients || plane.coefficient != index % coefficients)
-    fields.fail(fields.path("coefficient"),
-                std::to_string(plane.coefficient) + " of channel " + std::to_string(plane.channel),
-                "coefficient " + std::to_string(index % coefficients) + " of channel " +
-                    std::to_string(index / coefficients) + " (each plane once, in order)");
-  plane.lowest = fields.number("min");
-  plane.highest = fields.number("max");
-  if (plane.lowest > plane.highest)
-    fields.fail(fields.path("min"), std::to_string(plane.lowest) + ", above max " + std::to_string(plane.highest),
-                "min <= max");
-  return plane;
+/// Spreads the values of a plane of weights that uses few of the 256 over all of them. It means the same; GPUs (and
+/// drivers in software) that filter 8-bit textures in 8 bits then round to less than a step of the weights.
+void spread(Image<std::uint8_t>& picture, PlaneRange& range) {
+  const int largest = *std::max_element(picture.values().begin(), picture.values().end());
+  if (largest == 0) return;
+  const int factor = 255 / largest;
+  for (std::uint8_t& value : picture.values()) value = static_cast<std::uint8_t>(factor * value);
+  range.highest = range.lowest + range.width() / factor;
 }
 
-/// Fills in everything that stands in ranges.json itself.
-void read_ranges(const Fields& fields, PrtAsset& asset) {
-  fields.constant("format", "kiln-prt");
-  fields.integer("version", 1, 1);
-  fields.constant("basis", "real-sh-orthonormal");
-  asset.bands = fields.integer("bands", 1, most_asset_bands);
-  asset.channels = fields.integer("channels", 1, most_asset_channels);
-  asset.bits = fields.integer("bits", 8, 16);
-  if (asset.bits != 8 && asset.bits != 16) fields.fail("bits", std::to_string(asset.bits), "8 or 16");
-  const bool textured = !fields.has("vertices");
-  if (textured) {
-    asset.width = fields.integer("width", 1, largest_asset_side);
-    asset.height = fields.integer("height", 1, largest_asset_side);
+/// Pictures of 8 and 16 bits as 16-bit ones: the same part of white.
+std::vector<Image<std::uint16_t>> read_mixed_pictures(const fs::path& folder, const PrtDescription& asset,
+                                                      const std::string& remedy) {
+  std::vector<Image<std::uint16_t>> pictures;
+  for (const PrtPlane& plane : asset.planes) {
+    if (plane.bits == 16) {
+      pictures.push_back(read_grey<std::uint16_t>(folder / plane.file, asset.width, asset.height, remedy));
+      continue;
+    }
+    const Image<std::uint8_t> narrow = read_grey<std::uint8_t>(folder / plane.file, asset.width, asset.height, remedy);
+    Image<std::uint16_t>& wide = pictures.emplace_back(asset.width, asset.height, 1);
+    std::transform(narrow.values().begin(), narrow.values().end(), wide.values().begin(),
+                   [](std::uint8_t value) { return static_cast<std::uint16_t>(257 * value); });
   }
-  asset.mesh_file = fields.safe_path("mesh");
-  read_normals(fields, asset);
-  asset.albedo = read_albedo(fields, asset.ranges_file.parent_path(), asset.width, asset.height, remedy);
+  return pictures;
+}
 
-  const std::size_t count = static_cast<std::size_t>(asset.channels) * asset.bands * asset.bands;
-  const std::string expected = "a list of " + std::to_string(count) + " planes";
-  const json& planes = fields.get("planes", expected);
-  if (!planes.is_array()) fields.fail("planes", "no list", expected);
-  if (planes.size() != count) fields.fail("planes", "a list of " + std::to_string(planes.size()), expected);
-  for (std::size_t k = 0; k < count; ++k) {
-    const Fields plane(fields.file(), "planes[" + std::to_string(k) + "]", planes[k], remedy);
-    asset.planes.push_back(read_plane(plane, asset, static_cast<int>(k), textured));
+PrtClusters read_clusters(const fs::path& folder, const PrtDescription& asset) {
+  PrtClusters clusters;
+  clusters.count = asset.pca->clusters;
+  clusters.components = static_cast<int>(asset.planes.size());
+  clusters.length = static_cast<int>(asset.vector_length());
+  clusters.vectors = read_vectors(folder, asset);
+  clusters.ids = read_cluster_ids(folder, asset);
+  return clusters;
+}
+
+void load_vertices(const fs::path& folder, PrtAsset& asset) {
+  AttributedMesh stored = read_vertex_mesh(folder, asset);
+  const std::size_t length = asset.vector_length(), vertices = stored.mesh.positions.size();
+  std::vector<std::uint32_t> all(vertices);
+  std::iota(all.begin(), all.end(), 0);
+  asset.vertex_transfer.resize(vertices * length);
+  for (std::size_t k = 0; k < length; ++k) {
+    const std::vector<float> values = vertex_values(attribute_of(stored, folder, asset, k), asset.planes[k], all);
+    for (std::size_t v = 0; v < vertices; ++v) asset.vertex_transfer[v * length + k] = values[v];
+  }
+  asset.mesh = std::move(stored.mesh);
+}
+
+void load_pictures(const fs::path& folder, PrtAsset& asset) {
+  const std::string remedy = remedy_for(asset);
+  asset.albedo.picture = read_albedo_picture(folder, asset);
+  asset.mesh = read_atlas_mesh(folder, asset);
+  if (asset.pca) asset.clusters = read_clusters(folder, asset);
+  if (asset.bits == 8) {
+    auto pictures = read_grey_pictures<std::uint8_t>(folder, asset, remedy);
+    for (std::size_t k = 0; asset.pca && k < pictures.size(); ++k) spread(pictures[k], asset.planes[k].range);
+    asset.pictures = std::move(pictures);
+  } else if (asset.pca) {
+    asset.pictures = read_mixed_pictures(folder, asset, remedy);
+  } else {
+    asset.pictures = read_grey_pictures<std::uint16_t>(folder, asset, remedy);
   }
 }
 
 }  // namespace
 
+PrtDescription load_prt_description(const fs::path& folder) {
+  Faults first;
+  return read_description(description_file(folder), first).first;
+}
+
 PrtAsset load_prt_asset(const fs::path& folder) {
-  std::error_code error;
-  const fs::path ranges = folder / ranges_name, compressed = folder / pca_name;
-  if (fs::is_regular_file(compressed, error)) return load_pca_asset(folder);
-  if (!fs::is_directory(folder, error) || !fs::is_regular_file(ranges, error))
-    throw BadInput(folder.string(), fs::is_directory(folder, error) ? "has no ranges.json" : "is no folder",
-                   "the output folder of kiln-bake or kiln-compress", "run kiln-bake, or name its output folder");
   PrtAsset asset;
-  asset.ranges_file = ranges;
-  const json document = parse_json(ranges, "kiln-bake", remedy);
-  const Fields fields(ranges.string(), "", document, remedy);
-  read_ranges(fields, asset);
-  if (fields.has("vertices")) {
-    read_vertex_transfer(folder, fields, asset);
-    return asset;
-  }
-  asset.mesh = read_asset_mesh(folder / asset.mesh_file);
-  std::vector<std::string> files;
-  for (const PrtPlane& plane : asset.planes) files.push_back(plane.file);
-  if (asset.bits == 8)
-    asset.pictures = read_grey_pictures<std::uint8_t>(folder, files, asset.width, asset.height, remedy);
-  else
-    asset.pictures = read_grey_pictures<std::uint16_t>(folder, files, asset.width, asset.height, remedy);
+  static_cast<PrtDescription&>(asset) = load_prt_description(folder);
+  asset.vertices > 0 ? load_vertices(folder, asset) : load_pictures(folder, asset);
   return asset;
 }
 

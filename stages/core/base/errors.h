@@ -20,7 +20,20 @@ class BadInput : public std::runtime_error {
  public:
   /// The message reads "FILE: FOUND; expected EXPECTED; REMEDY".
   BadInput(const std::string& file, const std::string& found, const std::string& expected, const std::string& remedy)
-      : std::runtime_error(file + ": " + found + "; expected " + expected + "; " + remedy) {}
+      : std::runtime_error(file + ": " + found + "; expected " + expected + "; " + remedy),
+        file_(file),
+        found_(found),
+        expected_(expected),
+        remedy_(remedy) {}
+
+  /// The parts of the message.
+  const std::string& file() const { return file_; }
+  const std::string& found() const { return found_; }
+  const std::string& expected() const { return expected_; }
+  const std::string& remedy() const { return remedy_; }
+
+ private:
+  std::string file_, found_, expected_, remedy_;
 };
 
 /// The command line asks for something that does not exist.

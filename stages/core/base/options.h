@@ -2,18 +2,14 @@
 
 #include <array>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/json.h"
+
 namespace kiln {
-
-using Json = nlohmann::ordered_json;
-
-/// A value as JSON text, on one line where `indent` is -1; bytes of strings that are no UTF-8 become U+FFFD.
-std::string json_text(const Json& value, int indent = -1);
 
 /// Width and height of a texture, texels. One number is a square.
 struct Extent {

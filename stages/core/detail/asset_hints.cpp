@@ -1,18 +1,18 @@
 #include "detail/asset_hints.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/outputs.h"
 
 namespace kiln {
 
 namespace {
 
-nlohmann::json read_result(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) return nlohmann::json::object();
-  nlohmann::json result = nlohmann::json::parse(read_text(file), nullptr, false);
+Json read_result(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return Json::object();
+  Json result = Json::parse(read_text(file), nullptr, false);
   if (!result.is_object())
     throw BadInput(file.string(), "not a JSON object", "the result of an earlier stage",
                    "run that stage again, or remove the file");
@@ -20,8 +20,8 @@ nlohmann::json read_result(const std::filesystem::path& file) {
 }
 
 /// The number under `key`, of the metrics or else of the settings; 0 where there is none above 0.
-double positive_number(const nlohmann::json& result, const char* key) {
-  for (const nlohmann::json& place : {result, result.value("settings", nlohmann::json::object())})
+double positive_number(const Json& result, const char* key) {
+  for (const Json& place : {result, result.value("settings", Json::object())})
     if (place.is_object() && place.contains(key) && place[key].is_number() && place[key].get<double>() > 0)
       return place[key].get<double>();
   return 0;
@@ -32,7 +32,7 @@ double positive_number(const nlohmann::json& result, const char* key) {
 AssetHints read_asset_hints(const std::filesystem::path& folder) {
   AssetHints hints;
   const std::filesystem::path atlas_file = folder / "atlas.json";
-  const nlohmann::json atlas = read_result(atlas_file);
+  const Json atlas = read_result(atlas_file);
   const double size = positive_number(atlas, "size");  // of a square atlas: older records have nothing else
   const double width = positive_number(atlas, "width"), height = positive_number(atlas, "height");
   if (std::max({size, width, height}) > 16384)
@@ -40,11 +40,11 @@ AssetHints read_asset_hints(const std::filesystem::path& folder) {
   const bool both = width >= 1 && height >= 1;
   hints.width = static_cast<int>(both ? width : size);
   hints.height = static_cast<int>(both ? height : size);
-  const nlohmann::json simplify = read_result(folder / "simplify.json");
+  const Json simplify = read_result(folder / "simplify.json");
   hints.hausdorff_distance = positive_number(simplify, "hausdorff_distance");
   if (simplify.contains("settings")) hints.import = import_settings_of(simplify["settings"]);
   if (simplify.contains("warnings") && simplify["warnings"].is_array())
-    for (const nlohmann::json& warning : simplify["warnings"])
+    for (const Json& warning : simplify["warnings"])
       if (warning.is_string()) hints.warnings.push_back(warning.get<std::string>());
   return hints;
 }

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/outputs.h"
 #include "image/gutter.h"
 #include "image/image_file.h"
@@ -58,12 +58,12 @@ void convert_covered(Image<float>& image, const TriangleMesh& atlas, const UvRas
   throw BadInput(file.string(), found, expected, "run kiln-normals on this atlas again");
 }
 
-NormalSpace read_space(const std::filesystem::path& file, const nlohmann::json& result) {
+NormalSpace read_space(const std::filesystem::path& file, const Json& result) {
   const std::string expected = "the result of kiln-normals";
   if (!result.is_object() || !result.contains("settings") || !result["settings"].is_object() ||
       !result["settings"].contains("space"))
     refuse(file, "no settings.space in it", expected);
-  const nlohmann::json& space = result["settings"]["space"];
+  const Json& space = result["settings"]["space"];
   if (space == "object") return NormalSpace::object;
   if (space == "tangent") return NormalSpace::tangent;
   refuse(file, "space " + space.dump(), "object or tangent");
@@ -77,15 +77,15 @@ std::string size_text(const Image<T>& image) {
 
 /// The map, or the constant that stands in the record: three linear values. A record of an older kiln-normals has
 /// neither, and then the surface is white.
-void read_albedo(const std::filesystem::path& folder, const nlohmann::json& record, DetailMaps& maps) {
-  const nlohmann::json albedo = record.value("albedo", nlohmann::json::object());
+void read_albedo(const std::filesystem::path& folder, const Json& record, DetailMaps& maps) {
+  const Json albedo = record.value("albedo", Json::object());
   if (!albedo.is_object() || (!albedo.empty() && !albedo.contains("source")))
     refuse(folder / "normals.json", "albedo " + albedo.dump(), "the result of kiln-normals");
   if (albedo.empty()) return;
   maps.albedo_known = albedo["source"] != "none";
   if (albedo.contains("constant")) {
-    const nlohmann::json& values = albedo["constant"];
-    const auto is_share = [](const nlohmann::json& v) { return v.is_number() && v >= 0 && v <= 1; };
+    const Json& values = albedo["constant"];
+    const auto is_share = [](const Json& v) { return v.is_number() && v >= 0 && v <= 1; };
     if (!values.is_array() || values.size() != 3 || !std::all_of(values.begin(), values.end(), is_share))
       refuse(folder / "normals.json", "a constant albedo of " + values.dump(), "three numbers of 0 to 1");
     for (int c = 0; c < 3; ++c) maps.constant_albedo[c] = values[static_cast<std::size_t>(c)];
@@ -158,7 +158,7 @@ DetailMaps load_detail_maps(const std::filesystem::path& folder, const TriangleM
   if (!std::filesystem::is_directory(folder))
     throw BadInput(folder.string(), "no such folder", "the output folder of kiln-normals", "check the path");
   const std::filesystem::path record_file = folder / "normals.json";
-  const nlohmann::json record = nlohmann::json::parse(read_text(record_file), nullptr, false);
+  const Json record = Json::parse(read_text(record_file), nullptr, false);
   const NormalSpace space = read_space(record_file, record);
   const Image<std::uint8_t> coverage = read_png8(folder / "coverage.png");
   const Image<std::uint16_t> encoded = read_png16(folder / "normal.png");

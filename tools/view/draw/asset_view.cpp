@@ -132,7 +132,7 @@ std::uint64_t AssetView::gpu_bytes(const ViewState& state) {
 std::pair<double, double> AssetView::coefficient_range(int coefficient, Technique technique) {
   const auto k = static_cast<std::size_t>(coefficient);
   const PrtAsset& asset = scene_.forms.of(decoding_technique(technique, scene_.forms.main()));
-  if (!asset.clusters) return {asset.planes[k].lowest, asset.planes[k].highest};
+  if (!asset.clusters) return {asset.planes[k].range.lowest, asset.planes[k].range.highest};
   if (decoded_ranges_.empty()) decoded_ranges_ = decoded_ranges(asset);
   return decoded_ranges_[k];
 }

@@ -1,0 +1,195 @@
+#include "asset/read_description.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace kiln {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* bake_again = "bake the asset again with kiln-bake";
+constexpr const char* compress_again = "compress the asset again with kiln-compress";
+
+void read_normals(const Fields& fields, PrtDescription& asset) {
+  if (!fields.has(key::normals)) return;
+  asset.normals_file = fields.safe_path(key::normals);
+  if (!fields.has(key::normal_space)) return;
+  const std::string expected = "object or tangent", space = fields.text(key::normal_space, expected);
+  if (space == "tangent") asset.normal_space = NormalSpace::tangent;
+  if (!space.empty() && space != "object" && space != "tangent")
+    fields.fail(fields.path(key::normal_space), space, expected);
+}
+
+PrtAlbedo read_albedo(const Fields& fields, bool has_pictures) {
+  const std::string expected =
+      has_pictures ? "the name of a picture, or three numbers of 0 to 1" : "three numbers of 0 to 1";
+  if (!fields.has(key::albedo)) return {};
+  const Json& value = *fields.find(key::albedo, expected);
+  if (has_pictures && value.is_string()) return PrtAlbedo::of_picture(fields.safe_path(key::albedo));
+  const auto is_share = [](const Json& v) { return v.is_number() && v >= 0 && v <= 1; };
+  if (value.is_array() && value.size() == 3 && std::all_of(value.begin(), value.end(), is_share))
+    return PrtAlbedo::of_constant({value[0].get<float>(), value[1].get<float>(), value[2].get<float>()});
+  if (has_pictures && !value.is_array())
+    fields.safe_path(key::albedo);
+  else
+    fields.fail(key::albedo, Fields::shown(value), expected);
+  return {};
+}
+
+Eigen::Vector3d read_origin(const Fields& fields) {
+  if (!fields.has(key::origin)) return Eigen::Vector3d::Zero();
+  const std::vector<double> origin = fields.numbers(key::origin, 3);
+  return origin.empty() ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(origin[0], origin[1], origin[2]);
+}
+
+/// Bands, channels, the mesh and what else both descriptions have.
+void read_shared(const Fields& fields, PrtDescription& asset) {
+  if (asset.vertices == 0) {
+    asset.width = fields.integer(key::width, 1, largest_asset_side);
+    asset.height = fields.integer(key::height, 1, largest_asset_side);
+  }
+  asset.mesh_file = fields.safe_path(key::mesh);
+  read_normals(fields, asset);
+  asset.albedo = read_albedo(fields, asset.vertices == 0);
+  asset.origin = read_origin(fields);
+}
+
+/// The plane at `index` of the list, which has each once, in order.
+PrtPlane read_plane(const Fields& fields, const PrtDescription& asset, int index) {
+  const int coefficients = asset.bands * asset.bands;
+  PrtPlane plane;
+  plane.bits = asset.bits;
+  if (asset.vertices == 0) {
+    plane.file = fields.safe_path(key::file);
+  } else {
+    plane.attribute = fields.text(key::attribute, "the name of an attribute of the mesh");
+    plane.component = fields.integer(key::component, 0, attribute_components - 1);
+    if (fields.has(key::unique_id))
+      plane.unique_id = static_cast<std::uint32_t>(fields.integer(key::unique_id, 0, most_asset_vertices));
+  }
+  plane.channel = fields.integer(key::channel, 0, asset.channels - 1, -1);
+  plane.coefficient = fields.integer(key::coefficient, 0, coefficients - 1, -1);
+  const bool is_known = plane.channel >= 0 && plane.coefficient >= 0;
+  if (is_known && (plane.channel != index / coefficients || plane.coefficient != index % coefficients))
+    fields.fail(fields.path(key::coefficient), fmt::format("{} of channel {}", plane.coefficient, plane.channel),
+                fmt::format("coefficient {} of channel {} (each plane once, in order)", index % coefficients,
+                            index / coefficients));
+  plane.range = read_range(fields);
+  return plane;
+}
+
+/// What ranges.json has of its own.
+void read_ranges(const Fields& fields, PrtDescription& asset) {
+  asset.bits = fields.bits(key::bits);
+  if (fields.has(key::vertices)) asset.vertices = fields.integer(key::vertices, 1, most_asset_vertices, 1);
+  read_shared(fields, asset);
+  if (asset.vector_length() == 0) return;  // of what is at fault no number of planes follows
+  const Json* planes = fields.list(key::planes, asset.vector_length(), "planes");
+  for (std::size_t k = 0; planes != nullptr && k < planes->size(); ++k)
+    asset.planes.push_back(read_plane(fields.child(key::planes, k, (*planes)[k]), asset, static_cast<int>(k)));
+}
+
+/// What pca.json has of its own.
+void read_pca(const Fields& fields, PrtDescription& asset) {
+  read_shared(fields, asset);
+  const int length = static_cast<int>(asset.vector_length());
+  PcaTables& tables = asset.pca.emplace();
+  tables.clusters = fields.integer(key::clusters, 1, most_clusters, 1);
+  const int components = length > 0 ? fields.integer(key::components, 1, length) : 0;
+  if (asset.bands > 0)
+    tables.coefficient_scales =
+        fields.numbers(key::coefficient_scales, static_cast<std::size_t>(asset.bands) * asset.bands);
+  tables.vectors_file = fields.safe_path(key::vectors_file);
+  if (tables.clusters > 1) tables.ids_file = fields.safe_path(key::cluster_ids);
+  if (components == 0) return;
+
+  asset.bits = 8;
+  const Json* planes = fields.list(key::planes, static_cast<std::size_t>(components), "planes");
+  for (std::size_t k = 0; planes != nullptr && k < planes->size(); ++k) {
+    const Fields plane = fields.child(key::planes, k, (*planes)[k]);
+    asset.planes.push_back({plane.safe_path(key::file), 0, static_cast<int>(k), read_range(plane)});
+    asset.planes.back().bits = plane.bits(key::bits);
+    asset.bits = std::max(asset.bits, asset.planes.back().bits);
+  }
+  const Json* ranges = fields.list(key::vector_ranges, static_cast<std::size_t>(components) + 1,
+                                   "ranges: the means', then the basis vectors'");
+  for (std::size_t k = 0; ranges != nullptr && k < ranges->size(); ++k)
+    tables.vector_ranges.push_back(read_range(fields.child(key::vector_ranges, k, (*ranges)[k])));
+}
+
+}  // namespace
+
+FormatHead read_head(const Fields& fields, const char* format, const std::vector<std::string>& known) {
+  FormatHead head;
+  fields.constant(key::format, format);
+  head.version = fields.integer(key::version, oldest_format_version, format_version);
+  // Version 1 has no such key, so there it is one of those that are ignored.
+  if (head.version >= 2) {
+    const std::string expected = known.empty() ? "nothing" : fmt::format("none but {}", fmt::join(known, ", "));
+    const Json* list = fields.list(key::required, std::nullopt, "names of what a reader must know");
+    for (std::size_t k = 0; list != nullptr && k < list->size(); ++k) {
+      const Json& entry = (*list)[k];
+      if (entry.is_string() && std::find(known.begin(), known.end(), entry) != known.end())
+        head.required.push_back(entry);
+      else
+        fields.tell(BadInput(fields.file(), "requires " + Fields::shown(entry) + ", which this version does not know",
+                             expected, "take a later version of Kiln, or " + fields.remedy()));
+    }
+  }
+  fields.constant(key::basis, basis_name);
+  return head;
+}
+
+PlaneRange read_range(const Fields& fields) {
+  const PlaneRange range{fields.number(key::lowest), fields.number(key::highest)};
+  if (range.lowest > range.highest)
+    fields.fail(fields.path(key::lowest), fmt::format("{:g}, above max {:g}", range.lowest, range.highest),
+                "min <= max");
+  return range;
+}
+
+std::pair<PrtDescription, FormatHead> read_description(const fs::path& file, Faults& faults) {
+  PrtDescription asset;
+  asset.ranges_file = file;
+  const bool is_pca = file.filename() == pca_name;
+  const std::string remedy = is_pca ? compress_again : bake_again;
+  Json document;
+  if (!faults.guard([&] { document = parse_json(file, is_pca ? "kiln-compress" : "kiln-bake", remedy); }))
+    return {asset, {}};
+  const Fields fields(file.string(), "", document, remedy, &faults);
+  std::vector<std::string> known = {requirement::albedo, requirement::tangent_normals};
+  if (!is_pca) known.emplace_back(requirement::vertices);
+  const FormatHead head = read_head(fields, is_pca ? pca_format : prt_format, known);
+  asset.bands = fields.integer(key::bands, 1, most_asset_bands);
+  asset.channels = fields.integer(key::channels, 1, most_asset_channels);
+  is_pca ? read_pca(fields, asset) : read_ranges(fields, asset);
+  return {asset, head};
+}
+
+std::vector<std::string> requirements(const PrtDescription& asset) {
+  std::vector<std::string> required;
+  if (asset.albedo.known) required.emplace_back(requirement::albedo);
+  if (!asset.normals_file.empty() && asset.normal_space == NormalSpace::tangent)
+    required.emplace_back(requirement::tangent_normals);
+  if (asset.vertices > 0) required.emplace_back(requirement::vertices);
+  return required;
+}
+
+std::string remedy_for(const PrtDescription& asset) {
+  if (asset.pca) return compress_again;
+  return asset.vertices > 0 ? std::string(bake_again) + " --per-vertex" : bake_again;
+}
+
+fs::path description_file(const fs::path& folder) {
+  std::error_code error;
+  for (const char* name : {pca_name, ranges_name})
+    if (fs::is_regular_file(folder / name, error)) return folder / name;
+  throw BadInput(folder.string(),
+                 fs::is_directory(folder, error) ? std::string("has no ") + ranges_name : std::string("is no folder"),
+                 "the output folder of kiln-bake or kiln-compress", "run kiln-bake, or name its output folder");
+}
+
+}  // namespace kiln

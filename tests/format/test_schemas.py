@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""test_schemas.py PROGRAMS SOURCES: what a run writes fits docs/schema, and what is broken does not.
+
+Needs python3-jsonschema and python3-yaml. Each broken variant is one change to what was written, and must be refused.
+"""
+import copy, json, os, pathlib, subprocess, sys, tempfile
+import jsonschema, yaml
+
+programs, sources = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+faults = []
+schemas = {}
+for file in sorted((sources / "docs" / "schema").glob("*.schema.json")):
+    schema = json.loads(file.read_text())
+    jsonschema.Draft202012Validator.check_schema(schema)
+    schemas[file.name.split(".")[0]] = jsonschema.Draft202012Validator(schema)
+
+PIPELINE = """
+output: out
+defaults:
+  simplify: {faces: 24}
+  atlas: {size: 32, gutter: 2}
+  bake: {bands: 2, directions: 64, backend: embree}
+  compress: {max-error: 0.2}
+  report: {picture-size: 64, directions: 32, lights: ['45,30', 'ambient:1']}
+budgets:
+  bake.texels: {min: 1}
+assets:
+  post: {mesh: post.obj, material: {albedo: [0.8, 0.5, 0.2]}}
+"""
+
+
+def run(*command, status=0):
+    result = subprocess.run([programs / command[0], *command[1:]], capture_output=True, text=True)
+    if result.returncode != status:
+        sys.exit(f"{command} ended with {result.returncode}:\n{result.stderr}")
+    return result.stdout
+
+
+def fits(name, value, what):
+    for error in schemas[name].iter_errors(value):
+        faults.append(f"{what}: {error.json_path}: {error.message[:200]}")
+
+
+def refuses(name, value, changes):
+    """`changes`: (path, new value); a path ends in a key or index, and DROP removes it."""
+    for path, new in changes:
+        broken = copy.deepcopy(value)
+        inner = broken
+        for step in path[:-1]:
+            inner = inner[step]
+        if new is DROP:
+            del inner[path[-1]]
+        else:
+            inner[path[-1]] = new
+        if schemas[name].is_valid(broken):
+            faults.append(f"{name}: {path} as {new!r} is not refused")
+
+
+DROP = object()
+
+# The committed schema of pipeline.yaml is what the option tables make.
+made = json.loads(run("kiln", "schema"))
+if made != schemas["pipeline"].schema:
+    faults.append("docs/schema/pipeline.schema.json is old; make it by: kiln schema > docs/schema/pipeline.schema.json")
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    pathlib.Path("post.obj").write_text((sources / "examples" / "post.obj").read_text())
+    pathlib.Path("pipeline.yaml").write_text(PIPELINE)
+    run("kiln", "build", "--quiet")
+    run("kiln-bake", "post.obj", "--per-vertex", "-o", "vertices", "--bands", "2", "--directions", "64", "--quiet")
+    run("kiln-normals", "post.obj", "out/post/atlas.drc", "-o", "tangent", "--space", "tangent", "--quiet")
+    run("kiln-bake", "out/post/atlas.drc", "--detail", "tangent", "--occluder", "post.obj", "-o", "hollow", "--bands", "2",
+        "--directions", "64", "--quiet")
+    run("kiln-compress", "out/post/prt", "-o", "pca", "--clusters", "2", "--pca", "2", "--quiet")
+    run("kiln-probes", "post.obj", "-o", "probes", "--grid", "2x1x2", "--bands", "2", "--directions", "64", "--quiet")
+    read = lambda name: json.loads(pathlib.Path(name).read_text())
+
+    # What was written fits.
+    for name, files in {
+        "ranges": ["out/post/prt/ranges.json", "vertices/ranges.json", "hollow/ranges.json"],
+        "pca": ["pca/pca.json"],
+        "matrices": ["probes/matrices.json"],
+        "record": ["out/post/simplify.json", "out/post/atlas.json", "out/post/normals/normals.json", "out/post/prt/bake.json",
+                   "out/post/small/compress.json", "out/post/report.json", "vertices/bake.json", "probes/probes.json"],
+        "metrics": ["out/post/metrics.json"],
+    }.items():
+        for file in files:
+            fits(name, read(file), file)
+    for form in ("textured", "tangent", "vertices"):
+        fits("ranges", json.loads((sources / f"tests/data/version1/{form}/ranges.json").read_text()), f"version 1, {form}")
+    fits("check", json.loads(run("kiln", "check", "--json", "out/post", "vertices", "hollow", "pca", "probes")), "kiln check")
+    pathlib.Path("pca/weight_00.png").unlink()
+    told = json.loads(run("kiln", "check", "--json", "pca", "nowhere", status=3))
+    fits("check", told, "kiln check of a broken folder")
+    if [len(entry["faults"]) for entry in told["folders"]] != [1, 1]:
+        faults.append(f"kiln check tells {told['folders']}")
+    for file in ("pipeline.yaml", "samples/scene.yaml"):
+        fits("pipeline", yaml.safe_load((sources / file).read_text()), file)
+    fits("pipeline", yaml.safe_load(PIPELINE), "the pipeline of this test")
+
+    # What is broken does not.
+    refuses("ranges", read("out/post/prt/ranges.json"), [
+        (("format",), "kiln-prt-pca"), (("version",), 3), (("requires",), DROP), (("requires",), []), (("requires",), ["holograms"]),
+        (("basis",), "complex"), (("bands",), 0), (("bits",), 12), (("width",), DROP), (("mesh",), "../atlas.drc"),
+        (("mesh",), "/atlas.drc"), (("albedo",), [1, 2, 1]), (("planes",), []), (("planes", 1, "file"), DROP),
+        (("planes", 1, "min"), "0"), (("origin",), [1, 2])])
+    refuses("ranges", read("vertices/ranges.json"), [
+        (("requires",), []), (("planes", 0, "attribute"), DROP), (("planes", 0, "component"), 4), (("albedo",), "albedo.png")])
+    refuses("ranges", read("hollow/ranges.json"), [(("requires",), []), (("normal_space",), "world")])
+    refuses("pca", read("pca/pca.json"), [
+        (("requires",), ["vertices"]), (("clusters",), 257), (("cluster_ids",), DROP), (("planes", 0, "bits"), 9),
+        (("vector_ranges", 0, "max"), None)])
+    refuses("matrices", read("probes/matrices.json"), [
+        (("requires",), ["albedo"]), (("channels",), 2), (("grid",), DROP), (("grid", "size"), [2, 2]), (("bands",), 9)])
+    refuses("record", read("out/post/prt/bake.json"), [
+        (("stage",), "stir"), (("seconds",), -1), (("directions",), DROP), (("outputs", "atlas.drc"), "abc"), (("warnings",), "none")])
+    refuses("metrics", read("out/post/metrics.json"), [
+        (("bake",), DROP), (("bake", "stage"), "atlas"), (("report", "budgets", 0, "met"), 1), (("more",), {})])
+    refuses("check", told, [(("folders",), []), (("folders", 0, "faults", 0, "remedy"), DROP)])
+    pipeline = yaml.safe_load(PIPELINE)
+    refuses("pipeline", pipeline, [
+        (("assets",), DROP), (("asets",), {}), (("defaults", "bake", "bands"), 25), (("defaults", "bake", "bands"), "five"),
+        (("defaults", "bake", "backend"), "cuda"), (("defaults", "bake", "refine"), True), (("defaults", "stir"), {}),
+        (("defaults", "simplify", "face"), 7), (("budgets", "bake.texels"), {}), (("budgets", "bake.texels"), {"most": 1}),
+        (("assets", "post", "mesh"), {"archive": "a.tar"}), (("assets", "post", "default"), "yes"),
+        (("assets", "post", "material"), {"albedo": 1, "texture": "a.png"})])
+
+print("\n".join(faults) if faults else "what a run writes fits its schemas")
+sys.exit(bool(faults))

@@ -1,0 +1,158 @@
+#include "kiln/schema.h"
+
+#include <fmt/format.h>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "import/import_settings.h"
+#include "kiln/stages.h"
+
+namespace kiln {
+
+namespace {
+
+Json object_of(const Json& properties) {
+  return {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
+}
+
+/// What may stand for a text: YAML reads 45 as a number and off as false, and a list becomes one text.
+Json text_schema() {
+  return {{"type", {"string", "number", "boolean", "array"}}, {"items", {{"type", {"string", "number"}}}}};
+}
+
+/// "a, b or c" as its words; empty where the range is something else.
+std::vector<std::string> words_of(const std::string& range) {
+  std::vector<std::string> words;
+  static const std::regex separator(", | or "), word("[a-z0-9][a-z0-9+-]*");
+  for (std::sregex_token_iterator part(range.begin(), range.end(), separator, -1), end; part != end; ++part) {
+    const std::string text = *part;
+    if (!std::regex_match(text, word)) return {};
+    words.push_back(text);
+  }
+  return words.size() > 1 ? words : std::vector<std::string>();
+}
+
+/// The values of an option, as OptionSet words their range.
+Json value_schema(const Option& option) {
+  static const std::regex numbers("(auto or )?([-+.e0-9]+) to ([-+.e0-9]+)(, or WIDTHxHEIGHT)?");
+  if (option.is_switch) return {{"type", "boolean"}};
+  const Json value = option.get();
+  std::smatch match;
+  if (std::regex_match(option.value_range, match, numbers)) {
+    // A whole number where the text of the range has no other; a table tells more by its default.
+    const bool is_whole = value.is_number_integer() || match[4].matched;
+    Json number = {{"type", is_whole ? "integer" : "number"}};
+    number["minimum"] = Json::parse(match[2].str());
+    number["maximum"] = Json::parse(std::regex_replace(match[3].str(), std::regex("e\\+"), "e"));
+    if (match[4].matched) return {{"anyOf", {number, {{"type", "string"}, {"pattern", "^[0-9]+(x[0-9]+)?$"}}}}};
+    if (match[1].matched) return {{"anyOf", {number, {{"const", "auto"}}}}};
+    return number;
+  }
+  const std::vector<std::string> words = words_of(option.value_range);
+  if (!words.empty() && value.is_string()) {
+    // Numbers among the words, such as the 24 of depths, are numbers in YAML.
+    Json choices = Json::array();
+    for (const std::string& word : words) {
+      choices.push_back(word);
+      if (const Json number = Json::parse(word, nullptr, false); number.is_number()) choices.push_back(number);
+      if (word == "off" || word == "on") choices.push_back(word == "on");
+    }
+    return {{"enum", choices}};
+  }
+  return text_schema();
+}
+
+Json option_schema(const Option& option) {
+  Json schema = value_schema(option);
+  schema["description"] =
+      option.value_range.empty() ? option.help : fmt::format("{} ({})", option.help, option.value_range);
+  schema["default"] = option.get();
+  return schema;
+}
+
+Json stage_schema(Stage stage) {
+  const StageOptions options(stage);
+  Json properties = Json::object();
+  for (const Option& option : options.all()) properties[option.name] = option_schema(option);
+  Json schema = object_of(properties);
+  if (!is_on_request(stage)) schema["type"] = {"object", "null"};
+  if (is_on_request(stage)) schema["type"] = {"object", "boolean", "null"};
+  return schema;
+}
+
+Json import_schema() {
+  ImportSettings settings;
+  OptionSet options;
+  add_import_options(options, settings);
+  Json properties = Json::object();
+  for (const Option& option : options.options()) properties[option.name] = option_schema(option);
+  return object_of(properties);
+}
+
+/// The names that `material` has for settings of the normals stage.
+Json material_schema() {
+  const StageOptions options(Stage::normals);
+  Json properties = {{"albedo", option_schema(*options.find("albedo"))},
+                     {"texture", option_schema(*options.find("albedo-texture"))},
+                     {"encoding", option_schema(*options.find("albedo-encoding"))}};
+  Json schema = object_of(properties);
+  schema["not"] = {{"required", {"albedo", "texture"}}};
+  return schema;
+}
+
+Json reference(const std::string& name) { return {{"$ref", "#/$defs/" + name}}; }
+
+/// The blocks that `defaults` and assets have.
+Json block_references() {
+  Json blocks = {{"import", reference("import")}, {"material", reference("material")}};
+  for (const Stage stage : all_stages) blocks[stage_name(stage)] = reference(stage_name(stage));
+  return blocks;
+}
+
+Json definitions() {
+  const Json number = {{"type", "number"}};
+  Json defs = {{"import", import_schema()}, {"material", material_schema()}};
+  for (const Stage stage : all_stages) defs[stage_name(stage)] = stage_schema(stage);
+  Json limits = object_of({{"min", number}, {"max", number}});
+  limits["minProperties"] = 1;
+  defs["budgets"] = {{"type", "object"},
+                     {"propertyNames", {{"pattern", "^[a-z]+(\\.[A-Za-z0-9_-]+)+$"}}},
+                     {"additionalProperties", limits}};
+  defs["paths"] = {{"type", {"string", "array"}}, {"items", {{"type", "string"}}}};
+  Json archive = object_of({{"archive", {{"type", "string"}}}, {"member", {{"type", "string"}}}});
+  archive["required"] = {"archive", "member"};
+  Json square = object_of({{"square", {{"type", "number"}, {"exclusiveMinimum", 0}}}});
+  square["required"] = Json::array({"square"});
+  defs["mesh"] = {{"anyOf", {{{"type", "string"}}, archive, square}}};
+  Json body = block_references();
+  body.update({{"mesh", reference("mesh")},
+               {"default", {{"type", "boolean"}}},
+               {"budgets", reference("budgets")},
+               {"include", reference("paths")}});
+  defs["asset"] = object_of(body);
+  defs["asset"]["type"] = {"object", "null"};
+  return defs;
+}
+
+}  // namespace
+
+Json pipeline_schema() {
+  const Json names = {{"type", "array"}, {"items", {{"type", "string"}}}, {"minItems", 1}};
+  const Json bodies = {{"type", "object"}, {"additionalProperties", reference("asset")}, {"minProperties", 1}};
+  const Json place = {{"type", {"string", "array"}}, {"items", {{"type", "number"}}}};
+  Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+                 {"title", "pipeline.yaml"},
+                 {"description", "Made by `kiln schema` from the stages' option tables."}};
+  schema.update(object_of({{"output", {{"type", "string"}}},
+                           {"include", reference("paths")},
+                           {"defaults", object_of(block_references())},
+                           {"budgets", reference("budgets")},
+                           {"assets", {{"anyOf", {bodies, names}}}},
+                           {"scene", {{"type", "object"}, {"additionalProperties", place}}}}));
+  schema["required"] = Json::array({"assets"});
+  schema["$defs"] = definitions();
+  return schema;
+}
+
+}  // namespace kiln
