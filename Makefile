@@ -3,6 +3,7 @@
 #   make          build everything into build/release
 #   make demo     build the programs, then run pipeline.yaml; ends by naming the report
 #   make test     build, then run all tests
+#   make check    formatting, clang-tidy, sanitizers, a build with clang; CHECKS="format tidy" for some of them
 #   make install  install programs, the runtime and its headers; PREFIX=/usr/local, DESTDIR for packagers
 #   make package  a .deb of the same, in build/release
 #   make clean    remove what was built and made
@@ -12,7 +13,7 @@ JOBS   ?= $(shell nproc)
 BUILD  := build/$(PRESET)
 PREFIX ?= /usr/local
 
-.PHONY: build programs pages configure demo test install package clean
+.PHONY: build programs pages configure demo test check install package clean
 
 build: configure
 	cmake --build $(BUILD) -j $(JOBS)
@@ -32,6 +33,9 @@ demo: programs
 
 test: build
 	ctest --preset $(PRESET) -j $(JOBS)
+
+check:
+	.ci/check $(CHECKS)
 
 install: pages
 	cmake --install $(BUILD) --prefix $(PREFIX)

@@ -85,8 +85,9 @@ void draw(kiln::runtime::gl::Renderer& renderer, const kiln::runtime::Asset& ass
   glEnable(GL_FRAMEBUFFER_SRGB);
   glClearColor(0.1f, 0.1f, 0.1f, 1);
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-  renderer.set_light(
-      kiln::runtime::Light().directional(view.light_azimuth, view.light_elevation).ambient({0.1f, 0.1f, 0.12f}));
+  renderer.set_light(kiln::runtime::Light()
+                         .directional(view.light_azimuth, view.light_elevation, {0.8f, 0.8f, 0.8f})
+                         .ambient({0.1f, 0.1f, 0.12f}));
   const float aspect = static_cast<float>(width) / static_cast<float>(height);
   const Camera camera = camera_around(asset, view.azimuth, view.elevation, aspect);
   renderer.draw(camera.clip_from_object, camera.eye);
@@ -94,7 +95,7 @@ void draw(kiln::runtime::gl::Renderer& renderer, const kiln::runtime::Asset& ass
 
 void save_picture(const kiln::runtime::Asset& asset, const char* file) {
   // Step 1: a context without a window.
-  const EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+  const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
   if (!eglInitialize(display, nullptr, nullptr) || !eglBindAPI(EGL_OPENGL_API))
     throw std::runtime_error("EGL has no display without a surface");
   const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5, EGL_NONE};

@@ -55,9 +55,7 @@ std::span<const std::uint32_t> Asset::triangles() const {
   return {asset_->mesh.triangles.front().data(), 3 * asset_->mesh.triangles.size()};
 }
 
-std::array<double, 3> Asset::origin() const {
-  return {asset_->origin.x(), asset_->origin.y(), asset_->origin.z()};
-}
+std::array<double, 3> Asset::origin() const { return {asset_->origin.x(), asset_->origin.y(), asset_->origin.z()}; }
 
 void Asset::transfer(std::span<const std::uint32_t> points, std::span<float> vectors) const {
   const std::size_t count = this->points(), length = vector_length();

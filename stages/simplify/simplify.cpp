@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/stopwatch.h"
 #include "base/errors.h"
+#include "base/stopwatch.h"
 #include "mesh/hard_edges.h"
 #include "mesh/nearest_surface.h"
 #include "simplify/reduce.h"

@@ -33,8 +33,8 @@
 #include <vector>
 
 #include "cost.h"
-#include "mesh/mesh_distance.h"
 #include "import/import_mesh.h"
+#include "mesh/mesh_distance.h"
 #include "simplify/collapse.h"
 #include "simplify/reduce.h"
 

@@ -13,8 +13,8 @@
 
 #include "base/command_line.h"
 #include "gpu/egl_context.h"
-#include "runtime/draw/scene_renderer.h"
 #include "render/render_settings.h"
+#include "runtime/draw/scene_renderer.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 #include "sh/transfer.h"

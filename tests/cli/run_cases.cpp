@@ -159,8 +159,7 @@ class Runner {
     for (const auto& [file, bytes] : cuts.items()) fs::resize_file(folder_ / file, bytes.get<std::uintmax_t>());
 
     const Json new_times = step.value("time", Json::object());
-    for (const auto& [file, seconds] : new_times.items())
-      set_time(folder_ / file, seconds.get<std::int64_t>());
+    for (const auto& [file, seconds] : new_times.items()) set_time(folder_ / file, seconds.get<std::int64_t>());
 
     Words faults;
     std::map<std::string, fs::file_time_type> times;

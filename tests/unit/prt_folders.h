@@ -19,8 +19,8 @@
 #include "image/image_file.h"
 #include "mesh/draco_file.h"
 #include "mesh/uv_raster.h"
-#include "runtime/draw/scene_renderer.h"
 #include "render/render_settings.h"
+#include "runtime/draw/scene_renderer.h"
 #include "sh/basis.h"
 
 /// Baked folders for tests, written by the contract, and pictures of them.

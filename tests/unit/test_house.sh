@@ -19,7 +19,7 @@ grep -rnE '#include "(tools|lights|render|view|kiln)/' "$source_folder/runtime" 
 for stage in simplify atlas normals bake compress probes report; do
   grep -rnE "#include \"$stage/" "$source_folder/runtime" --include=*.h --include=*.cpp && fault "the runtime includes $stage"
 done
-grep -rnE '#include' "$source_folder/runtime/include" | grep -vE '#include (<[a-z_]+>|"kiln/)' && fault "installed headers include the house"
+grep -rnE '^#include' "$source_folder/runtime/include" | grep -vE '#include (<[a-z_]+>|"kiln/)' && fault "installed headers include the house"
 
 # The EGL engine can be carried to a bare machine.
 ldd "$engine_program" | grep -E 'OpenImageIO|embree|draco|OpenMesh|tbb|gmp|fmt|xxhash' && fault "the EGL engine links more than EGL, GL and Eigen"

@@ -6,8 +6,8 @@
 
 #include "base/errors.h"
 #include "prt_folders.h"
-#include "runtime/decode/plane_weights.h"
 #include "render/output/picture.h"
+#include "runtime/decode/plane_weights.h"
 #include "scratch.h"
 #include "sh/directions.h"
 #include "shapes.h"

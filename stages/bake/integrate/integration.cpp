@@ -6,8 +6,8 @@
 
 #include "bake/engines/engines.h"
 #include "bake/integrate/unoccluded.h"
-#include "base/stopwatch.h"
 #include "base/errors.h"
+#include "base/stopwatch.h"
 #include "sh/basis.h"
 
 namespace kiln {

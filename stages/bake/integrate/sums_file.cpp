@@ -1,7 +1,7 @@
 #include "bake/integrate/sums_file.h"
 
-#include <cerrno>
 #include <bit>
+#include <cerrno>
 #include <fstream>
 
 #include "base/errors.h"

@@ -12,7 +12,6 @@ namespace {
 
 constexpr std::int32_t unknown = -1, none = -2;
 constexpr BeamPlaces unknown_places = {0, 1, 0};  // what lies wholly above a plane also rises above it
-constexpr std::uint32_t all_lanes = (1u << beam_lanes) - 1;
 constexpr std::size_t most_of_block = 128, most_of_quarter = 128;
 constexpr float direction_rounding = 1e-6f;  // of unit vectors in float32, with room
 constexpr int few_clusters = 64;             // tested rather than searched
