@@ -153,7 +153,7 @@ class Collapser {
       const Triangle& t = mesh_.triangles()[triangle];
       if (t[0] != a && t[1] != a && t[2] != a) planes.push_back(planes_[triangle]);
     }
-    Few<LineEdge> lines;
+    Few<FeatureEdge> lines;
     if (line) collect_lines(a, b, lines);
     const Vector &pa = positions_[a], &pb = positions_[b];
     const EdgeSurroundings surroundings{
@@ -178,7 +178,7 @@ class Collapser {
     return best;
   }
 
-  void collect_lines(std::uint32_t a, std::uint32_t b, Few<LineEdge>& lines) const {
+  void collect_lines(std::uint32_t a, std::uint32_t b, Few<FeatureEdge>& lines) const {
     std::vector<std::uint32_t> neighbours;
     lines.push_back({positions_[a], positions_[b]});
     for (const auto& [end, other] : {std::pair(a, b), std::pair(b, a)}) {
@@ -186,8 +186,8 @@ class Collapser {
       // Along the line, whichever end comes first; what matters is that the directions agree.
       for (std::uint32_t next : neighbours)
         if (next != other)
-          lines.push_back(end == a ? LineEdge{positions_[next], positions_[a]}
-                                   : LineEdge{positions_[b], positions_[next]});
+          lines.push_back(end == a ? FeatureEdge{positions_[next], positions_[a]}
+                                   : FeatureEdge{positions_[b], positions_[next]});
     }
   }
 

@@ -24,6 +24,7 @@ struct CollapseSequence {
   TriangleMesh start;
   std::vector<Collapse> collapses;
   std::size_t close_count = 0;  ///< so many kept within the closest limits; the rest had wider ones
+  bool met_envelope = false;    ///< some collapse was refused as it would have left the envelope (collapse_by_cgal)
 
   /// Triangles after the first `count` collapses.
   int faces_after(std::size_t count) const;

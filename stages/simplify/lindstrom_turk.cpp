@@ -68,7 +68,7 @@ PlacementConstraints lindstrom_turk_constraints(const EdgeSurroundings& edge) {
   if (!edge.lines.empty()) {
     // Line preservation: the sum of the areas between the line and the point is nothing.
     Vector along = Vector::Zero(), area = Vector::Zero();
-    for (const LineEdge& line : edge.lines) {
+    for (const FeatureEdge& line : edge.lines) {
       along += line.to - line.from;
       area += line.to.cross(line.from);
     }
@@ -85,7 +85,7 @@ PlacementConstraints lindstrom_turk_constraints(const EdgeSurroundings& edge) {
   }
   constraints.add(normal, offset);
   if (constraints.size() == 3) return constraints;
-  for (const LineEdge& line : edge.lines) {
+  for (const FeatureEdge& line : edge.lines) {
     const Vector along = line.to - line.from;
     H += 9 * edge.squared_length * across(along);
     c += 9 * edge.squared_length * along.cross(line.to.cross(line.from));
@@ -100,7 +100,7 @@ double lindstrom_turk_cost(const EdgeSurroundings& edge, const Vector& v) {
     const double six_volumes = plane.normal.dot(v) - plane.offset;
     volume += six_volumes * six_volumes;
   }
-  for (const LineEdge& line : edge.lines) area += (line.to - line.from).cross(v - line.from).squaredNorm();
+  for (const FeatureEdge& line : edge.lines) area += (line.to - line.from).cross(v - line.from).squaredNorm();
   return 0.5 * volume / 36 + 0.5 * edge.squared_length * area / 4;
 }
 

@@ -17,14 +17,14 @@ struct TrianglePlane {
 };
 
 /// An edge of a border or crease.
-struct LineEdge {
+struct FeatureEdge {
   Eigen::Vector3d from, to;
 };
 
 /// The neighbourhood of an edge, all in one frame.
 struct EdgeSurroundings {
   std::span<const TrianglePlane> planes;  ///< of each triangle at either end
-  std::span<const LineEdge> lines;        ///< at either end
+  std::span<const FeatureEdge> lines;        ///< at either end
   double squared_length = 0;              ///< of the edge
 };
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "simplify/cgal_collapse.h"
 #include "simplify/collapse.h"
 #include "simplify/feature_edges.h"
 #include "simplify/fit.h"
@@ -36,24 +37,29 @@ class Reducer {
         given_(feature_edges.begin(), feature_edges.end()) {}
 
   Reduced to_faces(const ProgressFunction& progress) const {
-    if (settings_.quality == SimplifyQuality::best) return best_to_faces(progress);
-    return unfitted_to_faces(settings_.quality, progress);
+    if (quality() == SimplifyQuality::best) return best_to_faces(progress);
+    return unfitted_to_faces(quality(), progress);
   }
 
   Reduced to_error(const ProgressFunction& progress) const {
     // Where standard's steps are to begin, a draft says.
     int faces = 4;
-    if (settings_.quality == SimplifyQuality::standard) {
+    if (quality() == SimplifyQuality::standard && settings_.engine == SimplifyEngine::kiln) {
       const CollapseSequence sequence = collapse(SimplifyQuality::draft, 4, true, part(progress, 0, 0.1));
       faces = sequence.faces_after(count_within(sequence, part(progress, 0.1, 0.3)));
     }
-    const bool fits = settings_.quality == SimplifyQuality::best;
-    const CollapseSequence sequence = collapse(settings_.quality, faces, true, part(progress, 0.3, fits ? 0.4 : 0.7));
+    const bool fits = quality() == SimplifyQuality::best;
+    const CollapseSequence sequence = collapse(quality(), faces, true, part(progress, 0.3, fits ? 0.4 : 0.7));
     const std::size_t count = count_within(sequence, part(progress, fits ? 0.4 : 0.7, fits ? 0.5 : 1));
     return fits ? fitted_within(sequence, count, part(progress, 0.5, 1)) : unfitted(sequence, count);
   }
 
  private:
+  /// Returns the quality asked for; of CGAL's engine there is but one, which is not fitted.
+  SimplifyQuality quality() const {
+    return settings_.engine == SimplifyEngine::cgal ? SimplifyQuality::standard : settings_.quality;
+  }
+
   Reduced unfitted_to_faces(SimplifyQuality quality, const ProgressFunction& progress) const {
     const CollapseSequence sequence = collapse(quality, settings_.faces, false, progress);
     return unfitted(sequence, careful_count(sequence));
@@ -108,6 +114,9 @@ class Reducer {
     collapse.crease_degrees = settings_.crease;
     collapse.feature_edges = given_;
     collapse.vertex_weights = vertex_weights_;
+    if (settings_.engine == SimplifyEngine::cgal)
+      return collapse_by_cgal(manifold_, collapse, {settings_.cost, settings_.max_normal_change, settings_.envelope},
+                              progress);
     switch (quality) {
       case SimplifyQuality::draft:
         return collapse_edges_in_two_steps(manifold_, collapse.faces, collapse, progress);
@@ -121,7 +130,7 @@ class Reducer {
   }
 
   Reduced unfitted(const CollapseSequence& sequence, std::size_t count) const {
-    return {sequence.after(count), surviving_edges(sequence, count, given_)};
+    return {sequence.after(count), surviving_edges(sequence, count, given_), sequence.met_envelope};
   }
 
   /// What is left after `count` collapses, fitted to the start. Vertices of feature edges stay.
@@ -134,7 +143,8 @@ class Reducer {
     // A vertex of a feature edge is never made another's that is of none.
     std::vector<std::uint8_t> is_fixed;
     for (std::uint32_t origin : origins) is_fixed.push_back(in_line[origin]);
-    return {fit_to_surface(low, sequence.start, is_fixed, {}, progress), surviving_edges(sequence, count, given_)};
+    return {fit_to_surface(low, sequence.start, is_fixed, {}, progress), surviving_edges(sequence, count, given_),
+            false};
   }
 
   /// The most collapses that keep within max_error, to 1 % in the number of triangles, by bisection.

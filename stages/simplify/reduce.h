@@ -17,6 +17,7 @@ namespace kiln {
 struct Reduced {
   TriangleMesh mesh;
   std::vector<VertexPair> feature_edges;
+  bool met_envelope = false;  ///< the engine refused collapses as they would have left settings.envelope
 };
 
 /// Distances of the input to a candidate. May say less where the Hausdorff distance is more than max_error.

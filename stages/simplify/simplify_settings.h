@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -21,11 +22,32 @@ enum class SimplifyAwareness {
   transfer  ///< how much transfer varies there (transfer_weights.h)
 };
 
+/// Who collapses edges.
+enum class SimplifyEngine {
+  kiln,  ///< the stage's own collapse, by `quality`
+  cgal   ///< CGAL's edge collapse on an OpenMesh mesh, by `cost`
+};
+
+/// What CGAL's engine goes by, cheapest first.
+enum class CollapseCost {
+  lindstrom_turk,
+  plane,     ///< Garland and Heckbert's quadrics of planes
+  triangle,  ///< the same weighted by areas
+  probabilistic_plane,
+  probabilistic_triangle
+};
+
 struct SimplifySettings {
   int faces = 1000;      ///< triangles to stop at, where max_error is 0
   double max_error = 0;  ///< Hausdorff distance to stop at, as a fraction of the bounding box's diagonal; 0: by faces
   SimplifyQuality quality = SimplifyQuality::standard;
   SimplifyAwareness aware = SimplifyAwareness::none;
+  SimplifyEngine engine = SimplifyEngine::kiln;
+  CollapseCost cost = CollapseCost::lindstrom_turk;  ///< of CGAL's engine
+  double max_normal_change = 90;  ///< degrees that a collapse of CGAL's engine may turn a triangle by, above 0
+  /// How far CGAL's engine may leave the input: no point of the result is farther from it, as a fraction of its
+  /// bounding box's diagonal; 0: no limit.
+  double envelope = 0;
   double crease = 0;    ///< degrees; edges whose dihedral angle (0 in a plane) is larger stay lines; 0: none
   bool strict = false;  ///< an input that needs repair is refused
   ImportSettings import = {};
@@ -39,5 +61,9 @@ struct SimplifySettings {
 };
 
 OptionSet simplify_options(SimplifySettings& settings);
+
+/// Throws WrongUsage where options are given that exclude each other (faces and max-error) or that the engine has not
+/// (quality is of kiln's, cost, max-normal-change and envelope of CGAL's). `is_given` tells by an option's name.
+void check_options(const SimplifySettings& settings, const std::function<bool(const std::string&)>& is_given);
 
 }  // namespace kiln
