@@ -1,8 +1,10 @@
-// The only file of this stage that sees CGAL and OpenMesh. CGAL's loop is instantiated once: what depends on the cost
-// is behind CostPolicy.
+// CGAL's loop is instantiated once, whatever the cost: CostPolicy stands between them.
 #include "simplify/cgal_collapse.h"
 
-#include <CGAL/Polyhedral_envelope.h>
+// clang-format off
+#include "simplify/halfedge_mesh.h"  // the graph traits, before CGAL's algorithms
+// clang-format on
+
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Bounded_normal_change_filter.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/GarlandHeckbert_plane_policies.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/GarlandHeckbert_probabilistic_plane_policies.h>
@@ -12,16 +14,18 @@
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "simplify/cgal_envelope.h"
 #include "simplify/collapsing_mesh.h"
 #include "simplify/feature_graph.h"
-#include "simplify/halfedge_mesh.h"
 #include "simplify/lindstrom_turk.h"
 #include "simplify/triangle_shape.h"
 
@@ -42,7 +46,6 @@ using HalfedgeHandle = HalfedgeMesh::HalfedgeHandle;
 
 std::uint32_t index_of(VertexHandle vertex) { return static_cast<std::uint32_t>(vertex.idx()); }
 Vector to_vector(const Point& p) { return {p.x(), p.y(), p.z()}; }
-Point to_point(const Vector& p) { return {p.x(), p.y(), p.z()}; }
 
 // Costs.
 
@@ -175,7 +178,8 @@ class CgalCollapser {
     for (const Eigen::Vector3f& p : sequence.start.positions) positions.push_back(frame_.from_object(p));
     mesh_ = to_halfedges(positions, sequence.start.triangles);
     policy_ = make_policy(cgal.cost, mesh_, features_);
-    if (cgal.envelope > 0) make_envelope(positions, cgal.envelope - rounding_of_file(sequence.start));
+    if (cgal.envelope > 0) envelope_.emplace(sequence.start, frame_, cgal.envelope - rounding_of_file(sequence.start));
+    hints_.resize(positions.size(), 0);
   }
   CgalCollapser(const CgalCollapser&) = delete;  // the functors point here
 
@@ -219,17 +223,6 @@ class CgalCollapser {
     CgalCollapser* run;
     void OnCollapsed(const Profile& edge, VertexHandle kept) const { run->note(edge, kept); }
   };
-
-  void make_envelope(const std::vector<Vector>& positions, double distance) {
-    std::vector<Point> points;
-    for (const Vector& p : positions) points.push_back(to_point(p));
-    // A triangle without area has no prism; what is left out makes the envelope smaller only.
-    std::vector<Triangle> triangles;
-    for (const Triangle& t : sequence_.start.triangles)
-      if (TriangleShape(positions[t[0]], positions[t[1]], positions[t[2]]).normal.squaredNorm() > 0)
-        triangles.push_back(t);
-    envelope_ = std::make_unique<CGAL::Polyhedral_envelope<Kernel>>(points, triangles, distance);
-  }
 
   /// Returns where the edge's vertex goes: to a feature where one end is on it, to an end or branch of features, else
   /// where CGAL has it. Nothing where that would join features, or shorten one that ends.
@@ -279,14 +272,33 @@ class CgalCollapser {
       return was.normal.dot(is.normal) >= smallest_cosine_ * was.normal.norm() * is.normal.norm();
     };
     if (!for_each_moved(edge, *placement, keeps_shape)) return false;
-    if (!envelope_) return true;
-    // As CGAL's Polyhedral_envelope_filter, but without the triangle that closes the ring at a border: there is none.
-    const bool is_inside =
-        (*envelope_)(*placement) && for_each_moved(edge, *placement, [&](const auto&, const auto& after, const auto&) {
-          return (*envelope_)(after[0], after[1], after[2]);
-        });
-    if (!is_inside) sequence_.met_envelope = true;
-    return is_inside;
+    return !envelope_ || is_in_envelope(edge, *placement);
+  }
+
+  /// Tells whether the triangles that a collapse moves stay in the envelope. As CGAL's Polyhedral_envelope_filter, but
+  /// without the triangle that closes the ring of neighbours at a border, where there is none. CGAL asks for an edge
+  /// again whenever something changed two edges away, so refusals are remembered until something changed here.
+  bool is_in_envelope(const Profile& edge, const Point& position) {
+    std::uint64_t surroundings = 0;
+    const auto add = [&](const Point& p) {
+      for (const double x : {p.x(), p.y(), p.z()})
+        surroundings = (surroundings ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u ^ surroundings >> 29;
+    };
+    for_each_moved(edge, position, [&](const auto&, const auto& after, const auto&) {
+      for (const Point& corner : after) add(corner);
+      return true;
+    });
+    const int key = edge.surface_mesh().edge_handle(edge.v0_v1()).idx();
+    const auto known = refused_.find(key);
+    if (known != refused_.end() && known->second == surroundings) return false;
+    const bool is_inside = for_each_moved(edge, position, [&](const auto&, const auto& after, const auto& triangle) {
+      return envelope_->contains({to_vector(after[0]), to_vector(after[1]), to_vector(after[2])},
+                                 hints_[index_of(triangle.v1)]);
+    });
+    if (is_inside) return true;
+    refused_[key] = surroundings;
+    sequence_.met_envelope = true;
+    return false;
   }
 
   /// Notes a collapse that CGAL has done.
@@ -315,7 +327,9 @@ class CgalCollapser {
   std::vector<VertexWeight> weights_;
   HalfedgeMesh mesh_;  ///< in the frame
   std::unique_ptr<CostPolicy> policy_;
-  std::unique_ptr<CGAL::Polyhedral_envelope<Kernel>> envelope_;  ///< in the frame
+  std::optional<CgalEnvelope> envelope_;
+  std::vector<std::uint32_t> hints_;                ///< by vertex: where the envelope was asked for last
+  std::unordered_map<int, std::uint64_t> refused_;  ///< by edge: its surroundings when the envelope refused it
 };
 
 }  // namespace

@@ -24,7 +24,7 @@ struct FeatureEdge {
 /// The neighbourhood of an edge, all in one frame.
 struct EdgeSurroundings {
   std::span<const TrianglePlane> planes;  ///< of each triangle at either end
-  std::span<const FeatureEdge> lines;        ///< at either end
+  std::span<const FeatureEdge> lines;     ///< at either end
   double squared_length = 0;              ///< of the edge
 };
 
