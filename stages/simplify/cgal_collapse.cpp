@@ -24,10 +24,12 @@
 #include <vector>
 
 #include "simplify/cgal_envelope.h"
-#include "simplify/collapsing_mesh.h"
 #include "simplify/feature_graph.h"
 #include "simplify/lindstrom_turk.h"
+#include "simplify/thinnest_heights.h"
 #include "simplify/triangle_shape.h"
+#include "simplify/unit_frame.h"
+#include "simplify/vertex_weight.h"
 
 namespace kiln {
 
@@ -47,7 +49,7 @@ using HalfedgeHandle = HalfedgeMesh::HalfedgeHandle;
 std::uint32_t index_of(VertexHandle vertex) { return static_cast<std::uint32_t>(vertex.idx()); }
 Vector to_vector(const Point& p) { return {p.x(), p.y(), p.z()}; }
 
-// Costs.
+// Section: costs.
 
 /// Interface to one of CGAL's costs and the placement that goes with it.
 class CostPolicy {
@@ -123,15 +125,16 @@ class QuadricPolicy final : public CostPolicy {
   Quadrics quadrics_;
 };
 
-/// Variances of normals and of positions that CGAL supposes for probabilistic quadrics. Its estimate
-/// (internal::estimate_variances) is for its own mesh type alone.
-std::pair<double, double> variances(const HalfedgeMesh& mesh, double position_factor) {
-  constexpr double unit = 0.05;
+/// Returns the mean length of the edges, in the frame.
+double mean_edge(const HalfedgeMesh& mesh) {
   double sum = 0;
   for (const auto edge : mesh.edges()) sum += mesh.calc_edge_length(edge);
-  const double variance = unit * sum / static_cast<double>(mesh.n_edges());
-  return {variance, position_factor * variance};
+  return sum / static_cast<double>(mesh.n_edges());
 }
+
+/// Share of a mean edge that CGAL supposes as the variance of probabilistic quadrics. Its own estimate
+/// (internal::estimate_variances) is for its own mesh type alone.
+constexpr double variance_unit = 0.05;
 
 std::unique_ptr<CostPolicy> make_policy(CollapseCost cost, HalfedgeMesh& mesh, const FeatureGraph& features) {
   using Face = HalfedgeMesh::FaceHandle;
@@ -142,12 +145,14 @@ std::unique_ptr<CostPolicy> make_policy(CollapseCost cost, HalfedgeMesh& mesh, c
       return std::make_unique<QuadricPolicy<SMS::GarlandHeckbert_triangle_policies<HalfedgeMesh, Kernel>>>(mesh);
     case CollapseCost::probabilistic_plane: {
       using Policies = SMS::GarlandHeckbert_probabilistic_plane_policies<HalfedgeMesh, Kernel>;
-      const CGAL::Constant_property_map<Face, std::pair<double, double>> map(variances(mesh, 0.1));
+      const double variance = variance_unit * mean_edge(mesh);  // of normals; a tenth of it for positions
+      const CGAL::Constant_property_map<Face, std::pair<double, double>> map({variance, 0.1 * variance});
       return std::make_unique<QuadricPolicy<Policies>>(mesh, border_weight, map);
     }
     case CollapseCost::probabilistic_triangle: {
       using Policies = SMS::GarlandHeckbert_probabilistic_triangle_policies<HalfedgeMesh, Kernel>;
-      const CGAL::Constant_property_map<Face, double> map(variances(mesh, 1).first);
+      // CGAL has a length where a squared length is meant, which is right where the mean edge is 1: so it is here.
+      const CGAL::Constant_property_map<Face, double> map(variance_unit * std::pow(mean_edge(mesh), 2));
       return std::make_unique<QuadricPolicy<Policies>>(mesh, border_weight, map);
     }
     case CollapseCost::lindstrom_turk:
@@ -156,7 +161,7 @@ std::unique_ptr<CostPolicy> make_policy(CollapseCost cost, HalfedgeMesh& mesh, c
   return std::make_unique<LindstromTurkPolicy>(features);
 }
 
-// The collapse.
+// Section: the collapse.
 
 /// State of one run, which CGAL's functors share by pointer, as CGAL copies them.
 class CgalCollapser {

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "mesh/triangle_mesh.h"
-#include "simplify/collapsing_mesh.h"
+#include "simplify/unit_frame.h"
 
 namespace kiln {
 

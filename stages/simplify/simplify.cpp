@@ -19,6 +19,7 @@ namespace kiln {
 
 namespace {
 
+/// Triangle as a place and a direction.
 struct Facet {
   Eigen::Vector3d middle;
   Eigen::Vector3d area_normal;  ///< as long as twice the area
@@ -37,7 +38,7 @@ int count_facets(const TriangleMesh& mesh, const Predicate& predicate) {
                                         [&](const Triangle& triangle) { return predicate(facet(mesh, triangle)); }));
 }
 
-/// Writes candidates, and keeps the time of it apart.
+/// Writer of candidates that keeps its time apart.
 class Writer {
  public:
   explicit Writer(const WrittenForm& written) : written_(written) {}
@@ -55,14 +56,14 @@ class Writer {
   double seconds_ = 0;
 };
 
-/// Few samples suffice to see most that are too far.
+/// Measures distances; few samples suffice to see most candidates that are too far.
 MeshDistance distance_within(const TriangleMesh& high, const TriangleMesh& low, double max_error) {
   const MeshDistance least = mesh_distance(high, low, {.samples = 2'000});
   return least.hausdorff > max_error ? least : mesh_distance(high, low);
 }
 
-/// The hard edges of the input that its shape has too: where it is all but flat, the normal map can do without the
-/// edge.
+/// Finds the hard edges of the input that its shape has, too: where it is all but flat, the normal map can do without
+/// the edge.
 std::vector<VertexPair> feature_edges_of(const TriangleMesh& high) {
   constexpr double least_dihedral_degrees = 15;
   const HardEdges hard = hard_edges_of_normals(high);
@@ -95,7 +96,7 @@ std::string shortfall_of(const Reduced& low, const SimplifySettings& settings, s
   return fmt::format("stopped at {} triangles of {}: {}", triangles, settings.faces, reason);
 }
 
-/// The simplified mesh with normals that are smooth but for its feature edges, in the input's frame.
+/// Returns the simplified mesh with normals that are smooth but for its feature edges, in the input's frame.
 TriangleMesh shaded(const Reduced& reduced, const MeshFrame& frame) {
   TriangleMesh mesh = reduced.mesh;
   mesh.frame = frame;
@@ -160,7 +161,7 @@ SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settin
   result.collapse_seconds = reduce_stopwatch.seconds();
   result.mesh = write(shaded(low, high.frame));
 
-  // Measure what was written.
+  // Measure the mesh that was written.
   progress(0.9);
   result.distance = mesh_distance(measured, result.mesh);
   const double hausdorff_distance = result.distance.hausdorff * bounding_box(measured).diagonal();

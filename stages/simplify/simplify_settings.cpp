@@ -49,7 +49,7 @@ OptionSet simplify_options(SimplifySettings& settings) {
                  "With --engine cgal: no point of the result is farther from the input, for certain; a fraction of the "
                  "bounding box's diagonal, from 0.0001; 0 is no limit. Where --faces cannot be had so, there are more");
   options.number("crease", settings.crease, 0, 180,
-                 "Edges whose dihedral angle exceeds this stay lines, degrees; 0 is none");
+                 "Edges whose dihedral angle exceeds this stay feature edges, degrees; 0 is none");
   options.toggle(
       "strict", settings.strict,
       "Refuse an input that needs repair, or that --faces cannot be kept of, instead of doing what can be done");
