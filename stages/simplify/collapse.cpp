@@ -16,7 +16,10 @@
 #include "simplify/collapsing_mesh.h"
 #include "simplify/lindstrom_turk.h"
 #include "simplify/quick_collapse.h"
+#include "simplify/thinnest_heights.h"
 #include "simplify/triangle_shape.h"
+#include "simplify/unit_frame.h"
+#include "simplify/vertex_weight.h"
 
 namespace kiln {
 
@@ -26,20 +29,20 @@ using Vector = Eigen::Vector3d;
 template <class T>
 using Few = boost::container::small_vector<T, 32>;
 
-/// How far from the surface that it stands for a triangle may be, and how slender. The cost does not forbid a few
-/// needles that cut through the surface; refusing them makes the largest error half as large, at the same mean. Where
-/// the limits leave nothing to collapse, the next pass has wider ones; past the last, what is left stays.
+/// Limits of a pass: how far a triangle may be from the surface that it stands for, and how slender. The cost does not
+/// forbid a few needles that cut through the surface; refusing them makes the largest error half as large, at the same
+/// mean. Where the limits leave nothing to collapse, the next pass has wider ones; past the last, what is left stays.
 struct Limits {
-  double distance;     ///< from a triangle's middle to the input's surface, in edges of a triangle of mean area
-  double slenderness;  ///< height over the longest edge; a triangle that was worse may stay as bad
-  double line;         ///< farthest that a vertex of the input's feature edges may be from them, in the same edges
+  double distance;     ///< largest from a triangle's middle to the input's surface, in edges of a triangle of mean area
+  double slenderness;  ///< smallest height over the longest edge; a triangle that was worse may stay as bad
+  double feature;      ///< farthest that a vertex of the input's feature edges may be from them, in the same edges
   double facing;       ///< smallest cosine between a triangle's normal and that of the input where it is nearest
 };
 constexpr Limits passes[] = {{0.15, 0.05, 0.05, 0.1}, {0.15, 0.05, 0.15, 0.1}, {0.3, 0.02, 0.3, 0.1}, {0.6, 0, 0.6, 0}};
-constexpr double close_distance = 0.15;  ///< of the passes that hurt nothing
+constexpr double close_distance = 0.15;  ///< distance of the passes that hurt nothing
 
-/// What triangles are compared with has no more than these, or those where the comparison begins: a hierarchy of a
-/// large input would take longer than the collapses.
+/// Triangles of the surface that others are compared with, at most, or those where the comparison begins: a hierarchy
+/// of a large input would take longer than the collapses.
 constexpr int most_compared_faces = 60'000;
 
 std::vector<VertexWeight> to_vertex_weights(const TriangleMesh& mesh, std::span<const double> weights) {
@@ -58,15 +61,17 @@ double squared_distance_to_segment(const Vector& p, const Vector& a, const Vecto
   return (p - a - at * along).squaredNorm();
 }
 
+/// State of one run of Lindstrom and Turk's collapses. An edge is known by its ends a and b; collapse.h has the
+/// picture.
 class Collapser {
  public:
-  Collapser(CollapseSequence& sequence, std::span<const VertexPair> lines, std::vector<VertexWeight> weights,
+  Collapser(CollapseSequence& sequence, std::span<const VertexPair> features, std::vector<VertexWeight> weights,
             const CollapseSettings& settings, const TriangleMesh& compared, const ProgressFunction& progress)
       : sequence_(sequence),
         settings_(settings),
         progress_(progress),
         frame_(sequence.start),
-        mesh_(sequence.start, lines),
+        mesh_(sequence.start, features),
         weights_(std::move(weights)),
         compared_(compared),
         area_(surface_area(sequence.start) / (frame_.diagonal * frame_.diagonal)),
@@ -79,7 +84,7 @@ class Collapser {
     tbb::parallel_for(std::size_t{0}, planes_.size(),
                       [&](std::size_t i) { update_plane(static_cast<std::uint32_t>(i)); });
     versions_.resize(vertices, 0);
-    if (!lines.empty()) line_points_.resize(vertices);
+    if (!features.empty()) feature_points_.resize(vertices);
     points_.resize(vertices);
     hints_.resize(vertices, 0);
     thinnest_ = thinnest_heights(sequence.start, frame_.diagonal);
@@ -88,7 +93,7 @@ class Collapser {
   void run() {
     for (const Limits& limits : passes) {
       limits_ = limits;
-      // Edges that were refused get another chance as long as the others went far.
+      // Give refused edges another chance as long as the others went far.
       for (int before = 0; mesh_.faces() > settings_.faces;) {
         before = mesh_.faces();
         run_pass();
@@ -102,9 +107,9 @@ class Collapser {
   struct Candidate {
     double cost;
     std::uint32_t a, b;
-    std::uint32_t version;  ///< of both ends together
+    std::uint32_t version;  ///< versions of both ends together
 
-    bool operator<(const Candidate& other) const {  // the heap has the greatest first
+    bool operator<(const Candidate& other) const {  // puts the least cost first: the heap has the greatest first
       return std::tie(cost, a, b) > std::tie(other.cost, other.a, other.b);
     }
   };
@@ -118,19 +123,21 @@ class Collapser {
     planes_[triangle] = TrianglePlane(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
   }
 
-  /// The edge of an equilateral triangle of mean area, in the frame.
+  /// Returns the edge of an equilateral triangle of mean area, in the frame.
   double mean_edge() const { return std::sqrt(area_ / mesh_.faces() * 4 / std::sqrt(3.0)); }
 
-  bool is_line(std::uint32_t a, std::uint32_t b) const {
+  /// Tells whether the edge between two vertices is a feature edge.
+  bool is_feature(std::uint32_t a, std::uint32_t b) const {
     for (std::uint32_t triangle : mesh_.triangles_of(a)) {
       const Triangle& t = mesh_.triangles()[triangle];
       for (int k = 0; k < 3; ++k)
-        if (mesh_.is_line(triangle, k) && std::minmax(t[k], t[(k + 1) % 3]) == std::minmax(a, b)) return true;
+        if (mesh_.is_feature(triangle, k) && std::minmax(t[k], t[(k + 1) % 3]) == std::minmax(a, b)) return true;
     }
     return false;
   }
 
-  /// Calls visit(triangle, corners) for those at either end but not on the edge; the ends are 'a' there.
+  /// Calls visit(triangle, corners, end) for the triangles that a collapse moves: those at one `end` but not on the
+  /// edge.
   template <class Visit>
   void for_each_moved(std::uint32_t a, std::uint32_t b, const Visit& visit) const {
     for (const auto& [end, other] : {std::pair(a, b), std::pair(b, a)})
@@ -140,12 +147,12 @@ class Collapser {
       }
   }
 
-  // Where the edge's vertex would go, and the cost of it.
+  // Section: where the edge's vertex would go, and the cost of it.
 
   Evaluation evaluate(std::uint32_t a, std::uint32_t b) const {
-    const int lines_a = mesh_.lines_at(a), lines_b = mesh_.lines_at(b);
-    const bool line = lines_a > 0 && lines_b > 0;
-    if (line && ((lines_a != 2 && lines_b != 2) || !is_line(a, b))) return {};
+    const int features_a = mesh_.feature_count(a), features_b = mesh_.feature_count(b);
+    const bool both = features_a > 0 && features_b > 0;
+    if (both && ((features_a != 2 && features_b != 2) || !is_feature(a, b))) return {};
 
     Few<TrianglePlane> planes;
     for (std::uint32_t triangle : mesh_.triangles_of(a)) planes.push_back(planes_[triangle]);
@@ -153,23 +160,23 @@ class Collapser {
       const Triangle& t = mesh_.triangles()[triangle];
       if (t[0] != a && t[1] != a && t[2] != a) planes.push_back(planes_[triangle]);
     }
-    Few<LineEdge> lines;
-    if (line) collect_lines(a, b, lines);
+    Few<FeatureEdge> features;
+    if (both) collect_features(a, b, features);
     const Vector &pa = positions_[a], &pb = positions_[b];
     const EdgeSurroundings surroundings{
-        {planes.data(), planes.size()}, {lines.data(), lines.size()}, (pb - pa).squaredNorm()};
+        {planes.data(), planes.size()}, {features.data(), features.size()}, (pb - pa).squaredNorm()};
     const double weight = weights_.empty() ? 1 : 0.5 * (weights_[a].mean() + weights_[b].mean());
     const auto at = [&](const Vector& position) {
       return Evaluation{weight * lindstrom_turk_cost(surroundings, position), position};
     };
-    // Lines' ends and branches stay, and what leads from a line to elsewhere ends on the line.
-    if (lines_a > 0 && (lines_b == 0 || lines_a != 2)) return at(pa);
-    if (lines_b > 0 && (lines_a == 0 || lines_b != 2)) return at(pb);
+    // Keep ends and branches of lines where they are; have edges from a line to elsewhere end on the line.
+    if (features_a > 0 && (features_b == 0 || features_a != 2)) return at(pa);
+    if (features_b > 0 && (features_a == 0 || features_b != 2)) return at(pb);
 
     const std::optional<Vector> placement =
         lindstrom_turk_placement(surroundings, [&] { return middle_of_link(a, b); });
     if (placement && is_near(a, b, *placement, surroundings.squared_length)) return at(*placement);
-    // A wild solution of an ill-conditioned system.
+    // Try the ends and the middle instead of a wild solution of an ill-conditioned system.
     Evaluation best;
     for (const Vector& position : {pa, pb, Vector((pa + pb) / 2)}) {
       const Evaluation evaluation = at(position);
@@ -178,16 +185,16 @@ class Collapser {
     return best;
   }
 
-  void collect_lines(std::uint32_t a, std::uint32_t b, Few<LineEdge>& lines) const {
+  void collect_features(std::uint32_t a, std::uint32_t b, Few<FeatureEdge>& features) const {
     std::vector<std::uint32_t> neighbours;
-    lines.push_back({positions_[a], positions_[b]});
+    features.push_back({positions_[a], positions_[b]});
     for (const auto& [end, other] : {std::pair(a, b), std::pair(b, a)}) {
-      mesh_.line_neighbours(end, neighbours);
-      // Along the line, whichever end comes first; what matters is that the directions agree.
+      mesh_.feature_neighbours(end, neighbours);
+      // Run along the line, from whichever end; what matters is that the directions agree.
       for (std::uint32_t next : neighbours)
         if (next != other)
-          lines.push_back(end == a ? LineEdge{positions_[next], positions_[a]}
-                                   : LineEdge{positions_[b], positions_[next]});
+          features.push_back(end == a ? FeatureEdge{positions_[next], positions_[a]}
+                                      : FeatureEdge{positions_[b], positions_[next]});
     }
   }
 
@@ -203,7 +210,7 @@ class Collapser {
     return sum / static_cast<double>(link.size());
   }
 
-  /// Within twice the radius of the neighbourhood; a NaN is near nothing.
+  /// Tells whether a position is within twice the radius of the edge's neighbourhood. A NaN is not.
   bool is_near(std::uint32_t a, std::uint32_t b, const Vector& position, double squared_length) const {
     const Vector middle = (positions_[a] + positions_[b]) / 2;
     const double squared = (position - middle).squaredNorm();
@@ -216,10 +223,10 @@ class Collapser {
     return squared < 4 * radius_squared;
   }
 
-  // Whether a collapse may be.
+  // Section: whether a collapse may be.
 
-  /// Whether a collapse moves the surface by next to nothing, a thousandth of a mean edge over a mean triangle: needles
-  /// do no harm in a plane, and without them hard surfaces lose their chamfers first.
+  /// Tells whether a collapse moves the surface by next to nothing, a thousandth of a mean edge over a mean triangle:
+  /// needles do no harm in a plane, and without them hard surfaces lose their chamfers first.
   bool is_flat(double cost) const {
     const double volume = 1e-3 * mean_edge() * area_ / mesh_.faces() / 3;
     return cost <= 0.5 * volume * volume;
@@ -242,7 +249,7 @@ class Collapser {
     if (!kept) return false;
     const CollapsingMesh::Edge edge = mesh_.edge(a, b);
     if (!edge.keeps_topology) return false;
-    if (edge.line && !keeps_line(a, b, position)) return false;
+    if (edge.feature && !keeps_feature(a, b, position)) return false;
     if (!surface_) return true;
     if (!is_close(position, a) || (is_folded(a, b) && !keeps_points(a, b, position))) return false;
     for_each_moved(a, b, [&](std::uint32_t, const Triangle& t, std::uint32_t moving) {
@@ -254,7 +261,7 @@ class Collapser {
     return kept;
   }
 
-  /// Twice the sum of the triangles' areas, as a vector.
+  /// Sums the normals of the triangles around both ends, each as long as twice its area.
   Vector normal_around(std::uint32_t a, std::uint32_t b) const {
     Vector sum = Vector::Zero();
     for (const std::uint32_t end : {a, b})
@@ -262,13 +269,13 @@ class Collapser {
     return sum;
   }
 
-  /// Whether the vertices that the line once had stay close to it, from the edge before the one that is collapsed to
-  /// the edge after it.
-  bool keeps_line(std::uint32_t a, std::uint32_t b, const Vector& position) const {
+  /// Tells whether the vertices that a line of feature edges once had stay close to it, from the edge before the one
+  /// that is collapsed to the edge after it.
+  bool keeps_feature(std::uint32_t a, std::uint32_t b, const Vector& position) const {
     std::vector<std::uint32_t> neighbours;
     const auto next_of = [&](std::uint32_t vertex, std::uint32_t from) {
-      if (mesh_.lines_at(vertex) != 2) return vertex;
-      mesh_.line_neighbours(vertex, neighbours);
+      if (mesh_.feature_count(vertex) != 2) return vertex;
+      mesh_.feature_neighbours(vertex, neighbours);
       for (std::uint32_t next : neighbours)
         if (next != from) return next;
       return vertex;
@@ -276,21 +283,21 @@ class Collapser {
     const std::uint32_t before = next_of(a, b), after = next_of(b, a);
     const std::array<Vector, 5> now = {positions_[next_of(before, a)], positions_[before], position, positions_[after],
                                        positions_[next_of(after, b)]};
-    const double limit = std::pow(limits_.line * mean_edge(), 2);
+    const double limit = std::pow(limits_.feature * mean_edge(), 2);
     const auto is_kept = [&](const Vector& once) {
       for (std::size_t i = 0; i + 1 < now.size(); ++i)
         if (squared_distance_to_segment(once, now[i], now[i + 1]) <= limit) return true;
       return false;
     };
     for (std::uint32_t vertex : {before, a, b, after}) {
-      if (mesh_.lines_at(vertex) != 2) continue;
-      const std::vector<Vector>& points = line_points_[vertex];
+      if (mesh_.feature_count(vertex) != 2) continue;
+      const std::vector<Vector>& points = feature_points_[vertex];
       if (!is_kept(positions_[vertex]) || !std::all_of(points.begin(), points.end(), is_kept)) return false;
     }
     return true;
   }
 
-  /// Whether the surface around an edge goes about a rim or a tip, which may wear off.
+  /// Tells whether the surface around an edge goes about a rim or a tip, which may wear off.
   bool is_folded(std::uint32_t a, std::uint32_t b) const {
     const Vector around = normal_around(a, b);
     const auto faces_elsewhere = [&](std::uint32_t triangle) {
@@ -302,8 +309,9 @@ class Collapser {
            std::any_of(at_b.begin(), at_b.end(), faces_elsewhere);
   }
 
-  /// Whether the places of the vertices that became these two stay as close to the surface as it does to the input.
-  /// What lies on the input may still leave much of it bare: the rim of a thin wall wears off at next to no cost.
+  /// Tells whether the places of the vertices that became these two stay as close to the surface as it does to the
+  /// input. A surface that lies on the input may still leave much of it bare: the rim of a thin wall wears off at next
+  /// to no cost.
   bool keeps_points(std::uint32_t a, std::uint32_t b, const Vector& position) const {
     Few<std::array<Vector, 3>> fan;
     Few<std::uint32_t> ring;
@@ -321,7 +329,7 @@ class Collapser {
     const auto is_kept = [&](const Vector& point) {
       for (const auto& [q0, q1, q2] : fan)
         if (is_near(point, q0, q1, q2)) return true;
-      // By now it may be the neighbours' that are near.
+      // Try the neighbours' triangles, which may be near by now.
       for (std::uint32_t neighbour : ring)
         for (std::uint32_t triangle : mesh_.triangles_of(neighbour)) {
           const Triangle& t = mesh_.triangles()[triangle];
@@ -335,7 +343,7 @@ class Collapser {
     return true;
   }
 
-  /// Notes the places of what becomes `kept`; of many, those that are farthest from where it goes.
+  /// Notes the places of the vertices that become `kept`; of many, those that are farthest from where it goes.
   void keep_points(std::uint32_t removed, std::uint32_t kept, const Vector& position) {
     std::vector<Vector>&points = points_[kept], &more = points_[removed];
     points.insert(points.end(), more.begin(), more.end());
@@ -350,8 +358,8 @@ class Collapser {
     points.resize(most_points);
   }
 
-  /// Whether a triangle is close to a part of the input that faces as it does. On a thin wall the other side is as
-  /// close, or closer.
+  /// Tells whether a triangle is close to a part of the input that faces as it does. On a thin wall the other side is
+  /// as close, or closer.
   bool keeps_place(const std::array<Vector, 3>& corners, std::uint32_t moving) {
     const Vector normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
     const ShapeLimits thin{0, thinnest_[moving]};
@@ -366,12 +374,13 @@ class Collapser {
     };
     if (!is_kept((corners[0] + corners[1] + corners[2]) / 3)) return false;
     if (limits_.distance <= close_distance) return true;
-    // Where much is allowed, a middle says too little of a triangle.
+    // Ask at the edges, too, where much is allowed: a middle says too little of a triangle then.
     for (int k = 0; k < 3; ++k)
       if (!is_kept((corners[k] + corners[(k + 1) % 3]) / 2)) return false;
     return true;
   }
-  /// A surface that is simplified itself faces a little elsewhere than the input.
+  /// Returns the smallest cosine allowed between normals: larger where the surface compared with is simplified itself,
+  /// and faces a little elsewhere than the input.
   double smallest_facing() const { return &compared_ == &sequence_.start ? limits_.facing : limits_.facing + 0.25; }
   double distance_limit() const { return limits_.distance * mean_edge() * frame_.diagonal; }
   bool is_close(const Vector& position, std::uint32_t moving) {
@@ -379,16 +388,16 @@ class Collapser {
   }
   bool is_close(const NearestSurface::Hit& hit) const { return hit.squared_distance <= std::pow(distance_limit(), 2); }
 
-  // Passes.
+  // Section: passes.
 
   void run_pass() {
     std::vector<Candidate> heap;
     for (std::uint32_t i = 0; i < mesh_.triangles().size(); ++i) {
       const Triangle& t = mesh_.triangles()[i];
-      if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;  // it went with an edge
+      if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;  // gone with an edge
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t a = t[k], b = t[(k + 1) % 3];
-        if (a < b || mesh_.is_line(i, k)) heap.push_back({0, std::min(a, b), std::max(a, b), 0});
+        if (a < b || mesh_.is_feature(i, k)) heap.push_back({0, std::min(a, b), std::max(a, b), 0});
       }
     }
     constexpr std::size_t chunk = 4096;
@@ -414,7 +423,7 @@ class Collapser {
       const Candidate next = heap.back();
       heap.pop_back();
       if (mesh_.is_removed(next.a) || mesh_.is_removed(next.b) || next.version != version(next.a, next.b)) continue;
-      // What is around it may have changed since.
+      // Evaluate again: its surroundings may have changed since.
       const Evaluation now = evaluate(next.a, next.b);
       if (now.cost > next.cost * (1 + 1e-9) && !heap.empty() && now.cost > heap.front().cost) {
         push({now.cost, next.a, next.b, next.version});
@@ -436,15 +445,15 @@ class Collapser {
   Candidate candidate(std::uint32_t a, std::uint32_t b) const { return {evaluate(a, b).cost, a, b, version(a, b)}; }
 
   std::uint32_t collapse(std::uint32_t a, std::uint32_t b, const Vector& position) {
-    // The one with more triangles stays, as that moves less; a line's end or branch stays anyway.
-    const int lines_a = mesh_.lines_at(a), lines_b = mesh_.lines_at(b);
-    const bool keep_a = lines_a != lines_b && (lines_a > 0) != (lines_b > 0) ? lines_a > 0
-                        : (lines_a > 0 && lines_a != lines_b)
-                            ? lines_a != 2
+    // Keep the end with more triangles, as that moves less; an end or branch of a line stays anyway.
+    const int features_a = mesh_.feature_count(a), features_b = mesh_.feature_count(b);
+    const bool keep_a = features_a != features_b && (features_a > 0) != (features_b > 0) ? features_a > 0
+                        : (features_a > 0 && features_a != features_b)
+                            ? features_a != 2
                             : mesh_.triangles_of(a).size() >= mesh_.triangles_of(b).size();
     const std::uint32_t kept = keep_a ? a : b, removed = keep_a ? b : a;
-    if (lines_a > 0 && lines_b > 0) {
-      std::vector<Vector>&points = line_points_[kept], &more = line_points_[removed];
+    if (features_a > 0 && features_b > 0) {
+      std::vector<Vector>&points = feature_points_[kept], &more = feature_points_[removed];
       points.insert(points.end(), more.begin(), more.end());
       points.push_back(positions_[a]);
       points.push_back(positions_[b]);
@@ -473,14 +482,14 @@ class Collapser {
   UnitFrame frame_;
   CollapsingMesh mesh_;
   std::vector<VertexWeight> weights_;
-  const TriangleMesh& compared_;  ///< the input or, of many triangles, what it was made of fewer
-  double area_;                   ///< of the start, in the frame
+  const TriangleMesh& compared_;  ///< the input, or what it was simplified to quickly
+  double area_;                   ///< of the start's surface, in the frame
   int start_faces_;
   std::vector<Vector> positions_;  ///< in the frame
   std::vector<TrianglePlane> planes_;
   std::vector<std::uint32_t> versions_;
-  std::vector<std::vector<Vector>> points_;       ///< by vertex of a fold: where those were that became it
-  std::vector<std::vector<Vector>> line_points_;  ///< by vertex in a line: those that became it
+  std::vector<std::vector<Vector>> points_;          ///< by vertex of a fold: places of the vertices that became it
+  std::vector<std::vector<Vector>> feature_points_;  ///< by vertex of a line: places of the vertices that became it
   std::vector<std::uint32_t> hints_;
   std::vector<float> thinnest_;  ///< by vertex (thinnest_heights)
   std::optional<NearestSurface> surface_;
@@ -499,23 +508,23 @@ CollapseSequence collapse_edges_in_two_steps(TriangleMesh mesh, int quick_faces,
   CollapseSequence first;
   first.start = std::move(mesh);
   if (first.faces_after(0) <= settings.faces) return first;
-  std::vector<VertexPair> lines = find_feature_edges(first.start, settings.crease_degrees, settings.feature_edges);
+  std::vector<VertexPair> features = find_feature_edges(first.start, settings.crease_degrees, settings.feature_edges);
   std::vector<VertexWeight> weights = to_vertex_weights(first.start, settings.vertex_weights);
-  collapse_quickly(first, lines, weights, quick_faces, [&](double fraction) { progress(0.2 * fraction); });
+  collapse_quickly(first, features, weights, quick_faces, [&](double fraction) { progress(0.2 * fraction); });
   first.close_count = first.collapses.size();
   if (first.collapses.empty()) {
-    Collapser(first, lines, std::move(weights), settings, first.start, progress).run();
+    Collapser(first, features, std::move(weights), settings, first.start, progress).run();
     return first;
   }
 
-  // The second step's vertices are some of the first's; lines are still where they were.
+  // Renumber: the second step's vertices are some of the first's, and feature edges are still where they were.
   CollapseSequence second;
   std::vector<std::uint32_t> origins;
   second.start = first.after(first.collapses.size(), &origins);
   if (second.faces_after(0) <= settings.faces) return first;
   std::vector<std::uint32_t> index(first.start.positions.size());
   for (std::uint32_t i = 0; i < origins.size(); ++i) index[origins[i]] = i;
-  for (auto& [a, b] : lines) {
+  for (auto& [a, b] : features) {
     a = index[a];
     b = index[b];
   }
@@ -527,7 +536,7 @@ CollapseSequence collapse_edges_in_two_steps(TriangleMesh mesh, int quick_faces,
   const int compared_from = std::min(settings.compared_faces, second.faces_after(0));
   const TriangleMesh compared =
       compares ? first.after(first.count_for(std::max(compared_from, most_compared_faces))) : TriangleMesh();
-  Collapser(second, lines, std::move(weights), settings, compared, progress).run();
+  Collapser(second, features, std::move(weights), settings, compared, progress).run();
   first.close_count = first.collapses.size() + second.close_count;
   for (Collapse collapse : second.collapses) {
     collapse.removed = origins[collapse.removed];

@@ -19,12 +19,12 @@ std::size_t CollapseSequence::count_for(int faces) const {
 
 namespace {
 
-/// Which vertex each of the start's is after the first `count` collapses.
+/// Finds which vertex each of the start's vertices is after the first `count` collapses.
 std::vector<std::uint32_t> vertices_after(const CollapseSequence& sequence, std::size_t count) {
   std::vector<std::uint32_t> became(sequence.start.positions.size());
   std::iota(became.begin(), became.end(), 0u);
   for (std::size_t i = 0; i < count; ++i) became[sequence.collapses[i].removed] = sequence.collapses[i].kept;
-  // A vertex may have gone through several others.
+  // Follow each vertex to the last that it became.
   for (std::uint32_t vertex = 0; vertex < became.size(); ++vertex) {
     std::uint32_t last = vertex;
     while (became[last] != last) last = became[last];
@@ -35,7 +35,7 @@ std::vector<std::uint32_t> vertices_after(const CollapseSequence& sequence, std:
 
 }  // namespace
 
-// The vertices and triangles that are left keep their order.
+// Keeps the order of the vertices and triangles that are left.
 TriangleMesh CollapseSequence::after(std::size_t count, std::vector<std::uint32_t>* vertex_origins) const {
   std::vector<Eigen::Vector3f> positions = start.positions;
   for (std::size_t i = 0; i < count; ++i) positions[collapses[i].kept] = collapses[i].position;

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 
-#include "mesh/mesh_components.h"
-#include "simplify/triangle_shape.h"
-
 namespace kiln {
 
 namespace {
@@ -15,29 +12,10 @@ int corner_of(const Triangle& triangle, std::uint32_t vertex) {
 
 }  // namespace
 
-UnitFrame::UnitFrame(const TriangleMesh& mesh) {
-  const BoundingBox box = bounding_box(mesh);
-  centre = box.centre().cast<double>();
-  diagonal = (box.highest - box.lowest).cast<double>().norm();
-}
-
-std::vector<float> thinnest_heights(const TriangleMesh& mesh, double diagonal) {
-  const Components components = find_components(mesh);
-  const std::vector<BoundingBox> boxes = component_boxes(mesh, components);
-  constexpr double coarsest = smallest_height_steps / 65'535, finest = smallest_height_steps / 16'777'215;
-  std::vector<float> heights(mesh.positions.size(), 0);
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const double share = static_cast<double>(boxes[components.of_triangle[i]].diagonal()) / diagonal;
-    for (const std::uint32_t vertex : mesh.triangles[i])
-      heights[vertex] = static_cast<float>(std::clamp(coarsest * share, finest, coarsest));
-  }
-  return heights;
-}
-
 CollapsingMesh::CollapsingMesh(const TriangleMesh& mesh, std::span<const VertexPair> feature_edges)
     : triangles_(mesh.triangles),
-      line_bits_(mesh.triangles.size(), 0),
-      lines_at_(mesh.positions.size(), 0),
+      feature_bits_(mesh.triangles.size(), 0),
+      feature_counts_(mesh.positions.size(), 0),
       around_(mesh.positions.size()),
       faces_(static_cast<int>(mesh.triangles.size())),
       mark_(mesh.positions.size(), 0) {
@@ -53,42 +31,42 @@ CollapsingMesh::CollapsingMesh(const TriangleMesh& mesh, std::span<const VertexP
   for (std::uint32_t i = 0; i < triangles_.size(); ++i)
     for (std::uint32_t vertex : triangles_[i]) pool_[around_[vertex].begin + around_[vertex].size++] = i;
   for (const auto& [a, b] : feature_edges) {
-    mark_line(a, b);
-    for (std::uint32_t vertex : {a, b}) lines_at_[vertex] = std::min(lines_at_[vertex] + 1, 200);
+    mark_feature(a, b);
+    for (std::uint32_t vertex : {a, b}) feature_counts_[vertex] = std::min(feature_counts_[vertex] + 1, 200);
   }
 }
 
-bool CollapsingMesh::has_line(std::uint32_t triangle, std::uint32_t a, std::uint32_t b) const {
+bool CollapsingMesh::has_feature(std::uint32_t triangle, std::uint32_t a, std::uint32_t b) const {
   const int ka = corner_of(triangles_[triangle], a), kb = corner_of(triangles_[triangle], b);
-  return is_line(triangle, (ka + 1) % 3 == kb ? ka : kb);
+  return is_feature(triangle, (ka + 1) % 3 == kb ? ka : kb);
 }
 
-void CollapsingMesh::mark_line(std::uint32_t a, std::uint32_t b) {
+void CollapsingMesh::mark_feature(std::uint32_t a, std::uint32_t b) {
   for (std::uint32_t triangle : triangles_of(a)) {
     const Triangle& t = triangles_[triangle];
     if (t[0] != b && t[1] != b && t[2] != b) continue;
     const int ka = corner_of(t, a), kb = corner_of(t, b);
-    line_bits_[triangle] |= static_cast<std::uint8_t>(1 << ((ka + 1) % 3 == kb ? ka : kb));
+    feature_bits_[triangle] |= static_cast<std::uint8_t>(1 << ((ka + 1) % 3 == kb ? ka : kb));
   }
 }
 
-void CollapsingMesh::line_neighbours(std::uint32_t vertex, std::vector<std::uint32_t>& neighbours) const {
+void CollapsingMesh::feature_neighbours(std::uint32_t vertex, std::vector<std::uint32_t>& neighbours) const {
   neighbours.clear();
-  if (lines_at_[vertex] == 0) return;
+  if (feature_counts_[vertex] == 0) return;
   const auto add = [&](std::uint32_t other) {
     if (std::find(neighbours.begin(), neighbours.end(), other) == neighbours.end()) neighbours.push_back(other);
   };
   for (std::uint32_t triangle : triangles_of(vertex)) {
     const Triangle& t = triangles_[triangle];
     const int k = corner_of(t, vertex);
-    if (is_line(triangle, k)) add(t[(k + 1) % 3]);
-    if (is_line(triangle, (k + 2) % 3)) add(t[(k + 2) % 3]);
+    if (is_feature(triangle, k)) add(t[(k + 1) % 3]);
+    if (is_feature(triangle, (k + 2) % 3)) add(t[(k + 2) % 3]);
   }
 }
 
 CollapsingMesh::Edge CollapsingMesh::edge(std::uint32_t a, std::uint32_t b) const {
   Edge edge;
-  // The link condition (Dey, Edelsbrunner, Guha and Nekhayev 1999): the vertices next to both ends are those of the
+  // Link condition (Dey, Edelsbrunner, Guha and Nekhayev 1999): the vertices next to both ends are those of the
   // triangles on the edge.
   mark_now_ += 2;
   const std::uint32_t near_a = mark_now_, near_both = mark_now_ + 1;
@@ -102,7 +80,7 @@ CollapsingMesh::Edge CollapsingMesh::edge(std::uint32_t a, std::uint32_t b) cons
     opposite[edge.triangles++] = t[0] + t[1] + t[2] - a - b;
   }
   if (edge.triangles == 0) return edge;
-  edge.line = has_line(edge.at[0], a, b);
+  edge.feature = has_feature(edge.at[0], a, b);
   int common = 0;
   mark_[a] = mark_[b] = near_both;
   for (std::uint32_t triangle : triangles_of(b))
@@ -113,16 +91,16 @@ CollapsingMesh::Edge CollapsingMesh::edge(std::uint32_t a, std::uint32_t b) cons
       }
   if (common != edge.triangles) return edge;
 
-  // Two lines do not become one, nor do the ends of one line meet; a line's end and its branches stay.
-  const int lines_a = lines_at_[a], lines_b = lines_at_[b];
-  if (lines_a > 0 && lines_b > 0 && (!edge.line || (lines_a != 2 && lines_b != 2))) return edge;
+  // Lines of feature edges do not become one, nor do the ends of one line meet; ends and branches stay.
+  const int features_a = feature_counts_[a], features_b = feature_counts_[b];
+  if (features_a > 0 && features_b > 0 && (!edge.feature || (features_a != 2 && features_b != 2))) return edge;
   for (int i = 0; i < edge.triangles; ++i) {
-    if (has_line(edge.at[i], a, opposite[i]) && has_line(edge.at[i], b, opposite[i])) return edge;
-    // A vertex of three triangles would be left with two that are back to back.
-    if (around_[opposite[i]].size == 3 && lines_at_[opposite[i]] == 0) return edge;
+    if (has_feature(edge.at[i], a, opposite[i]) && has_feature(edge.at[i], b, opposite[i])) return edge;
+    // Vertices of three triangles would be left with two that are back to back.
+    if (around_[opposite[i]].size == 3 && feature_counts_[opposite[i]] == 0) return edge;
     if (around_[opposite[i]].size <= 1) return edge;
     if (around_[opposite[i]].size == 3 && common == 2) {
-      // A line may pass it inside the surface.
+      // Count its neighbours: where feature edges pass it, it may lie inside the surface all the same.
       std::uint32_t seen[6];
       int vertices = 0;
       for (std::uint32_t triangle : triangles_of(opposite[i]))
@@ -137,16 +115,16 @@ CollapsingMesh::Edge CollapsingMesh::edge(std::uint32_t a, std::uint32_t b) cons
 }
 
 void CollapsingMesh::collapse(std::uint32_t removed, std::uint32_t kept) {
-  // Triangles on the edge go; of their two other edges, which become one, either may have been a line.
+  // Remove the triangles on the edge. Of their two other edges, which become one, either may be a feature edge.
   const Edge between = edge(removed, kept);
-  VertexPair merged_lines[2];
-  int merged_line_count = 0;
+  VertexPair merged_features[2];
+  int merged_feature_count = 0;
   for (int i = 0; i < between.triangles; ++i) {
     const std::uint32_t gone = between.at[i];
     const Triangle t = triangles_[gone];
     const std::uint32_t opposite = t[0] + t[1] + t[2] - removed - kept;
-    if (has_line(gone, removed, opposite) || has_line(gone, kept, opposite))
-      merged_lines[merged_line_count++] = {kept, opposite};
+    if (has_feature(gone, removed, opposite) || has_feature(gone, kept, opposite))
+      merged_features[merged_feature_count++] = {kept, opposite};
     for (std::uint32_t vertex : t) {
       Around& around = around_[vertex];
       const auto begin = pool_.begin() + around.begin;
@@ -156,11 +134,11 @@ void CollapsingMesh::collapse(std::uint32_t removed, std::uint32_t kept) {
     }
     --faces_;
   }
-  lines_at_[kept] =
-      static_cast<std::uint8_t>(std::min(200, lines_at_[kept] + lines_at_[removed] - 2 * int{between.line}));
-  lines_at_[removed] = 0;
+  feature_counts_[kept] = static_cast<std::uint8_t>(
+      std::min(200, feature_counts_[kept] + feature_counts_[removed] - 2 * int{between.feature}));
+  feature_counts_[removed] = 0;
 
-  // The rest of both becomes kept's.
+  // Give the other triangles of both vertices to `kept`.
   Around& left = around_[kept];
   Around& right = around_[removed];
   for (std::uint32_t i = 0; i < right.size; ++i)
@@ -185,7 +163,7 @@ void CollapsingMesh::collapse(std::uint32_t removed, std::uint32_t kept) {
   }
   left = both;
   right = {};
-  for (int i = 0; i < merged_line_count; ++i) mark_line(merged_lines[i].first, merged_lines[i].second);
+  for (int i = 0; i < merged_feature_count; ++i) mark_feature(merged_features[i].first, merged_features[i].second);
 }
 
 }  // namespace kiln

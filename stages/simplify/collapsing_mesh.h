@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,36 +9,8 @@
 
 namespace kiln {
 
-/// Of a vertex, or of several that became one.
-struct VertexWeight {
-  double sum = 1, count = 1;
-
-  double mean() const { return sum / count; }
-  VertexWeight& operator+=(const VertexWeight& other) {
-    sum += other.sum;
-    count += other.count;
-    return *this;
-  }
-};
-
-/// Collapses are computed in a frame where the bounding box is centred on the origin with a diagonal of 1: quadrics of
-/// far away or tiny objects lose their digits, and tolerances get a meaning.
-struct UnitFrame {
-  Eigen::Vector3d centre;
-  double diagonal;
-
-  explicit UnitFrame(const TriangleMesh& mesh);
-  Eigen::Vector3d to_object(const Eigen::Vector3d& p) const { return centre + diagonal * p; }
-  Eigen::Vector3d from_object(const Eigen::Vector3f& p) const { return (p.cast<double>() - centre) / diagonal; }
-};
-
-/// Finds for each vertex the height below which its triangles are too thin, in a frame where `diagonal` is 1. A
-/// component has what 16 bits can tell in its own box, but not less than what 24 bits, the most that a file has, can in
-/// the mesh's.
-std::vector<float> thinnest_heights(const TriangleMesh& mesh, double diagonal);
-
-/// The triangles around each vertex of an oriented manifold whose edges are collapsed one by one. Positions are up to
-/// whoever holds it.
+/// Connectivity of an oriented manifold whose edges are collapsed one by one: the triangles around each vertex, and
+/// which edges are feature edges. Positions are up to whoever holds it.
 class CollapsingMesh {
  public:
   CollapsingMesh(const TriangleMesh& mesh, std::span<const VertexPair> feature_edges);
@@ -51,19 +22,19 @@ class CollapsingMesh {
   bool is_removed(std::uint32_t vertex) const { return around_[vertex].size == 0; }
   int faces() const { return faces_; }
 
-  /// How many feature lines end in or pass (twice) a vertex; it lies inside a line where that is 2.
-  int lines_at(std::uint32_t vertex) const { return lines_at_[vertex]; }
-  /// Whether corner k of the triangle and the next are joined by a feature line.
-  bool is_line(std::uint32_t triangle, int corner) const { return (line_bits_[triangle] >> corner & 1) != 0; }
-  /// The line's edges at `vertex` as other ends; each once.
-  void line_neighbours(std::uint32_t vertex, std::vector<std::uint32_t>& neighbours) const;
+  /// Counts the feature edges at a vertex: 2 inside a line of them, another number at its ends and branches.
+  int feature_count(std::uint32_t vertex) const { return feature_counts_[vertex]; }
+  /// Tells whether corner k of the triangle and the next corner are the ends of a feature edge.
+  bool is_feature(std::uint32_t triangle, int corner) const { return (feature_bits_[triangle] >> corner & 1) != 0; }
+  /// Lists in `neighbours` the other ends of the feature edges at `vertex`, each once.
+  void feature_neighbours(std::uint32_t vertex, std::vector<std::uint32_t>& neighbours) const;
 
-  /// What there is to know of an edge before it is collapsed.
+  /// Findings about an edge before it is collapsed.
   struct Edge {
-    int triangles = 0;            ///< on it: 1 at a border
-    std::uint32_t at[2] = {};     ///< those triangles
-    bool line = false;            ///< a feature line
-    bool keeps_topology = false;  ///< and does not make two lines one
+    int triangles = 0;            ///< count of those on it: 1 at a border
+    std::uint32_t at[2] = {};     ///< indices of those triangles
+    bool feature = false;         ///< true for a feature edge
+    bool keeps_topology = false;  ///< true where a collapse keeps the surface's topology, and makes no two lines one
   };
   Edge edge(std::uint32_t a, std::uint32_t b) const;
 
@@ -74,17 +45,16 @@ class CollapsingMesh {
   struct Around {
     std::uint32_t begin = 0, size = 0, capacity = 0;
   };
-  std::uint32_t opposite_line(std::uint32_t triangle, std::uint32_t a, std::uint32_t b) const;
-  void mark_line(std::uint32_t a, std::uint32_t b);
-  bool has_line(std::uint32_t triangle, std::uint32_t a, std::uint32_t b) const;
+  void mark_feature(std::uint32_t a, std::uint32_t b);
+  bool has_feature(std::uint32_t triangle, std::uint32_t a, std::uint32_t b) const;
 
   std::vector<Triangle> triangles_;
-  std::vector<std::uint8_t> line_bits_;
-  std::vector<std::uint8_t> lines_at_;
-  std::vector<Around> around_;
+  std::vector<std::uint8_t> feature_bits_;    ///< by triangle: bit k is set where is_feature(triangle, k)
+  std::vector<std::uint8_t> feature_counts_;  ///< by vertex, 200 at most
+  std::vector<Around> around_;                ///< by vertex: where its triangles are in pool_
   std::vector<std::uint32_t> pool_;
   int faces_ = 0;
-  mutable std::vector<std::uint32_t> mark_;
+  mutable std::vector<std::uint32_t> mark_;  ///< by vertex: what edge() noted last, told apart by mark_now_
   mutable std::uint32_t mark_now_ = 0;
 };
 

@@ -14,8 +14,8 @@ Eigen::Vector3d unit_normal(const TriangleMesh& mesh, std::uint32_t triangle) {
   return (at(1) - at(0)).cross(at(2) - at(0)).normalized();
 }
 
-/// Around an inner vertex each neighbour follows one triangle and precedes another, so that the sums of both are the
-/// same; at a border they are not, but for one chance in 2^64. Every edge of the border has such ends.
+/// Tells whether a mesh has a border. Around an inner vertex each neighbour follows one triangle and precedes another,
+/// so that the sums of both are the same; at a border they are not, but for one chance in 2^64.
 bool has_border(const TriangleMesh& mesh) {
   const auto scattered = [](std::uint64_t value) {  // Steele, Lea and Flood 2014 (SplitMix)
     value = (value + 1) * 0x9e3779b97f4a7c15u;
@@ -37,10 +37,10 @@ bool has_border(const TriangleMesh& mesh) {
 
 std::vector<VertexPair> find_feature_edges(const TriangleMesh& mesh, double crease_degrees,
                                            std::span<const VertexPair> given) {
-  // The usual case, a closed mesh of which nothing was asked, is known in one pass.
+  // Answer the usual case in one pass: a closed mesh, no angle, nothing given.
   if (crease_degrees <= 0 && given.empty() && !has_border(mesh)) return {};
 
-  // Each vertex's edges to larger ones, with the triangles on them: counted, then filled in.
+  // List each vertex's edges to larger ones with the triangles on them: count, then fill in.
   struct Side {
     std::uint32_t other, triangle;
   };
@@ -56,7 +56,7 @@ std::vector<VertexPair> find_feature_edges(const TriangleMesh& mesh, double crea
   for_each([&](const auto& edge, std::uint32_t i) { sides[next[edge.first]++] = {edge.second, i}; });
 
   const double smallest_cosine =
-      crease_degrees > 0 ? std::cos(crease_degrees * std::numbers::pi / 180) : -2;  // nothing is below -2
+      crease_degrees > 0 ? std::cos(crease_degrees * std::numbers::pi / 180) : -2;  // below every cosine
   const auto is_crease = [&](std::uint32_t one, std::uint32_t other) {
     return smallest_cosine > -2 && unit_normal(mesh, one).dot(unit_normal(mesh, other)) < smallest_cosine;
   };

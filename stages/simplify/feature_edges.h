@@ -9,11 +9,11 @@
 
 namespace kiln {
 
-/// An edge of a mesh by its ends.
+/// Edge of a mesh by its two vertices.
 using VertexPair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Edges that simplification keeps as lines: those of the border, those whose dihedral angle (0 in a plane) exceeds
-/// `crease_degrees` (0 is none of these), and those of `given` that are edges of the mesh. Each once, the smaller
+/// Finds the edges that simplification keeps as lines: those of the border, those whose dihedral angle (0 in a plane)
+/// exceeds `crease_degrees` (0: no edge does), and those of `given` that are edges of the mesh. Each once, the smaller
 /// vertex first, sorted. `mesh` is an oriented manifold.
 std::vector<VertexPair> find_feature_edges(const TriangleMesh& mesh, double crease_degrees,
                                            std::span<const VertexPair> given = {});

@@ -12,8 +12,9 @@
 #include <vector>
 
 #include "mesh/nearest_surface.h"
-#include "simplify/collapsing_mesh.h"
+#include "simplify/thinnest_heights.h"
 #include "simplify/triangle_shape.h"
+#include "simplify/unit_frame.h"
 
 namespace kiln {
 
@@ -23,7 +24,7 @@ using Vector = Eigen::Vector3d;
 using Matrix9 = Eigen::Matrix<double, 9, 9>;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 
-/// In the frame where the input's diagonal is 1.
+/// Returns the mesh with its positions in `frame`.
 TriangleMesh in_frame(const TriangleMesh& mesh, const UnitFrame& frame) {
   TriangleMesh result;
   result.triangles = mesh.triangles;
@@ -31,20 +32,20 @@ TriangleMesh in_frame(const TriangleMesh& mesh, const UnitFrame& frame) {
   return result;
 }
 
-/// A number in [0, 1) for each i: the fractional parts of multiples of roots (Roberts, "The unreasonable effectiveness
-/// of quasirandom sequences", 2018).
+/// Returns a number in [0, 1) for each i: the fractional parts of multiples of roots (Roberts, "The unreasonable
+/// effectiveness of quasirandom sequences", 2018).
 double quasi_random(std::size_t i, double step) {
   const double x = 0.5 + static_cast<double>(i + 1) * step;
   return x - std::floor(x);
 }
 
-/// A point of a triangle.
+/// Point of a triangle.
 struct SurfacePoint {
   std::uint32_t triangle;
-  Vector weights;  ///< of its corners
+  Vector weights;  ///< barycentric, of the triangle's corners
 };
 
-/// `samples` points, each for the same area.
+/// Spreads `samples` points over a mesh, each for the same area.
 std::vector<SurfacePoint> spread(const TriangleMesh& mesh, int samples) {
   std::vector<double> area_up_to;
   double area = 0;
@@ -77,21 +78,21 @@ Vector barycentric(const Vector& p, const Vector& a, const Vector& b, const Vect
   return {1 - v - w, v, w};
 }
 
-/// A point of the low mesh and the point of the high one that it is paired with.
+/// Pair of a point of the low mesh and the point of the high one that it is to come close to.
 struct Pair {
   SurfacePoint low;
   Vector high;
-  Vector direction;     ///< unit
-  double distance = 0;  ///< between them
-  double nearest = 0;   ///< to the other surface, whichever way that faces
+  Vector direction;     ///< unit vector along which the gap is to be closed
+  double distance = 0;  ///< between the two points
+  double nearest = 0;   ///< distance from the sample to the other surface, whichever way that faces
 };
 
-/// How far apart surfaces are.
+/// Distances between the two surfaces.
 struct Error {
   double rms = 0, largest = 0;
 };
 
-/// Enough for each triangle of either, up to what takes seconds.
+/// Returns how many samples a surface gets: enough for each triangle of either, at most 100,000 or 10 per low triangle.
 int sample_count(const TriangleMesh& low, const TriangleMesh& high, const FitSettings& settings) {
   if (settings.samples > 0) return settings.samples;
   const std::size_t wanted = std::max(20 * low.triangles.size(), 2 * high.triangles.size());
@@ -99,7 +100,7 @@ int sample_count(const TriangleMesh& low, const TriangleMesh& high, const FitSet
       std::clamp<std::size_t>(wanted, 5'000, std::max<std::size_t>(100'000, 10 * low.triangles.size())));
 }
 
-/// As long as twice the areas.
+/// Returns the triangles' normals, as long as twice their areas.
 std::vector<Vector> triangle_normals(const TriangleMesh& mesh) {
   std::vector<Vector> normals;
   for (const Triangle& t : mesh.triangles) {
@@ -122,7 +123,7 @@ class Fit {
         thinnest_(thinnest_heights(low, frame_.diagonal)) {
     for (const Eigen::Vector3f& p : low.positions) positions_.push_back(frame_.from_object(p));
     triangles_ = low.triangles;
-    // The samples of the high mesh: points between its vertices, and these, or, of very many, some.
+    // Sample the high mesh: points inside its triangles, then its vertices, or every n-th of very many.
     const std::vector<Vector> normals = triangle_normals(high_);
     for (const SurfacePoint& point : spread(high_, sample_count_)) {
       sample_normals_.push_back(normals[point.triangle]);
@@ -154,9 +155,7 @@ class Fit {
     for (int round = 0; round < settings_.rounds; ++round) {
       progress(static_cast<double>(round) / settings_.rounds);
       const double share = static_cast<double>(round) / settings_.rounds;
-      if (round % 2 == 1 && share < 2) {
-        flip_edges(exponent(share));
-      }
+      if (round % 2 == 1) flip_edges(exponent(share));
       move_vertices(exponent(share));
       pair_up();
       const Error now = error();
@@ -172,7 +171,8 @@ class Fit {
   }
 
  private:
-  /// Weights go with this power of the distance: first the mean is brought down, then the largest.
+  /// Returns the power of the distance that a sample's weight goes with: 0 first, to bring the mean down, then 2.5, for
+  /// the largest.
   static double exponent(double share) { return share < 0.3 ? 0 : 2.5; }
 
   TriangleMesh low_mesh() const {
@@ -189,15 +189,15 @@ class Fit {
   }
   TriangleShape shape_of(const Triangle& t) const { return {positions_[t[0]], positions_[t[1]], positions_[t[2]]}; }
 
-  /// The nearest point that faces as `normal` does, or, where there is none within reach, the nearest. On a wall that
-  /// is thinner than the error, the nearest may be of the other side.
+  /// Finds the nearest point that faces as `normal` does, or, where none is within reach, returns `hit`, the nearest of
+  /// all. On a wall that is thinner than the error, that may lie on the other side.
   NearestSurface::Hit facing(const NearestSurface& surface, const Vector& point, const Vector& normal,
                              const NearestSurface::Hit& hit) const {
     if (surface.normal(hit).dot(normal) >= 0) return hit;
     return surface.nearest_facing(point, {normal, 0, std::sqrt(hit.squared_distance) + reach_}, hit.hint).value_or(hit);
   }
 
-  /// Each sample of either surface with the nearest point of the other.
+  /// Pairs each sample of either surface with the nearest point of the other.
   void pair_up() {
     const TriangleMesh low = low_mesh();
     const NearestSurface low_surface(low);
@@ -223,7 +223,8 @@ class Fit {
     });
 
     low_samples_ = spread(low, sample_count_);
-    // Where the surface curves inwards, edges are the farthest from it; outwards, vertices.
+    // Add vertices and points of edges: where the surface curves outwards, vertices are the farthest from it; inwards,
+    // edges are.
     std::vector<bool> seen(positions_.size(), false);
     for (std::uint32_t i = 0; i < triangles_.size(); ++i)
       for (int k = 0; k < 3; ++k) {
@@ -271,7 +272,7 @@ class Fit {
   }
 
   void move_vertices(double exponent) {
-    // The normal equations, by triangle.
+    // Sum the normal equations by triangle.
     std::vector<Matrix9> matrices(triangles_.size(), Matrix9::Zero());
     std::vector<Vector9> right(triangles_.size(), Vector9::Zero());
     const double rms = error().rms;
@@ -322,14 +323,15 @@ class Fit {
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
     if (solver.info() != Eigen::Success) return;
     const Eigen::VectorXd steps = solver.solve(b);
-    // Weights that go with a power of the distance: a shorter step, or they swing to and fro.
+    // Shorten the steps where weights go with a power of the distance: vertices would swing to and fro.
     std::vector<Vector> step(positions_.size(), Vector::Zero());
     for (std::size_t i = 0; i < positions_.size(); ++i)
       if (unknown[i] >= 0) step[i] = steps.segment<3>(3 * unknown[i]) / (1 + exponent);
     take(step);
   }
 
-  /// Moves as far as the triangles allow: where one does not, its corners go half as far, then not at all.
+  /// Moves the vertices by `step` as far as the triangles allow: where one does not, its corners go half as far, at
+  /// last not at all.
   void take(std::vector<Vector>& step) {
     std::vector<TriangleShape> before;
     for (const Triangle& t : triangles_) before.push_back(shape_of(t));
@@ -368,7 +370,7 @@ class Fit {
   }
 
   void flip_edges(double exponent) {
-    // Samples of the high mesh by the triangle that they are next to.
+    // List samples of the high mesh by the triangle that they are next to.
     std::vector<std::vector<std::uint32_t>> samples(triangles_.size());
     for (std::uint32_t i = 0; i < from_high_.size(); ++i) samples[from_high_[i].low.triangle].push_back(i);
     std::unordered_map<std::uint64_t, std::uint32_t> side;  // directed edge to its triangle
@@ -386,7 +388,7 @@ class Fit {
         const std::uint32_t j = other->second;
         const std::uint32_t d = triangles_[j][0] + triangles_[j][1] + triangles_[j][2] - a - b;
         if (c == d || side.contains(key(c, d)) || side.contains(key(d, c))) continue;
-        // a, b, c and b, a, d become a, d, c and d, b, c.
+        // Flip: a, b, c and b, a, d become a, d, c and d, b, c.
         const Triangle first = {a, d, c}, second = {d, b, c};
         if (!is_better(i, j, first, second, samples, rms, exponent)) continue;
         triangles_[i] = first;
@@ -436,7 +438,7 @@ class Fit {
     return faces_outwards(first, after[0]) && faces_outwards(second, after[1]);
   }
 
-  /// Squared distance and the nearest point; the sides of the triangle are its neighbours' too.
+  /// Returns the squared distance of p from a triangle, and the triangle's point that is nearest.
   std::pair<double, Vector> nearest_on(const Triangle& t, const Vector& p) const {
     const Vector &a = positions_[t[0]], &b = positions_[t[1]], &c = positions_[t[2]];
     const Vector weights = barycentric(p, a, b, c);
@@ -455,19 +457,19 @@ class Fit {
   }
 
   static constexpr double smallest_slenderness = 0.02;
-  static constexpr double smallest_facing = 0.1;  ///< cosine between a triangle and what it stands for
-  static constexpr double damping = 0.02;         ///< of a step, as a share of what the samples say of a vertex
+  static constexpr double smallest_facing = 0.1;  ///< cosine between the normals of a triangle and of the input there
+  static constexpr double damping = 0.02;         ///< share of its own that is added to the diagonal of the equations
 
   const FitSettings& settings_;
   int sample_count_;
   UnitFrame frame_;
-  TriangleMesh high_;  ///< in the frame, as everything here
+  TriangleMesh high_;  ///< in the frame, as are all positions below
   NearestSurface surface_;
   std::span<const std::uint8_t> is_fixed_;
   std::vector<Vector> positions_;
   std::vector<Triangle> triangles_;
-  std::vector<float> thinnest_;  ///< by vertex (thinnest_heights)
-  double reach_ = 0;             ///< how much farther than the nearest surface one that faces rightly may be
+  std::vector<float> thinnest_;  ///< by vertex of the low mesh (thinnest_heights)
+  double reach_ = 0;             ///< by which a surface that faces rightly may be farther than the nearest
   std::vector<Vector> samples_, sample_normals_;
   std::vector<std::uint32_t> sample_hints_, low_hints_;
   std::vector<Pair> from_high_, from_low_;

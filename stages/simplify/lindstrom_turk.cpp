@@ -10,11 +10,11 @@ namespace {
 using Vector = Eigen::Vector3d;
 using Matrix = Eigen::Matrix3d;
 
-constexpr double squared_sin_smallest_angle = 3.0459e-4;  // 1 degree
+constexpr double squared_sin_smallest_angle = 3.0459e-4;  // of 1 degree
 constexpr double squared_cos_smallest_angle = 1 - squared_sin_smallest_angle;
 
-/// w -> e x (w x e) as a matrix: the square of the area between a line's edge and a point has it as its second
-/// derivative.
+/// Returns the matrix of w -> e x (w x e): the second derivative of the squared area between a feature edge e and a
+/// point.
 Matrix across(const Vector& e) { return e.squaredNorm() * Matrix::Identity() - e * e.transpose(); }
 
 }  // namespace
@@ -57,7 +57,7 @@ void PlacementConstraints::add_minimum(const Matrix& H, const Vector& c) {
 }
 
 Vector PlacementConstraints::solve() const {
-  // Cramer's rule.
+  // Apply Cramer's rule.
   const Vector across_12 = rows_[1].cross(rows_[2]), across_20 = rows_[2].cross(rows_[0]),
                across_01 = rows_[0].cross(rows_[1]);
   return (values_[0] * across_12 + values_[1] * across_20 + values_[2] * across_01) / rows_[0].dot(across_12);
@@ -65,12 +65,12 @@ Vector PlacementConstraints::solve() const {
 
 PlacementConstraints lindstrom_turk_constraints(const EdgeSurroundings& edge) {
   PlacementConstraints constraints;
-  if (!edge.lines.empty()) {
-    // Line preservation: the sum of the areas between the line and the point is nothing.
+  if (!edge.features.empty()) {
+    // Preserve the line: the areas between its edges and the point add up to nothing.
     Vector along = Vector::Zero(), area = Vector::Zero();
-    for (const LineEdge& line : edge.lines) {
-      along += line.to - line.from;
-      area += line.to.cross(line.from);
+    for (const FeatureEdge& feature : edge.features) {
+      along += feature.to - feature.from;
+      area += feature.to.cross(feature.from);
     }
     constraints.add_minimum(across(along), along.cross(area));
   }
@@ -85,10 +85,10 @@ PlacementConstraints lindstrom_turk_constraints(const EdgeSurroundings& edge) {
   }
   constraints.add(normal, offset);
   if (constraints.size() == 3) return constraints;
-  for (const LineEdge& line : edge.lines) {
-    const Vector along = line.to - line.from;
+  for (const FeatureEdge& feature : edge.features) {
+    const Vector along = feature.to - feature.from;
     H += 9 * edge.squared_length * across(along);
-    c += 9 * edge.squared_length * along.cross(line.to.cross(line.from));
+    c += 9 * edge.squared_length * along.cross(feature.to.cross(feature.from));
   }
   constraints.add_minimum(H, c);
   return constraints;
@@ -100,7 +100,8 @@ double lindstrom_turk_cost(const EdgeSurroundings& edge, const Vector& v) {
     const double six_volumes = plane.normal.dot(v) - plane.offset;
     volume += six_volumes * six_volumes;
   }
-  for (const LineEdge& line : edge.lines) area += (line.to - line.from).cross(v - line.from).squaredNorm();
+  for (const FeatureEdge& feature : edge.features)
+    area += (feature.to - feature.from).cross(v - feature.from).squaredNorm();
   return 0.5 * volume / 36 + 0.5 * edge.squared_length * area / 4;
 }
 

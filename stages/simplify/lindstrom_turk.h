@@ -6,47 +6,49 @@
 
 namespace kiln {
 
-/// What a triangle adds to the volume under a point v: (normal.v - offset) / 6 is the volume of the tetrahedron that
-/// they span.
+/// Plane of a triangle, scaled such that (normal.v - offset) / 6 is the volume of the tetrahedron that the triangle and
+/// a point v span.
 struct TrianglePlane {
-  Eigen::Vector3d normal;  ///< twice the area long
-  double offset = 0;       ///< normal.a of a corner a
+  Eigen::Vector3d normal;  ///< as long as twice the triangle's area
+  double offset = 0;       ///< normal.a for any corner a
 
   TrianglePlane() = default;
   TrianglePlane(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c);
 };
 
-/// An edge of a border or crease.
-struct LineEdge {
+/// Feature edge as a segment: of a border, a crease, or given.
+struct FeatureEdge {
   Eigen::Vector3d from, to;
 };
 
-/// The neighbourhood of an edge, all in one frame.
+/// Neighbourhood of an edge, all in one frame.
 struct EdgeSurroundings {
-  std::span<const TrianglePlane> planes;  ///< of each triangle at either end
-  std::span<const LineEdge> lines;        ///< at either end
-  double squared_length = 0;              ///< of the edge
+  std::span<const TrianglePlane> planes;  ///< of the triangles at either end, each once
+  std::span<const FeatureEdge> features;  ///< feature edges at either end, each once
+  double squared_length = 0;              ///< of the edge itself
 };
 
-/// Where the edge's vertex goes: keeps the volume and a line's area, and of what is left minimises the squares of the
-/// volumes and areas between before and after; in flat places, goes to the middle of `link`, the vertices around the
-/// edge. `link` is called only there. Nothing where that is not defined. Lindstrom and Turk, "Fast and memory efficient
-/// polygonal simplification" (1998), sections 4.1 to 4.5, with their angle of 1 degree between constraints.
+/// Finds where the edge's vertex goes. That place keeps the volume, and the area beside a line of feature edges; with
+/// the freedom left, it minimises the squares of the volumes and areas between before and after. In flat places it is
+/// the middle of the vertices around the edge, which `link` is called for only there. Nothing where no place is
+/// defined. Lindstrom and Turk, "Fast and memory efficient polygonal simplification" (1998), sections 4.1 to 4.5, with
+/// their angle of 1 degree between constraints.
 template <class Link>
 std::optional<Eigen::Vector3d> lindstrom_turk_placement(const EdgeSurroundings& edge, const Link& link);
 
-/// Cost of moving the edge's vertex to `v`, volume and lines weighted equally (section 4.6); length to the power of 6.
+/// Computes the cost of moving the edge's vertex to `v`, volumes and feature edges weighted equally (section 4.6), in
+/// lengths to the power of 6.
 double lindstrom_turk_cost(const EdgeSurroundings& edge, const Eigen::Vector3d& v);
 
-/// Up to three linear equations for a point.
+/// Linear equations for a point, three at most.
 class PlacementConstraints {
  public:
   int size() const { return size_; }
-  /// Adds row.v = value unless that is nearly parallel to what is there.
+  /// Adds the equation row.v = value unless its row is nearly parallel to those that are there.
   void add(const Eigen::Vector3d& row, double value);
-  /// Adds what H v = -c says about the directions that are still free.
+  /// Adds what H v = -c says in the directions that are still free.
   void add_minimum(const Eigen::Matrix3d& H, const Eigen::Vector3d& c);
-  /// Needs three.
+  /// Solves the equations, of which there must be three.
   Eigen::Vector3d solve() const;
 
  private:
@@ -55,7 +57,7 @@ class PlacementConstraints {
   double values_[3] = {};
 };
 
-/// All but the last step.
+/// Collects the equations of lindstrom_turk_placement, less those for flat places: fewer than three there.
 PlacementConstraints lindstrom_turk_constraints(const EdgeSurroundings& edge);
 
 template <class Link>

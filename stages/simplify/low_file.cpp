@@ -14,7 +14,7 @@ namespace kiln {
 
 namespace {
 
-constexpr int most_bits = 24;  // about what a float holds
+constexpr int most_bits = 24;  // as many as a float's mantissa
 constexpr double wanted_steps = 256, least_steps = 32;
 
 double longest_side(const TriangleMesh& mesh) {
@@ -24,7 +24,7 @@ double longest_side(const TriangleMesh& mesh) {
 
 double step(double side, int bits) { return side / (std::exp2(bits) - 1); }
 
-/// The diagonal of the smallest component's box that is not a point.
+/// Returns the diagonal of the smallest component's box that is not a point.
 double smallest_component(const TriangleMesh& mesh) {
   double smallest = longest_side(mesh);
   for (const BoundingBox& box : component_boxes(mesh, find_components(mesh)))
@@ -32,8 +32,8 @@ double smallest_component(const TriangleMesh& mesh) {
   return smallest;
 }
 
-/// Bits of position from 16 on that leave every triangle its area and winding when each corner moves by the rounding,
-/// and every component its shape.
+/// Returns the fewest bits of position, 16 to 24, that leave every triangle its area and winding when each corner moves
+/// by the rounding, and every component its shape.
 int sufficient_position_bits(const TriangleMesh& mesh) {
   const double side = longest_side(mesh);
   int bits = DracoQuantisation().position_bits;
@@ -42,8 +42,8 @@ int sufficient_position_bits(const TriangleMesh& mesh) {
     const Eigen::Vector3d b = mesh.positions[triangle[1]].cast<double>();
     const Eigen::Vector3d c = mesh.positions[triangle[2]].cast<double>();
     const double height = (b - a).cross(c - a).norm() / std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-    if (!(height > 0)) continue;  // nothing to keep
-    // Each corner moves by sqrt(3)/2 steps at most, the height by that of its tip and of its foot.
+    if (!(height > 0)) continue;  // it has no area to keep
+    // Corners move by sqrt(3)/2 steps at most, the height by that of its tip and of its foot.
     while (bits < most_bits && height < std::sqrt(3.0) * step(side, bits)) ++bits;
   }
   const double smallest = smallest_component(mesh);
@@ -63,7 +63,7 @@ TriangleMesh LowFile::write(const TriangleMesh& mesh) {
   quantisation.position_bits = position_bits_ = sufficient_position_bits(mesh);
   const double steps = smallest_component(mesh) / step(longest_side(mesh), most_bits);
   too_few_steps_ = steps < least_steps ? steps : 0;
-  // The normals are those of the rounded positions.
+  // Compute the normals from the rounded positions.
   TriangleMesh low = split_at_hard_edges(mesh);
   low.normals.clear();
   low.colors.clear();

@@ -10,12 +10,13 @@
 
 namespace kiln {
 
-/// The Draco file that the stage writes.
+/// Draco file that the stage writes.
 class LowFile {
  public:
   explicit LowFile(std::filesystem::path file) : file_(std::move(file)) {}
 
-  /// From now on vertices get the colours of `high` at the nearest point of its surface; it must outlive this object.
+  /// Has vertices get, from now on, the colours of `high` at the nearest point of its surface; it must outlive this
+  /// object.
   void keep_colors(const TriangleMesh& high);
 
   /// Writes positions, normals and colours, and returns what the file now holds. Positions have 16 bits, or more where
@@ -23,9 +24,10 @@ class LowFile {
   /// steps along its diagonal; 24 at most.
   TriangleMesh write(const TriangleMesh& mesh);
 
-  /// Of the latest write.
+  /// Returns the bits of positions in the latest write.
   int position_bits() const { return position_bits_; }
-  /// The steps of 24 bits along the box's diagonal of the smallest component, where they are less than 32; else 0.
+  /// Returns how many steps of 24 bits the diagonal of the smallest component's box has where they are less than 32,
+  /// else 0.
   double too_few_steps() const { return too_few_steps_; }
 
  private:
@@ -36,12 +38,12 @@ class LowFile {
   std::optional<NearestSurface> colored_surface_;
 };
 
-/// Colours for `positions`: those of `mesh` at the nearest point of its surface, between the corners of a triangle by
-/// barycentric coordinates.
+/// Looks up colours for `positions`: those of `mesh` at the nearest point of its surface, between the corners of a
+/// triangle by barycentric coordinates.
 std::vector<Eigen::Vector3f> nearest_colors(const TriangleMesh& mesh, const NearestSurface& surface,
                                             const std::vector<Eigen::Vector3f>& positions);
 
-/// How often what was mended.
+/// Writes the counts of repairs, by kind.
 Json repairs_to_json(const MeshRepairs& repairs);
 
 }  // namespace kiln

@@ -16,8 +16,7 @@ int main(int argc, char** argv) {
     command.output(low_file, "The simplified mesh, a Draco file: positions and normals, and colours with --colors");
     command.options("Simplification", simplify_options(settings));
     command.parse(argc, argv);
-    if (settings.max_error > 0 && command.given("faces"))
-      throw WrongUsage("--faces and --max-error are two ways to say where to stop; give one of them");
+    check_options(settings, [&](const std::string& option) { return command.given(option); });
 
     // Load and run; each candidate is written, so that what is measured is what the file holds.
     const ImportedMesh imported = import_mesh(high_file, settings.import);

@@ -10,7 +10,9 @@
 #include <tbb/parallel_sort.h>
 #include <tuple>
 
+#include "simplify/thinnest_heights.h"
 #include "simplify/triangle_shape.h"
+#include "simplify/unit_frame.h"
 
 namespace kiln {
 
@@ -20,7 +22,8 @@ using Vector = Eigen::Vector3d;
 template <class T>
 using Few = boost::container::small_vector<T, 24>;
 
-/// v'Av + 2b'v + c, the sum of squared distances to planes times triangles' areas; A has xx, yy, zz, xy, xz, yz.
+/// Quadric v'Av + 2b'v + c: the sum of squared distances to planes times triangles' areas; A has xx, yy, zz, xy, xz,
+/// yz.
 struct Quadric {
   std::array<double, 6> a = {};
   Vector b = Vector::Zero();
@@ -48,11 +51,11 @@ struct Quadric {
     return {a[0] * v.x() + a[3] * v.y() + a[4] * v.z(), a[3] * v.x() + a[1] * v.y() + a[5] * v.z(),
             a[4] * v.x() + a[5] * v.y() + a[2] * v.z()};
   }
-  /// The mean of the squared distances.
+  /// Returns the mean of the squared distances, of which `sum` is the sum.
   double mean_square(double sum) const { return sum / std::max(a[0] + a[1] + a[2], 1e-300); }
   double operator()(const Vector& v) const { return v.dot(times(v)) + 2 * b.dot(v) + c; }
 
-  /// Where it is smallest, if its planes are well apart.
+  /// Finds where the quadric is smallest; false where its planes are nearly parallel.
   bool minimum(Vector& v) const {
     const Vector row0(a[0], a[3], a[4]), row1(a[3], a[1], a[5]), row2(a[4], a[5], a[2]);
     const Vector across = row1.cross(row2);
@@ -68,7 +71,7 @@ struct Placement {
   Vector position = Vector::Zero();
 };
 
-/// One edge of a round. The cost is rounded, so that few bytes are sorted.
+/// Edge of a round. Its cost is rounded to a float, so that few bytes are sorted.
 struct Candidate {
   float cost;
   std::uint32_t a, b;
@@ -80,7 +83,7 @@ struct Candidate {
 
 class QuickCollapser {
  public:
-  QuickCollapser(CollapseSequence& sequence, std::span<const VertexPair> lines, std::vector<VertexWeight>& weights)
+  QuickCollapser(CollapseSequence& sequence, std::span<const VertexPair> features, std::vector<VertexWeight>& weights)
       : sequence_(sequence),
         weights_(weights),
         frame_(sequence.start),
@@ -93,7 +96,7 @@ class QuickCollapser {
     tbb::parallel_for(std::size_t{0}, vertices,
                       [&](std::size_t i) { positions_[i] = frame_.from_object(sequence.start.positions[i]); });
     is_fixed_.resize(vertices, 0);
-    for (const auto& [a, b] : lines) is_fixed_[a] = is_fixed_[b] = 1;
+    for (const auto& [a, b] : features) is_fixed_[a] = is_fixed_[b] = 1;
     became_.resize(vertices);
     for (std::uint32_t i = 0; i < vertices; ++i) became_[i] = i;
     list_triangles_around();
@@ -127,12 +130,12 @@ class QuickCollapser {
       const double length = normal.norm();
       if (length > 0) normal /= length;
       if (length > 0) quadric.add_plane(normal, normal.dot(positions_[t[0]]), length / 2);
-      // A needle's or a cap's is noise.
+      // Leave out a needle's or a cap's normal, which is noise.
       if (is_thin(shape_of(t), {0, thinnest_[vertex]})) normal = Vector::Zero();
       normals.push_back(normal);
       sum += normal;
     }
-    // Where all face much the same way, no edge is sharp.
+    // Look for sharp edges, unless all triangles face much the same way.
     const double sharpest = 0.9 * sum.norm();
     if (std::any_of(normals.begin(), normals.end(), [&](const Vector& n) { return n.dot(sum) < sharpest; }))
       add_sharp_edges(vertex, {normals.data(), normals.size()}, quadric);
@@ -187,7 +190,7 @@ class QuickCollapser {
     const Vector middle = (pa + pb) / 2;
     Vector position;
     if (both.minimum(position) && (position - middle).squaredNorm() < (pb - pa).squaredNorm()) return at(position);
-    // The planes are nearly one: from the middle to it.
+    // Go from the middle to the planes, which are nearly one.
     const Vector slope = both.times(middle) + both.b;
     const double bend = slope.dot(both.times(slope));
     Placement best = at(bend > 0 ? Vector(middle - slope.squaredNorm() / bend * slope) : middle);
@@ -201,7 +204,7 @@ class QuickCollapser {
   void run_round(int target) {
     const double squared_edge = area_ / faces_ * 4 / std::sqrt(3.0);
     largest_mean_square_ = largest_distance * largest_distance * squared_edge;
-    // Edges with their costs.
+    // List the edges with their costs.
     candidates_.clear();
     for (const Triangle& t : triangles_)
       for (int k = 0; k < 3; ++k) {
@@ -214,7 +217,7 @@ class QuickCollapser {
         candidates_[i].cost = static_cast<float>(1e20 * placement(candidates_[i].a, candidates_[i].b).cost);
     });
 
-    // The cheapest in order; none that costs much more than would be needed, if no edges had an end in common.
+    // Sort the cheapest; none that costs much more than would be needed if no edges had an end in common.
     const std::size_t wanted = static_cast<std::size_t>(faces_ - target + 1) / 2;
     std::size_t considered = candidates_.size();
     if (wanted < candidates_.size()) {
@@ -239,7 +242,7 @@ class QuickCollapser {
     list_triangles_around();
   }
 
-  /// Calls visit(triangle) for those that are left around a vertex that was not touched in this round.
+  /// Calls visit(triangle) for the triangles left around a vertex that was not touched in this round.
   template <class Visit>
   void for_each_around(std::uint32_t vertex, const Visit& visit) const {
     for (std::uint32_t triangle : around(vertex)) {
@@ -260,7 +263,7 @@ class QuickCollapser {
     for_each_around(b, [&](const Triangle& t) { at_b.push_back(t); });
     std::uint32_t opposite[2] = {};
     if (!keeps_topology(a, b, {at_a.data(), at_a.size()}, {at_b.data(), at_b.size()}, opposite)) return;
-    // Nothing turns over.
+    // Refuse a collapse that turns a triangle over or makes it thin.
     for (const auto& [end, other, fan] : {std::tuple(a, b, &at_a), std::tuple(b, a, &at_b)})
       for (const Triangle& t : *fan) {
         if (t[0] == other || t[1] == other || t[2] == other) continue;
@@ -283,8 +286,8 @@ class QuickCollapser {
     sequence_.collapses.push_back({removed, kept, faces_, frame_.to_object(place.position).cast<float>()});
   }
 
-  /// The link condition, of the triangles left around both ends: two are on the edge, and the ends have no neighbours
-  /// in common but the `opposite` corners of these. A vertex of three triangles may not lose one.
+  /// Tests the link condition on the triangles left around both ends: two are on the edge, and the ends have no
+  /// neighbours in common but the `opposite` corners of these. A vertex of three triangles may not lose one.
   bool keeps_topology(std::uint32_t a, std::uint32_t b, std::span<const Triangle> at_a, std::span<const Triangle> at_b,
                       std::uint32_t (&opposite)[2]) const {
     int on_edge = 0;
@@ -294,7 +297,7 @@ class QuickCollapser {
       opposite[on_edge++] = t[0] + t[1] + t[2] - a - b;
     }
     if (on_edge != 2 || size_[opposite[0]] <= 3 || size_[opposite[1]] <= 3) return false;
-    // So few that looking through them is quicker than marking them.
+    // Look through the neighbours: they are so few that marking them takes longer.
     Few<std::uint32_t> neighbours;
     for (const Triangle& t : at_a)
       for (const std::uint32_t vertex : t)
@@ -305,7 +308,7 @@ class QuickCollapser {
     return opposite[0] != opposite[1];
   }
 
-  /// Twice the sum of the triangles' areas, as a vector.
+  /// Sums the normals of the triangles around both ends, each as long as twice its area.
   Vector normal_around(std::uint32_t a, std::uint32_t b) const {
     Vector sum = Vector::Zero();
     for (const std::uint32_t end : {a, b})
@@ -316,8 +319,8 @@ class QuickCollapser {
   }
 
   static constexpr double smallest_slenderness = 0.02;
-  /// From the planes of the triangles that a vertex stands for, in edges of a triangle of mean area: what
-  /// collapse.cpp's first pass allows.
+  /// Distance of a vertex from the planes of the triangles that it stands for, in edges of a triangle of mean area:
+  /// what collapse.cpp's first pass allows.
   static constexpr double largest_distance = 0.15;
 
   CollapseSequence& sequence_;
@@ -325,7 +328,7 @@ class QuickCollapser {
   UnitFrame frame_;
   std::vector<Triangle> triangles_;  ///< at the start of the round
   int faces_;
-  double area_;                  ///< of the start, in the frame
+  double area_;                  ///< of the start's surface, in the frame
   std::vector<float> thinnest_;  ///< by vertex (thinnest_heights)
   double largest_mean_square_ = 0;
   std::vector<Vector> positions_;  ///< in the frame
@@ -339,9 +342,9 @@ class QuickCollapser {
 
 }  // namespace
 
-void collapse_quickly(CollapseSequence& sequence, std::span<const VertexPair> lines, std::vector<VertexWeight>& weights,
-                      int faces, const ProgressFunction& progress) {
-  if (sequence.faces_after(0) > faces) QuickCollapser(sequence, lines, weights).run(faces, progress);
+void collapse_quickly(CollapseSequence& sequence, std::span<const VertexPair> features,
+                      std::vector<VertexWeight>& weights, int faces, const ProgressFunction& progress) {
+  if (sequence.faces_after(0) > faces) QuickCollapser(sequence, features, weights).run(faces, progress);
 }
 
 }  // namespace kiln

@@ -5,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "simplify/cgal_collapse.h"
 #include "simplify/collapse.h"
 #include "simplify/feature_edges.h"
 #include "simplify/fit.h"
@@ -13,7 +14,9 @@ namespace kiln {
 
 namespace {
 
-/// Of the result: standard's first step goes this far, and from the latter on, triangles are compared with the surface.
+/// Stages of a collapse, as multiples of the triangles wanted. `standard` collapses by quick quadrics down to
+/// quick_times of them, then by Lindstrom and Turk. From compared_times of them on, triangles are compared with the
+/// input's surface.
 constexpr int quick_times = 3, compared_times = 3;
 
 int times(int factor, int faces) {
@@ -24,7 +27,7 @@ ProgressFunction part(const ProgressFunction& progress, double begin, double end
   return [&progress, begin, end](double fraction) { progress(begin + (end - begin) * fraction); };
 }
 
-/// One input with what is known of it, brought to fewer triangles.
+/// Reduction of one input, with what is known of it.
 class Reducer {
  public:
   Reducer(const TriangleMesh& manifold, const SimplifySettings& settings, const CandidateDistance& distance,
@@ -36,39 +39,45 @@ class Reducer {
         given_(feature_edges.begin(), feature_edges.end()) {}
 
   Reduced to_faces(const ProgressFunction& progress) const {
-    if (settings_.quality == SimplifyQuality::best) return best_to_faces(progress);
-    return unfitted_to_faces(settings_.quality, progress);
+    if (quality() == SimplifyQuality::best) return best_to_faces(progress);
+    return unfitted_to_faces(quality(), progress);
   }
 
   Reduced to_error(const ProgressFunction& progress) const {
-    // Where standard's steps are to begin, a draft says.
+    // Find where standard's steps are to begin, by a draft.
     int faces = 4;
-    if (settings_.quality == SimplifyQuality::standard) {
+    if (quality() == SimplifyQuality::standard && settings_.engine == SimplifyEngine::kiln) {
       const CollapseSequence sequence = collapse(SimplifyQuality::draft, 4, true, part(progress, 0, 0.1));
       faces = sequence.faces_after(count_within(sequence, part(progress, 0.1, 0.3)));
     }
-    const bool fits = settings_.quality == SimplifyQuality::best;
-    const CollapseSequence sequence = collapse(settings_.quality, faces, true, part(progress, 0.3, fits ? 0.4 : 0.7));
+    const bool fits = quality() == SimplifyQuality::best;
+    const CollapseSequence sequence = collapse(quality(), faces, true, part(progress, 0.3, fits ? 0.4 : 0.7));
     const std::size_t count = count_within(sequence, part(progress, fits ? 0.4 : 0.7, fits ? 0.5 : 1));
     return fits ? fitted_within(sequence, count, part(progress, 0.5, 1)) : unfitted(sequence, count);
   }
 
  private:
+  /// Returns the quality asked for; of CGAL's engine there is but one, which is not fitted.
+  SimplifyQuality quality() const {
+    return settings_.engine == SimplifyEngine::cgal ? SimplifyQuality::standard : settings_.quality;
+  }
+
   Reduced unfitted_to_faces(SimplifyQuality quality, const ProgressFunction& progress) const {
     const CollapseSequence sequence = collapse(quality, settings_.faces, false, progress);
     return unfitted(sequence, careful_count(sequence));
   }
 
-  /// All collapses where they get to settings.faces. Where they do not, those with wider limits spoil the shape for
-  /// nothing, unless they save a fifth of the triangles.
+  /// Returns how many collapses to do: all where they get to settings.faces. Where they do not, those with wider limits
+  /// spoil the shape for nothing and are left out, unless they save a fifth of the triangles.
   std::size_t careful_count(const CollapseSequence& sequence) const {
     const std::size_t all = sequence.collapses.size(), close = sequence.close_count;
     if (sequence.faces_after(all) <= settings_.faces) return all;
     return 0.8 * sequence.faces_after(close) <= sequence.faces_after(all) ? close : all;
   }
 
-  /// The fitted mesh; or, where a draft has a smaller distance, what has the least RMS of those whose Hausdorff
-  /// distance is no larger than its: other meshes, fitted, and in the end itself. So best is never worse than draft.
+  /// Returns the fitted mesh. Where a draft has a smaller distance, returns the candidate of least RMS whose Hausdorff
+  /// distance is no larger than the draft's: unfitted, standard, fitted from either, or the draft itself. So best is
+  /// never worse than draft.
   Reduced best_to_faces(const ProgressFunction& progress) const {
     const CollapseSequence sequence = collapse(SimplifyQuality::best, settings_.faces, false, part(progress, 0, 0.1));
     const std::size_t count = careful_count(sequence);
@@ -108,6 +117,9 @@ class Reducer {
     collapse.crease_degrees = settings_.crease;
     collapse.feature_edges = given_;
     collapse.vertex_weights = vertex_weights_;
+    if (settings_.engine == SimplifyEngine::cgal)
+      return collapse_by_cgal(manifold_, collapse, {settings_.cost, settings_.max_normal_change, settings_.envelope},
+                              progress);
     switch (quality) {
       case SimplifyQuality::draft:
         return collapse_edges_in_two_steps(manifold_, collapse.faces, collapse, progress);
@@ -121,23 +133,26 @@ class Reducer {
   }
 
   Reduced unfitted(const CollapseSequence& sequence, std::size_t count) const {
-    return {sequence.after(count), surviving_edges(sequence, count, given_)};
+    return {sequence.after(count), surviving_edges(sequence, count, given_), sequence.met_envelope};
   }
 
-  /// What is left after `count` collapses, fitted to the start. Vertices of feature edges stay.
+  /// Fits the mesh after `count` collapses to the start. Vertices of feature edges stay.
   Reduced fitted(const CollapseSequence& sequence, std::size_t count, const ProgressFunction& progress) const {
     std::vector<std::uint32_t> origins;
     const TriangleMesh low = sequence.after(count, &origins);
     if (count == 0) return unfitted(sequence, count);
-    std::vector<std::uint8_t> in_line(sequence.start.positions.size(), 0);
-    for (const auto& [a, b] : find_feature_edges(sequence.start, settings_.crease, given_)) in_line[a] = in_line[b] = 1;
-    // A vertex of a feature edge is never made another's that is of none.
+    std::vector<std::uint8_t> in_feature(sequence.start.positions.size(), 0);
+    for (const auto& [a, b] : find_feature_edges(sequence.start, settings_.crease, given_))
+      in_feature[a] = in_feature[b] = 1;
+    // Fix the vertices of feature edges. A collapse keeps such a vertex rather than one of no feature edge, so that
+    // origins tell which they are.
     std::vector<std::uint8_t> is_fixed;
-    for (std::uint32_t origin : origins) is_fixed.push_back(in_line[origin]);
-    return {fit_to_surface(low, sequence.start, is_fixed, {}, progress), surviving_edges(sequence, count, given_)};
+    for (std::uint32_t origin : origins) is_fixed.push_back(in_feature[origin]);
+    return {fit_to_surface(low, sequence.start, is_fixed, {}, progress), surviving_edges(sequence, count, given_),
+            false};
   }
 
-  /// The most collapses that keep within max_error, to 1 % in the number of triangles, by bisection.
+  /// Finds the most collapses that keep within max_error, to 1 % in the number of triangles, by bisection.
   std::size_t count_within(const CollapseSequence& sequence, const ProgressFunction& progress) const {
     const auto faces_after = [&](std::size_t count) { return static_cast<double>(sequence.faces_after(count)); };
     const auto within = [&](std::size_t count) {
@@ -148,7 +163,7 @@ class Reducer {
     const double start_gap = std::log(faces_after(good) / faces_after(bad));
     for (double gap = start_gap; bad - good > 1 && gap > 0.01; gap = std::log(faces_after(good) / faces_after(bad))) {
       progress(std::clamp(1 - std::log(gap / 0.01) / std::log(start_gap / 0.01), 0.0, 1.0));
-      // Errors grow by powers of the number of triangles, so its logarithm is halved.
+      // Halve the logarithm of the number of triangles: errors grow by its powers.
       const double wanted = std::sqrt(faces_after(good) * faces_after(bad));
       const std::size_t middle = std::clamp(sequence.count_for(static_cast<int>(wanted)), good + 1, bad - 1);
       (within(middle) ? good : bad) = middle;
@@ -156,8 +171,8 @@ class Reducer {
     return good;
   }
 
-  /// The fitted mesh of the fewest triangles within max_error. Fits take long, so each is made where the last ones say
-  /// that the bound is: the error goes with the area of a triangle.
+  /// Finds the fitted mesh of the fewest triangles within max_error. Fits take long, so each is made where the last
+  /// ones say that the bound is: the error goes with the area of a triangle.
   Reduced fitted_within(const CollapseSequence& sequence, std::size_t unfitted_count,
                         const ProgressFunction& progress) const {
     constexpr int most_fits = 8;

@@ -12,24 +12,26 @@
 
 namespace kiln {
 
-/// A mesh, and which of the feature edges that were given are left, as its vertices: each once, the smaller vertex
-/// first, sorted.
+/// Reduced mesh, and which of the feature edges that were given are left in it: each once, the smaller vertex first,
+/// sorted.
 struct Reduced {
   TriangleMesh mesh;
   std::vector<VertexPair> feature_edges;
+  bool met_envelope = false;  ///< true where collapses were refused as they would have left settings.envelope
 };
 
-/// Distances of the input to a candidate. May say less where the Hausdorff distance is more than max_error.
+/// Measure of the input's distances to a candidate. May return less where the Hausdorff distance is more than
+/// max_error.
 using CandidateDistance = std::function<MeshDistance(const TriangleMesh&)>;
 
-/// An oriented manifold with settings.faces triangles (settings.max_error is not used), of the same topology; more
-/// where no collapse is left that keeps topology and shape. `vertex_weights` and `feature_edges`: as in
+/// Reduces an oriented manifold to settings.faces triangles (settings.max_error is not used), of the same topology; to
+/// more where no collapse is left that keeps topology and shape. `vertex_weights` and `feature_edges`: as in
 /// CollapseSettings.
 Reduced reduce_to_faces(const TriangleMesh& manifold, const SimplifySettings& settings,
                         const CandidateDistance& distance, std::span<const double> vertex_weights = {},
                         std::span<const VertexPair> feature_edges = {}, const ProgressFunction& progress = no_progress);
 
-/// The same with the fewest triangles, to 1 %, whose Hausdorff distance stays within settings.max_error
+/// Reduces it to the fewest triangles, to 1 %, whose Hausdorff distance stays within settings.max_error
 /// (settings.faces is not used); the manifold itself where none does.
 Reduced reduce_to_error(const TriangleMesh& manifold, const SimplifySettings& settings,
                         const CandidateDistance& distance, std::span<const double> vertex_weights = {},

@@ -19,6 +19,7 @@ namespace kiln {
 
 namespace {
 
+/// Triangle as a place and a direction.
 struct Facet {
   Eigen::Vector3d middle;
   Eigen::Vector3d area_normal;  ///< as long as twice the area
@@ -37,7 +38,7 @@ int count_facets(const TriangleMesh& mesh, const Predicate& predicate) {
                                         [&](const Triangle& triangle) { return predicate(facet(mesh, triangle)); }));
 }
 
-/// Writes candidates, and keeps the time of it apart.
+/// Writer of candidates that keeps its time apart.
 class Writer {
  public:
   explicit Writer(const WrittenForm& written) : written_(written) {}
@@ -55,14 +56,14 @@ class Writer {
   double seconds_ = 0;
 };
 
-/// Few samples suffice to see most that are too far.
+/// Measures distances; few samples suffice to see most candidates that are too far.
 MeshDistance distance_within(const TriangleMesh& high, const TriangleMesh& low, double max_error) {
   const MeshDistance least = mesh_distance(high, low, {.samples = 2'000});
   return least.hausdorff > max_error ? least : mesh_distance(high, low);
 }
 
-/// The hard edges of the input that its shape has too: where it is all but flat, the normal map can do without the
-/// edge.
+/// Finds the hard edges of the input that its shape has, too: where it is all but flat, the normal map can do without
+/// the edge.
 std::vector<VertexPair> feature_edges_of(const TriangleMesh& high) {
   constexpr double least_dihedral_degrees = 15;
   const HardEdges hard = hard_edges_of_normals(high);
@@ -73,7 +74,29 @@ std::vector<VertexPair> feature_edges_of(const TriangleMesh& high) {
   return features;
 }
 
-/// The simplified mesh with normals that are smooth but for its feature edges, in the input's frame.
+/// Throws WrongUsage for distances that no file can keep, and for an envelope without the engine that has one.
+void check_distances(const SimplifySettings& settings) {
+  constexpr double smallest = 1e-4;  // several steps of 16 bits
+  for (const auto& [name, distance] : {std::pair("max-error", settings.max_error), {"envelope", settings.envelope}})
+    if (distance != 0 && !(distance >= smallest))
+      throw WrongUsage(name + fmt::format(": found {:g}, expected 0 or 0.0001 to 1", distance));
+  if (settings.envelope > 0 && settings.engine != SimplifyEngine::cgal)
+    throw WrongUsage("envelope: only --engine cgal keeps one");
+}
+
+/// Says why there are more triangles than were asked for.
+std::string shortfall_of(const Reduced& low, const SimplifySettings& settings, std::size_t triangles,
+                         const std::string& other_reason) {
+  const std::string reason = low.met_envelope
+                                 ? fmt::format(
+                                       "no further collapse keeps within the envelope of {:g} of the diagonal; give a "
+                                       "larger --envelope or more --faces",
+                                       settings.envelope)
+                                 : other_reason;
+  return fmt::format("stopped at {} triangles of {}: {}", triangles, settings.faces, reason);
+}
+
+/// Returns the simplified mesh with normals that are smooth but for its feature edges, in the input's frame.
 TriangleMesh shaded(const Reduced& reduced, const MeshFrame& frame) {
   TriangleMesh mesh = reduced.mesh;
   mesh.frame = frame;
@@ -110,10 +133,8 @@ TriangleMesh with_normals(const TriangleMesh& mesh) {
 
 SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settings, const WrittenForm& written,
                         const ProgressFunction& progress) {
-  constexpr double smallest_max_error = 1e-4;  // several steps of 16 bits
+  check_distances(settings);
   const bool by_error = settings.max_error > 0;
-  if (by_error && settings.max_error < smallest_max_error)
-    throw WrongUsage("max-error: found " + fmt::format("{:g}", settings.max_error) + ", expected 0 or 0.0001 to 1");
   const Stopwatch stopwatch;
   Writer write(written);
   SimplifyResult result;
@@ -140,7 +161,7 @@ SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settin
   result.collapse_seconds = reduce_stopwatch.seconds();
   result.mesh = write(shaded(low, high.frame));
 
-  // Measure what was written.
+  // Measure the mesh that was written.
   progress(0.9);
   result.distance = mesh_distance(measured, result.mesh);
   const double hausdorff_distance = result.distance.hausdorff * bounding_box(measured).diagonal();
@@ -150,8 +171,8 @@ SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settin
   result.degenerate_triangles = count_degenerate(result.mesh);
   result.flipped_triangles = count_flipped(result.mesh, measured, flipped_reach(result.mesh, hausdorff_distance));
   if (!by_error && result.mesh.triangles.size() > static_cast<std::size_t>(settings.faces))
-    result.shortfall = "stopped at " + std::to_string(result.mesh.triangles.size()) + " triangles of " +
-                       std::to_string(settings.faces) + ": " + why_no_fewer(result.mesh, settings.faces, manifold);
+    result.shortfall =
+        shortfall_of(low, settings, result.mesh.triangles.size(), why_no_fewer(result.mesh, settings.faces, manifold));
   progress(1);
   result.seconds = stopwatch.seconds() - write.seconds();
   return result;
@@ -166,6 +187,7 @@ Json SimplifyResult::to_json() const {
           {"dropped_area", dropped.area_share},
           {"dropped_size", dropped.largest_size},
           {"hausdorff", distance.hausdorff},
+          {"hausdorff_from_result", distance.hausdorff_from_second},
           {"rms", distance.rms},
           {"hausdorff_distance", hausdorff_distance},
           {"manifold", manifold},

@@ -32,8 +32,24 @@ OptionSet simplify_options(SimplifySettings& settings) {
   options.choice<SimplifyAwareness>(
       "aware", settings.aware, {{"none", SimplifyAwareness::none}, {"transfer", SimplifyAwareness::transfer}},
       "transfer: more triangles where self-shadowing varies, at equal count, fewer elsewhere");
+  options.choice<SimplifyEngine>("engine", settings.engine,
+                                 {{"kiln", SimplifyEngine::kiln}, {"cgal", SimplifyEngine::cgal}},
+                                 "Whose edge collapse: Kiln's own, which --quality is for, or CGAL's");
+  options.choice<CollapseCost>("cost", settings.cost,
+                               {{"lindstrom-turk", CollapseCost::lindstrom_turk},
+                                {"plane", CollapseCost::plane},
+                                {"triangle", CollapseCost::triangle},
+                                {"probabilistic-plane", CollapseCost::probabilistic_plane},
+                                {"probabilistic-triangle", CollapseCost::probabilistic_triangle}},
+                               "With --engine cgal: what collapses go by, Lindstrom and Turk's volumes or Garland and "
+                               "Heckbert's quadrics of planes or triangles, plain or probabilistic");
+  options.number("max-normal-change", settings.max_normal_change, 1, 90,
+                 "With --engine cgal: no collapse turns a triangle by more degrees");
+  options.number("envelope", settings.envelope, 0, 1,
+                 "With --engine cgal: no point of the result is farther from the input, for certain; a fraction of the "
+                 "bounding box's diagonal, from 0.0001; 0 is no limit. Where --faces cannot be had so, there are more");
   options.number("crease", settings.crease, 0, 180,
-                 "Edges whose dihedral angle exceeds this stay lines, degrees; 0 is none");
+                 "Edges whose dihedral angle exceeds this stay feature edges, degrees; 0 is none");
   options.toggle(
       "strict", settings.strict,
       "Refuse an input that needs repair, or that --faces cannot be kept of, instead of doing what can be done");
@@ -49,6 +65,16 @@ OptionSet simplify_options(SimplifySettings& settings) {
   add_import_options(options, settings.import);
   options.toggle("colors", settings.colors, "Keep the input's colours, as colours of vertices");
   return options;
+}
+
+void check_options(const SimplifySettings& settings, const std::function<bool(const std::string&)>& is_given) {
+  if (settings.max_error > 0 && is_given("faces"))
+    throw WrongUsage("--faces and --max-error are two ways to say where to stop; give one of them");
+  if (settings.engine == SimplifyEngine::cgal && is_given("quality"))
+    throw WrongUsage("--quality is of --engine kiln; --engine cgal takes --cost instead");
+  for (const char* option : {"cost", "max-normal-change", "envelope"})
+    if (settings.engine == SimplifyEngine::kiln && is_given(option))
+      throw WrongUsage(std::string("--") + option + " is of --engine cgal; give that, too, or leave it out");
 }
 
 }  // namespace kiln

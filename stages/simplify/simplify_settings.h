@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -8,36 +9,62 @@
 
 namespace kiln {
 
-/// What is paid for the result.
+/// Price of the result: how long Kiln's own engine may take.
 enum class SimplifyQuality {
   draft,     ///< collapses by quadrics, in rounds
-  standard,  ///< those down to a few times the result, then Lindstrom and Turk's
-  best       ///< Lindstrom and Turk's, then the vertices and edges are fitted to the input
+  standard,  ///< collapses by quadrics down to a few times the result, then by Lindstrom and Turk's costs
+  best       ///< collapses by Lindstrom and Turk's costs, then vertices and edges are fitted to the input
 };
 
-/// What collapses are weighted by, besides the change of shape.
+/// Weights of collapses, besides the change of shape.
 enum class SimplifyAwareness {
   none,
-  transfer  ///< how much transfer varies there (transfer_weights.h)
+  transfer  ///< by how much transfer varies there (transfer_weights.h)
 };
 
+/// Engine that collapses edges.
+enum class SimplifyEngine {
+  kiln,  ///< the stage's own collapse, by `quality`
+  cgal   ///< CGAL's edge collapse on an OpenMesh mesh, by `cost`
+};
+
+/// Cost that CGAL's engine goes by, cheapest first.
+enum class CollapseCost {
+  lindstrom_turk,
+  plane,                  ///< Garland and Heckbert's quadrics of planes
+  triangle,               ///< Garland and Heckbert's quadrics of triangles, weighted by their squared areas
+  probabilistic_plane,    ///< Trettner and Kobbelt's quadrics of planes that are known up to noise
+  probabilistic_triangle  ///< Trettner and Kobbelt's quadrics of triangles that are known up to noise
+};
+
+/// Settings of the stage.
 struct SimplifySettings {
   int faces = 1000;      ///< triangles to stop at, where max_error is 0
   double max_error = 0;  ///< Hausdorff distance to stop at, as a fraction of the bounding box's diagonal; 0: by faces
   SimplifyQuality quality = SimplifyQuality::standard;
   SimplifyAwareness aware = SimplifyAwareness::none;
-  double crease = 0;    ///< degrees; edges whose dihedral angle (0 in a plane) is larger stay lines; 0: none
-  bool strict = false;  ///< an input that needs repair is refused
+  SimplifyEngine engine = SimplifyEngine::kiln;
+  CollapseCost cost = CollapseCost::lindstrom_turk;  ///< cost that CGAL's engine goes by
+  double max_normal_change = 90;  ///< degrees that a collapse of CGAL's engine may turn a triangle by, above 0
+  /// Distance that CGAL's engine may go from the input: no point of the result is farther from it, as a fraction of its
+  /// bounding box's diagonal; 0: no limit.
+  double envelope = 0;
+  double crease = 0;    ///< degrees; edges of a larger dihedral angle (0 in a plane) are feature edges; 0: none
+  bool strict = false;  ///< whether an input that needs repair is refused
   ImportSettings import = {};
-  /// Components that are left out of the result: of a box's diagonal up to this fraction of the mesh's; 0 keeps all.
+  /// Size of components that are left out: the diagonal of the box, up to this fraction of the mesh's; 0 keeps all.
   /// "auto": specks of no size beside the result's triangles, where they would take much of `faces`.
   std::string drop_components = "auto";
-  bool colors = false;  ///< the input's colours are kept at the vertices
+  bool colors = false;  ///< whether the input's colours are kept at the vertices
 
-  /// The fraction that drop_components says, or nothing for "auto". Throws WrongUsage for what is neither.
+  /// Returns the fraction that drop_components says, or nothing for "auto". Throws WrongUsage for what is neither.
   std::optional<double> drop_size() const;
 };
 
 OptionSet simplify_options(SimplifySettings& settings);
+
+/// Throws WrongUsage where options are given that exclude each other (faces and max-error) or that the engine has not
+/// (quality is of kiln's, cost, max-normal-change and envelope of CGAL's). `is_given` tells by an option's name.
+void check_options(const SimplifySettings& settings, const std::function<bool(const std::string&)>& is_given);
 
 }  // namespace kiln

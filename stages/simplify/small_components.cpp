@@ -15,7 +15,7 @@ namespace kiln {
 namespace {
 
 struct Component {
-  double size = 0;  ///< its box's diagonal
+  double size = 0;  ///< diagonal of its box
   double area = 0;
   int triangles = 0;
 };
@@ -35,14 +35,14 @@ std::vector<Component> measure(const TriangleMesh& mesh, const Components& compo
   return all;
 }
 
-/// Triangles of the least surface that a component can become: a tetrahedron, or what it has.
+/// Returns how many triangles the least surface has that a component can become: a tetrahedron's 4, or what it has.
 int least_triangles(const Component& component) { return std::min(component.triangles, 4); }
 
-/// The edge of an equilateral triangle where `faces` of them have this area.
+/// Returns the edge of an equilateral triangle where `faces` of them have this area.
 double mean_edge(double area, int faces) { return std::sqrt(area / faces * 4 / std::sqrt(3.0)); }
 
-/// Lists those that `may_go` and have less than a hundredth of `area`, the smallest first, as many as have no more than
-/// `largest_share` of it together.
+/// Lists the components that `may_go` and have less than a hundredth of `area`, the smallest first, as many as have no
+/// more than `largest_share` of it together.
 template <class MayGo>
 std::vector<std::uint32_t> specks(const std::vector<Component>& components, double area, double largest_share,
                                   const MayGo& may_go) {
@@ -60,12 +60,12 @@ std::vector<std::uint32_t> specks(const std::vector<Component>& components, doub
   return found;
 }
 
-/// "1 component", "2 components".
+/// Counts: "1 component", "2 components".
 std::string counted(std::size_t count, const std::string& what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-/// A number such as 0.0123, two digits of it, rounded up.
+/// Writes a number rounded up to two digits.
 std::string rounded_up(double value) {
   const double unit = std::pow(10.0, std::floor(std::log10(value)) - 1);
   std::ostringstream text;
@@ -100,7 +100,7 @@ DroppedComponents drop_small_components(TriangleMesh& mesh, const SimplifySettin
     gone = specks(all, area, 0.5, [&](const Component& component) { return component.size <= largest; });
   } else {
     const double largest = 0.1 * mean_edge(area, settings.faces);
-    constexpr double texel = 1 / (0.6 * 512 * 512);  // of the surface, in the atlas by default
+    constexpr double texel = 1 / (0.6 * 512 * 512);  // share of the surface in the default atlas
     gone = specks(all, area, 0.01, [&](const Component& component) {
       return component.size <= largest || component.area <= 0.01 * texel * area;
     });
@@ -137,7 +137,7 @@ std::string why_no_fewer(const TriangleMesh& low, int faces, const TriangleMesh&
   if (sizes.empty() || all.size() < 2) return other;
   std::string reason = counted(sizes.size(), "component") + " of " +
                        (most == 4 ? "4" : "at most " + std::to_string(most)) + " triangles each cannot vanish";
-  // The size that would do, and what it would drop; the largest of all stays.
+  // Find the size that would do, and what it would drop; the largest of all stays.
   std::sort(sizes.begin(), sizes.end());
   const std::size_t excess = low.triangles.size() - static_cast<std::size_t>(faces);
   const std::size_t enough = std::min(sizes.size(), (excess + 3) / 4);

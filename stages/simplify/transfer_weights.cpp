@@ -12,7 +12,7 @@ namespace {
 constexpr int bands = 4;
 constexpr double gain = 4, largest_weight = 100;
 
-/// Squared distance of two points' transfer vectors, as the lighting prior weighs it.
+/// Distance of two points' transfer vectors, as the lighting prior weighs it.
 class TransferDistance {
  public:
   explicit TransferDistance(const TransferVectors& transfer) : transfer_(transfer), prior_(lighting_prior(bands)) {}
@@ -40,7 +40,8 @@ std::vector<double> transfer_weights(const TriangleMesh& mesh) {
       surface_transfer(smooth, {smooth.positions, smooth.normals}, {.bands = bands, .directions = 256});
   const TransferDistance distance(transfer);
 
-  // Mean squared slope of the edges at each vertex, long ones counting more; those inside count twice, from both sides.
+  // Average the squared slopes of the edges at each vertex, long ones counting more; inner edges count twice, from both
+  // sides.
   std::vector<double> slopes(mesh.positions.size(), 0), lengths(mesh.positions.size(), 0);
   for (const Triangle& triangle : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) {

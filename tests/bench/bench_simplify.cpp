@@ -1,7 +1,8 @@
 // Simplification beside what else there is: CGAL's edge collapse (Lindstrom-Turk; Garland-Heckbert planes),
 // meshoptimizer's and OpenMesh's quadrics, in one process and on one thread each but for ours. Prints Markdown rows:
 // CPU and wall seconds of the collapse (the mesh is in each library's own form before),
-// Hausdorff and RMS distance in % of the diagonal, worse direction (mesh_distance), edges of more than two triangles.
+// Hausdorff and RMS distance in % of the diagonal, worse direction (mesh_distance), RMS angle between normals, edges of
+// more than two triangles.
 //
 //   bench_simplify [--mesh MESH] [--faces 5000 1000 500] [--only TEXT...] [--repeat 3] [--subdivide N] [--threads 2]
 //   bench_simplify --measure HIGH LOW...    rows for meshes that others wrote, OBJ files of triangles
@@ -19,6 +20,7 @@
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <OpenMesh/Tools/Decimater/DecimaterT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -26,6 +28,7 @@
 #include <functional>
 #include <map>
 #include <meshoptimizer.h>
+#include <numbers>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -35,6 +38,7 @@
 #include "cost.h"
 #include "import/import_mesh.h"
 #include "mesh/mesh_distance.h"
+#include "mesh/nearest_surface.h"
 #include "simplify/collapse.h"
 #include "simplify/reduce.h"
 
@@ -169,6 +173,39 @@ Simplifier ours(SimplifyQuality quality) {
   };
 }
 
+/// Kiln's --engine cgal: CGAL on an OpenMesh mesh, with Kiln's borders and limits.
+Simplifier ours_by_cgal(CollapseCost collapse_cost) {
+  return [collapse_cost](const TriangleMesh& mesh, int faces, Cost& cost) {
+    TriangleMesh result;
+    SimplifySettings settings;
+    settings.faces = faces;
+    settings.engine = SimplifyEngine::cgal;
+    settings.cost = collapse_cost;
+    cost = cost_of([&] { result = reduce_to_faces(mesh, settings, {}).mesh; });
+    return result;
+  };
+}
+
+/// Root mean square angle between the normals of `high` and those of `low` where it is nearest, degrees, over the
+/// triangles of `high` by area.
+double normal_error(const TriangleMesh& high, const TriangleMesh& low) {
+  const NearestSurface surface(low);
+  double sum = 0, area = 0;
+  std::uint32_t hint = 0;
+  for (const Triangle& t : high.triangles) {
+    const Eigen::Vector3d a = high.positions[t[0]].cast<double>(), b = high.positions[t[1]].cast<double>(),
+                          c = high.positions[t[2]].cast<double>();
+    const Eigen::Vector3d normal = (b - a).cross(c - a);
+    if (!(normal.norm() > 0)) continue;
+    const NearestSurface::Hit hit = surface.nearest((a + b + c) / 3, hint);
+    hint = hit.hint;
+    const double cosine = std::clamp(surface.normal(hit).dot(normal.normalized()), -1.0, 1.0);
+    sum += normal.norm() * std::pow(std::acos(cosine) * 180 / std::numbers::pi, 2);
+    area += normal.norm();
+  }
+  return std::sqrt(sum / area);
+}
+
 struct Entry {
   std::string name;
   Simplifier simplifier;
@@ -178,6 +215,11 @@ std::vector<Entry> entries() {
   return {{"kiln draft", ours(SimplifyQuality::draft)},
           {"kiln standard", ours(SimplifyQuality::standard)},
           {"kiln best", ours(SimplifyQuality::best)},
+          {"engine cgal lindstrom-turk", ours_by_cgal(CollapseCost::lindstrom_turk)},
+          {"engine cgal plane", ours_by_cgal(CollapseCost::plane)},
+          {"engine cgal triangle", ours_by_cgal(CollapseCost::triangle)},
+          {"engine cgal probabilistic-plane", ours_by_cgal(CollapseCost::probabilistic_plane)},
+          {"engine cgal probabilistic-triangle", ours_by_cgal(CollapseCost::probabilistic_triangle)},
           {"CGAL Lindstrom-Turk", cgal_lindstrom_turk},
           {"CGAL Garland-Heckbert plane", cgal_garland_heckbert},
           {"meshoptimizer", meshoptimizer},
@@ -186,8 +228,9 @@ std::vector<Entry> entries() {
 
 void print_row(const std::string& name, const Cost& cost, const TriangleMesh& high, const TriangleMesh& low) {
   const MeshDistance distance = mesh_distance(high, low);
-  std::printf("| %s | %zu | %.3f | %.3f | %.4f | %.4f | %d |\n", name.c_str(), low.triangles.size(), cost.cpu,
-              cost.wall, 100 * distance.hausdorff, 100 * distance.rms, count_non_manifold_edges(low));
+  std::printf("| %s | %zu | %.3f | %.3f | %.4f | %.4f | %.2f | %d |\n", name.c_str(), low.triangles.size(), cost.cpu,
+              cost.wall, 100 * distance.hausdorff, 100 * distance.rms, normal_error(high, low),
+              count_non_manifold_edges(low));
   std::fflush(stdout);
 }
 
@@ -276,8 +319,8 @@ int main(int argc, char** argv) {
       return 0;
     }
     std::printf("%s, %zu triangles\n\n", mesh_file.c_str(), high.triangles.size());
-    std::printf("| | triangles | CPU s | s | Hausdorff, %% | RMS, %% | non-manifold edges |\n");
-    std::printf("| --- | --- | --- | --- | --- | --- | --- |\n");
+    std::printf("| | triangles | CPU s | s | Hausdorff, %% | RMS, %% | normals, degrees | non-manifold edges |\n");
+    std::printf("| --- | --- | --- | --- | --- | --- | --- | --- |\n");
     std::vector<Entry> chosen;
     for (const Entry& entry : entries()) {
       bool wanted = only.empty();

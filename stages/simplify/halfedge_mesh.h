@@ -1,20 +1,21 @@
 #pragma once
 
-// The one header that shows CGAL and OpenMesh; for .cpp files only. OpenMesh's names must be seen before CGAL's
+// Header for cgal_collapse.cpp alone: it shows CGAL and OpenMesh, whose graph traits must be seen before CGAL's
 // algorithms.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/boost/graph/Euler_operations.h>
 #include <CGAL/boost/graph/graph_traits_TriMesh_ArrayKernelT.h>
-#include <OpenMesh/Core/IO/MeshIO.hh>
+#include <CGAL/boost/graph/helpers.h>
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
 #include <array>
+#include <span>
 #include <stdexcept>
-#include <vector>
 
 #include "mesh/triangle_mesh.h"
 
 namespace kiln {
 
+/// Traits of OpenMesh: double precision, and the status bits that CGAL needs to remove edges.
 struct DoubleTraits : OpenMesh::DefaultTraits {
   using Point = OpenMesh::Vec3d;
   using Normal = OpenMesh::Vec3d;
@@ -24,11 +25,12 @@ struct DoubleTraits : OpenMesh::DefaultTraits {
   HalfedgeAttributes(OpenMesh::Attributes::PrevHalfedge | OpenMesh::Attributes::Status);
 };
 
-/// A half-edge mesh with positions in double precision. CGAL's algorithms take it as a face graph (kernel: Epick).
+/// Half-edge mesh with positions in double precision. CGAL's algorithms take it as a face graph (kernel: Epick).
 using HalfedgeMesh = OpenMesh::TriMesh_ArrayKernelT<DoubleTraits>;
 using HalfedgeKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-/// The positions of a HalfedgeMesh as CGAL points. CGAL's own map for OpenMesh rounds to float what it writes.
+/// Property map of a HalfedgeMesh's positions as CGAL points. CGAL's own map for OpenMesh rounds to float what it
+/// writes.
 struct HalfedgePositions {
   using category = boost::read_write_property_map_tag;
   using key_type = HalfedgeMesh::VertexHandle;
@@ -45,16 +47,16 @@ struct HalfedgePositions {
   }
 };
 
-/// Vertices and faces in the mesh's order and with its indices. The triangles must be an oriented manifold: throws
-/// std::invalid_argument otherwise.
-inline HalfedgeMesh to_halfedges(const TriangleMesh& mesh) {
+/// Builds a HalfedgeMesh of vertices at `positions` and the given triangles, with their indices. Throws
+/// std::invalid_argument where the triangles are no oriented manifold.
+inline HalfedgeMesh to_halfedges(std::span<const Eigen::Vector3d> positions, std::span<const Triangle> triangles) {
   HalfedgeMesh result;
-  result.reserve(mesh.positions.size(), mesh.triangles.size() * 3 / 2, mesh.triangles.size());
-  for (const Eigen::Vector3f& p : mesh.positions) result.add_vertex(HalfedgeMesh::Point(p.x(), p.y(), p.z()));
+  result.reserve(positions.size(), triangles.size() * 3 / 2, triangles.size());
+  for (const Eigen::Vector3d& p : positions) result.add_vertex(HalfedgeMesh::Point(p.x(), p.y(), p.z()));
   // CGAL joins faces to whatever is there already, where OpenMesh refuses some orders of a manifold's faces.
   std::array<HalfedgeMesh::VertexHandle, 3> corners;
-  for (const Triangle& triangle : mesh.triangles) {
-    for (int i = 0; i < 3; ++i) corners[i] = HalfedgeMesh::VertexHandle(static_cast<int>(triangle[i]));
+  for (const Triangle& triangle : triangles) {
+    for (std::size_t i = 0; i < 3; ++i) corners[i] = HalfedgeMesh::VertexHandle(static_cast<int>(triangle[i]));
     if (!CGAL::Euler::add_face(corners, result).is_valid())
       throw std::invalid_argument("to_halfedges: the triangles are no oriented manifold");
   }
