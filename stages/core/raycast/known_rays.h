@@ -84,7 +84,7 @@ class FirstHits {
 
   /// Keeps nothing.
   FirstHits() = default;
-  /// Keeps what `memory` has room for, which must outlive additions.
+  /// Keeps what `memory` has room for, which must outlive additions; a packet's place is paid for when it is kept.
   FirstHits(RayMemory& memory, std::size_t packets);
 
   bool keeps() const { return memory_ != nullptr; }
