@@ -106,8 +106,9 @@ void put_albedo(std::vector<TransferVectors>& channels, std::span<const Eigen::V
         channels[c].plane(i)[r] *= albedos[r][static_cast<Eigen::Index>(c)];
 }
 
-/// Lets light bounce where settings ask for it; `result.channels` has the direct transfer.
-void add_bounces(BakeResult& result, Integration& integration, const TexelReceivers& receivers,
+/// Lets light bounce where settings ask for it; `result.channels` has the direct transfer. Of `memory` was taken what
+/// the integration keeps.
+void add_bounces(BakeResult& result, Integration& integration, const RayMemory& memory, const TexelReceivers& receivers,
                  const Occluders& occluders, const BakeSettings& settings, int threads,
                  const ProgressFunction& progress) {
   const BounceTarget target = parse_bounces(settings.bounces);
@@ -116,9 +117,11 @@ void add_bounces(BakeResult& result, Integration& integration, const TexelReceiv
                            threads, target, BounceSample(receivers.view(), result.channels.front()),
                            [&](double fraction) { progress(direct_share + (1 - direct_share) * 0.5 * fraction); });
   result.channels.resize(light.channels(), result.channels.front());
-  result.bounces = light.add_to(result.channels, receivers.view(), integration.direction_list(), [&](double fraction) {
-    progress(direct_share + (1 - direct_share) * (0.5 + 0.5 * fraction));
-  });
+  std::vector<TracedReceivers> traced = integration.take_traced();
+  result.bounces =
+      light.add_to(result.channels, receivers.view(), traced, integration.direction_list(),
+                   [&](double fraction) { progress(direct_share + (1 - direct_share) * (0.5 + 0.5 * fraction)); });
+  result.bounces->kept_bytes += bounce_memory_share(settings) - memory.left();
   put_albedo(result.channels, receivers.albedos);
 }
 
@@ -131,7 +134,9 @@ BakeResult bake(const TexelReceivers& receivers, const Occluders& occluders, con
   const ProgressFunction direct_progress = [&](double fraction) {
     progress(bounces ? direct_share * fraction : fraction);
   };
+  RayMemory memory(bounce_memory_share(settings));
   Integration integration(receivers.view(), occluders, settings, seed, threads, direct_progress);
+  if (bounces) integration.keep_blocked(memory);
   const TransferWork before = integration.engine().work();
   TransferVectors transfer(receivers.texels.size(), coefficient_count(settings.bands));
   integration.put_unoccluded(transfer);
@@ -144,7 +149,7 @@ BakeResult bake(const TexelReceivers& receivers, const Occluders& occluders, con
   BakeResult result = describe(integration, before, stopwatch);
   result.adaptive = adaptive;
   result.channels.push_back(std::move(transfer));
-  add_bounces(result, integration, receivers, occluders, settings, threads, progress);
+  add_bounces(result, integration, memory, receivers, occluders, settings, threads, progress);
   result.seconds = stopwatch.seconds();
   return result;
 }
@@ -177,6 +182,7 @@ BakeResult merge_shards(const std::vector<fs::path>& folders, const TexelReceive
   if (settings.backend == BakeBackend::automatic) bake_options(merged).find("backend")->set(first.value("backend", ""));
   const std::string renderer = first.value("renderer", "");
   merged.max_error = "none";
+  RayMemory memory(bounce_memory_share(settings));
   Integration integration(receivers.view(), occluders, merged, seed, threads, progress);
 
   // Step 2: slab after slab, add.
@@ -212,7 +218,7 @@ BakeResult merge_shards(const std::vector<fs::path>& folders, const TexelReceive
   BakeResult result = describe(integration, stopwatch);
   result.renderer = renderer;
   result.channels.push_back(std::move(transfer));
-  add_bounces(result, integration, receivers, occluders, merged, threads, progress);
+  add_bounces(result, integration, memory, receivers, occluders, merged, threads, progress);
   result.seconds = stopwatch.seconds();
   return result;
 }
@@ -264,7 +270,8 @@ BakeVerification verify(const BakeResult& result, const std::vector<TransferVect
                              occluders, own, settings, threads, target, BounceSample(some.view(), reference.front()),
                              no_progress);
     reference.resize(light.channels(), reference.front());
-    light.add_to(reference, some.view(), many, no_progress);
+    std::vector<TracedReceivers> traced = untraced(some.view());
+    light.add_to(reference, some.view(), traced, many, no_progress);
   }
   put_albedo(reference, some.albedos);
   verification.reference_directions = settings.verify_directions;

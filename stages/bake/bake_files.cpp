@@ -288,7 +288,8 @@ Json describe_bake(const BakeScene& scene, const BakeResult& result) {
                           {"seconds", bounces.seconds},
                           {"cache_points", bounces.cache_points},
                           {"cache_triangles", bounces.cache_triangles},
-                          {"cache_seconds", bounces.cache_seconds}};
+                          {"cache_seconds", bounces.cache_seconds},
+                          {"kept_bytes", bounces.kept_bytes}};
     if (bounces.floor > 0) metrics["bounces"]["floor"] = bounces.floor;
   }
   // Shares of all pairs of a texel and a direction.

@@ -21,7 +21,10 @@ void add_bounce_options(OptionSet& options, BakeSettings& settings) {
               "Puts the receivers' albedo in the stored transfer, in place of leaving it to the renderer")
       .number("bounce-edge", settings.bounce_edge, 1e-4, 1,
               "Light bounces off a surface whose longer edges are cut: the longest, a fraction of the occluders' "
-              "diagonal");
+              "diagonal")
+      .integer("bounce-memory", settings.bounce_memory, 0, 1'000'000,
+               "MB that may be kept of rays for bounces to use again, half of it for the receivers and half for the "
+               "surface; with less, more is searched again, and the result is the same");
 }
 
 /// How the EGL engine decides visibility; shadow_settings.h has what each means.

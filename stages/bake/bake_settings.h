@@ -64,6 +64,7 @@ struct BakeSettings {
   ImportSettings import = {};  ///< of the occluders, and of a mesh whose vertices are baked
   MaterialSettings material;   ///< of the occluders, and of receivers where no detail folder has it
   double bounce_edge = 0.01;   ///< longest edge of what it bounces off, fraction of the occluders' diagonal
+  int bounce_memory = 512;     ///< MB for what bounces keep of rays; changes no result
   BakeBackend backend = BakeBackend::automatic;
   BakeReceiver receiver = BakeReceiver::high;
   bool per_vertex = false;  ///< vertices receive light, not texels

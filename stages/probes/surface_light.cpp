@@ -13,6 +13,7 @@ namespace kiln {
 namespace {
 
 constexpr double automatic_share = 1e-3;
+constexpr std::size_t kept_bytes = 256'000'000;  // of rays, at most
 
 double norm(const std::vector<float>& values) {
   double sum = 0;
@@ -73,7 +74,11 @@ SurfaceLight light_surface(const ProbeScene& scene, const ProbesSettings& settin
 
   // Light from far away.
   TransferSums direct(cache.size(), coefficients);
-  add_transfer_by_beams(beams, receivers, directions, direct, [&](double fraction) { part_done(0, fraction); });
+  RayMemory memory(kept_bytes);
+  BlockedRays blocked(memory);
+  add_transfer_by_beams(
+      beams, receivers, directions, direct, [&](double fraction) { part_done(0, fraction); }, &blocked);
+  FirstHits hits(memory, receivers.packets.size());
   std::vector<float> last = sent(cache, direct.transfer(), light.channels, coefficients);
   light.values.assign(last.size(), 0.f);
 
@@ -86,7 +91,7 @@ SurfaceLight light_surface(const ProbeScene& scene, const ProbesSettings& settin
     if (light.bounces == bounces || is_enough) return light;
     TransferSums gathered(cache.size(), width);
     add_gathered(rays, &beams, receivers, directions, {cache.points, last, static_cast<std::size_t>(width)}, gathered,
-                 [&](double fraction) { part_done(light.bounces, fraction); });
+                 [&](double fraction) { part_done(light.bounces, fraction); }, {&blocked, &hits, 0});
     last = sent(cache, gathered.transfer(), light.channels, coefficients);
   }
 }

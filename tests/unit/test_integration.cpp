@@ -158,6 +158,56 @@ TEST_P(Cuts, AnInterruptedBakeGoesOnToTheSameBits) {
   EXPECT_THROW(bake(content.receivers, content.occluders, other, 7, 2, again), BadInput);
 }
 
+TEST_P(Cuts, BouncesHaveTheSameBitsWhateverIsKeptOfRays) {
+  content.occluders = join_occluders({content.mesh}, {SurfaceAlbedo::constant(Eigen::Vector3f{0.8f, 0.8f, 0.8f})});
+  const bool is_egl = GetParam() == BakeBackend::egl;  // which casts no rays, and takes its time
+  content.settings.bounces = is_egl ? "1" : "3";
+  content.settings.bounce_edge = is_egl ? 0.2 : 0.05;
+  if (is_egl) content.settings.directions = 96;
+  const BakeResult kept = whole();
+  const std::vector<float> values = kept.channels.front().values;
+  EXPECT_EQ(kept.bounces->kept_bytes > 0, !is_egl);
+  EXPECT_GT(kept.bounces->energy.back(), 1e-4);
+  // Nothing, or what fits 1 MB.
+  for (int megabytes : {0, 1}) {
+    content.settings.bounce_memory = megabytes;
+    const BakeResult less = whole();
+    EXPECT_EQ(less.channels.front().values, values);
+    EXPECT_EQ(less.bounces->energy, kept.bounces->energy);
+    EXPECT_LE(less.bounces->kept_bytes, static_cast<std::size_t>(megabytes) * 1'000'000);
+    if (!is_egl) {
+      EXPECT_LT(less.bounces->kept_bytes, kept.bounces->kept_bytes);
+    }
+  }
+  content.settings.bounce_memory = 512;
+
+  // After the interruption of the direct light, only the rest of it is known.
+  Checkpoints checkpoints{folder / "checkpoint", 0, false};
+  int calls = 0;
+  EXPECT_THROW(bake(content.receivers, content.occluders, content.settings, 7, 2, checkpoints,
+                    [&](double) {
+                      if (++calls > 1) throw Interrupted();
+                    }),
+               Interrupted);
+  checkpoints.resume = true;
+  const BakeResult resumed = bake(content.receivers, content.occluders, content.settings, 7, 2, checkpoints);
+  EXPECT_EQ(resumed.channels.front().values, values);
+  if (GetParam() == BakeBackend::beams) {
+    EXPECT_LT(resumed.bounces->kept_bytes, kept.bounces->kept_bytes);
+  }
+
+  // Of shards that are merged, nothing is.
+  std::vector<fs::path> parts;
+  for (int index : {1, 2}) {
+    parts.push_back(folder / ("bounced" + std::to_string(index)));
+    OutputSet outputs(parts.back());
+    bake_shard(outputs, {index, 2}, content.receivers, content.occluders, content.settings, 7, 2);
+    outputs.commit();
+  }
+  EXPECT_EQ(merge_shards(parts, content.receivers, content.occluders, content.settings, 7, 2).channels.front().values,
+            values);
+}
+
 INSTANTIATE_TEST_SUITE_P(Integration, Cuts, testing::Values(BakeBackend::egl, BakeBackend::beams, BakeBackend::embree),
                          [](const auto& backend) { return backend_name(backend.param); });
 

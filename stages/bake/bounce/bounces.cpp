@@ -9,6 +9,7 @@
 
 #include "bake/integrate/error_driven.h"
 #include "base/stopwatch.h"
+#include "raycast/beam_transfer.h"
 #include "sh/basis.h"
 
 namespace kiln {
@@ -16,7 +17,7 @@ namespace kiln {
 namespace {
 
 constexpr std::size_t sample_receivers = 4096;
-constexpr std::size_t slab_receivers = 1u << 17;  // 75 sums of 8 bytes each: 79 MB
+constexpr std::size_t slab_receivers = 1u << 17;
 
 /// Calls visit(first, part, fraction of progress) for parts of the receivers.
 template <class Visit>
@@ -30,18 +31,56 @@ void for_each_slab(const Receivers& receivers, const ProgressFunction& progress,
   }
 }
 
-/// Channel after channel of what `engine` gathers.
+/// The receivers of a slab that starts at `first`, in packets.
+TracedReceivers slab_of(std::size_t first, const Receivers& part) {
+  TracedReceivers slab;
+  slab.order = packet_order(part);
+  for (std::uint32_t& receiver : slab.order) receiver += static_cast<std::uint32_t>(first);
+  return slab;
+}
+
+/// Adds what some of the receivers gather to channel after channel: whole packets from order[first] on.
+void add_part(GatherEngine& engine, const Receivers& receivers, TracedReceivers& traced, std::size_t first,
+              std::size_t count, std::span<const Eigen::Vector3f> directions, std::vector<TransferVectors>& channels,
+              const ProgressFunction& progress) {
+  std::vector<Eigen::Vector3f> positions(count), normals(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    positions[k] = receivers.positions[traced.order[first + k]];
+    normals[k] = receivers.normals[traced.order[first + k]];
+  }
+  const KnownRays known{&traced.blocked, &traced.hits, first / beam_lanes};
+  const TransferVectors planes = engine.gather_known({positions, normals}, directions, known, progress).transfer();
+  const int coefficients = channels.front().coefficients;
+  for (int i = 0; i < planes.coefficients; ++i) {
+    const std::span<const float> from = planes.plane(i);
+    const std::span<float> to = channels[i / coefficients].plane(i % coefficients);
+    for (std::size_t k = 0; k < count; ++k) to[traced.order[first + k]] += from[k];
+  }
+}
+
+/// Adds what receivers gather to channel after channel.
+void add_gathered(GatherEngine& engine, const Receivers& receivers, std::span<TracedReceivers> traced,
+                  std::span<const Eigen::Vector3f> directions, std::vector<TransferVectors>& channels,
+                  const ProgressFunction& progress) {
+  std::size_t all = 0, done = 0;
+  for (const TracedReceivers& slab : traced) all += slab.order.size();
+  const std::size_t most = engine.most_receivers() / beam_lanes * beam_lanes;
+  for (TracedReceivers& slab : traced)
+    for (std::size_t first = 0; first < slab.order.size(); first += most) {
+      const std::size_t count = std::min(most, slab.order.size() - first);
+      add_part(engine, receivers, slab, first, count, directions, channels, [&](double fraction) {
+        progress((static_cast<double>(done) + fraction * static_cast<double>(count)) / static_cast<double>(all));
+      });
+      done += count;
+    }
+}
+
+/// Channel after channel of what all receivers gather.
 std::vector<TransferVectors> gathered(GatherEngine& engine, int channels, int coefficients, const Receivers& receivers,
-                                      std::span<const Eigen::Vector3f> directions, const ProgressFunction& progress) {
+                                      std::span<TracedReceivers> traced, std::span<const Eigen::Vector3f> directions,
+                                      const ProgressFunction& progress) {
   std::vector<TransferVectors> result(channels, TransferVectors(receivers.size(), coefficients));
-  for_each_slab(receivers, progress, [&](std::size_t first, const Receivers& part, const ProgressFunction& partly) {
-    const TransferVectors planes = engine.gather(part, directions, partly).transfer();
-    for (int c = 0; c < channels; ++c)
-      for (int i = 0; i < coefficients; ++i) {
-        const std::span<const float> plane = planes.plane(c * coefficients + i);
-        std::copy(plane.begin(), plane.end(), result[c].plane(i).begin() + static_cast<std::ptrdiff_t>(first));
-      }
-  });
+  add_gathered(engine, receivers, traced, directions, result, progress);
   return result;
 }
 
@@ -57,6 +96,12 @@ std::vector<float> sent(const SurfaceCache& cache, const std::vector<TransferVec
         values[(p * channels + c) * coefficients + i] = cache.point_albedos[p][c] * plane[p];
     }
   return values;
+}
+
+/// Lets first hits be kept from the next pass on.
+void keep_hits(std::span<TracedReceivers> traced, RayMemory* memory) {
+  if (memory == nullptr) return;
+  for (TracedReceivers& slab : traced) slab.hits = FirstHits(*memory, slab.packets());
 }
 
 double squared_norm(const std::vector<TransferVectors>& channels) {
@@ -79,7 +124,16 @@ SurfaceCache make_surface_cache(const Occluders& occluders, double longest_edge)
 }
 
 ReflectingSurface surface_of(const SurfaceCache& cache, const Occluders& occluders) {
-  return {cache.positions, cache.triangles, cache.points, occluders.hull, occluders.closed};
+  return {cache.positions,          cache.triangles, cache.points,    occluders.mesh.positions,
+          occluders.mesh.triangles, occluders.hull,  occluders.closed};
+}
+
+std::vector<TracedReceivers> untraced(const Receivers& receivers) {
+  std::vector<TracedReceivers> all;
+  for_each_slab(receivers, no_progress, [&](std::size_t first, const Receivers& part, const ProgressFunction&) {
+    all.push_back(slab_of(first, part));
+  });
+  return all;
 }
 
 BounceSample::BounceSample(const Receivers& receivers, const TransferVectors& transfer)
@@ -94,33 +148,43 @@ BounceSample::BounceSample(const Receivers& receivers, const TransferVectors& tr
 
 TransferVectors direct_transfer(TransferEngine& engine, const Receivers& receivers,
                                 std::span<const Eigen::Vector3f> directions, int bands,
-                                const ProgressFunction& progress) {
+                                const ProgressFunction& progress, TracedPoints* traced) {
   TransferVectors result(receivers.size(), coefficient_count(bands));
+  engine.keep_blocked(traced != nullptr ? traced->memory : nullptr);
   for_each_slab(receivers, progress, [&](std::size_t first, const Receivers& part, const ProgressFunction& partly) {
     engine.set_receivers(part, bands);
     engine.add(directions, partly);
     const TransferVectors own = engine.sums().transfer();
     for (int i = 0; i < own.coefficients; ++i)
       std::copy(own.plane(i).begin(), own.plane(i).end(), result.plane(i).begin() + static_cast<std::ptrdiff_t>(first));
+    if (traced == nullptr) return;
+    traced->points.push_back(slab_of(first, part));
+    traced->points.back().blocked = engine.take_blocked();
   });
+  engine.keep_blocked(nullptr);
   return result;
 }
 
 SentLight bounce_light(const SurfaceCache& cache, const TransferVectors& direct, GatherEngine& engine,
                        std::span<const Eigen::Vector3f> directions, const BounceTarget& target, int bits,
-                       const BounceSample& sample, BounceReport& report, const ProgressFunction& progress) {
+                       const BounceSample& sample, BounceReport& report, const ProgressFunction& progress,
+                       TracedPoints traced) {
   SentLight light{cache.grey ? 1 : 3, direct.coefficients, {}};
   const int most = target.automatic ? most_bounces : target.count;
   const double direct_norm = std::sqrt(light.channels * squared_norm({sample.direct}));
   std::vector<TransferVectors> sample_total(light.channels, sample.direct);
   std::vector<float> bounced = sent(cache, {direct}, light.channels);
   report.reached = !target.automatic;
+  if (traced.points.empty()) traced.points = untraced(cache.receivers());
+  std::vector<TracedReceivers> traced_sample = untraced(sample.receivers());
+  if (most > 1) keep_hits(traced_sample, traced.memory);
+  if (most > 2) keep_hits(traced.points, traced.memory);
   for (int bounce = 1; bounce <= most; ++bounce) {
     const Stopwatch stopwatch;
     engine.set_radiance(bounced, light.width());
     // Step 1: what this bounce adds.
-    const std::vector<TransferVectors> added =
-        gathered(engine, light.channels, light.coefficients, sample.receivers(), directions, no_progress);
+    const std::vector<TransferVectors> added = gathered(engine, light.channels, light.coefficients, sample.receivers(),
+                                                        traced_sample, directions, no_progress);
     const double norm = std::sqrt(squared_norm(added));
     if (target.automatic) {
       report.floor = quantisation_floor(sample_total, bits);
@@ -134,7 +198,7 @@ SentLight bounce_light(const SurfaceCache& cache, const TransferVectors& direct,
     // Step 2: what the next one finds. Of a fixed count the last is the receivers' own.
     if (bounce < most)
       bounced = sent(cache,
-                     gathered(engine, light.channels, light.coefficients, cache.receivers(), directions,
+                     gathered(engine, light.channels, light.coefficients, cache.receivers(), traced.points, directions,
                               [&](double fraction) { progress((bounce - 1 + fraction) / most); }),
                      light.channels);
     report.seconds.push_back(stopwatch.seconds());
@@ -144,11 +208,18 @@ SentLight bounce_light(const SurfaceCache& cache, const TransferVectors& direct,
 }
 
 void add_bounced(GatherEngine& engine, const SentLight& light, const Receivers& receivers,
-                 std::span<const Eigen::Vector3f> directions, std::vector<TransferVectors>& channels,
-                 const ProgressFunction& progress) {
+                 std::span<TracedReceivers> traced, std::span<const Eigen::Vector3f> directions,
+                 std::vector<TransferVectors>& channels, const ProgressFunction& progress) {
   if (light.values.empty()) return;
   engine.set_radiance(light.values, light.width());
-  add(channels, gathered(engine, light.channels, light.coefficients, receivers, directions, progress));
+  add_gathered(engine, receivers, traced, directions, channels, progress);
+}
+
+void add_bounced(GatherEngine& engine, const SentLight& light, const Receivers& receivers,
+                 std::span<const Eigen::Vector3f> directions, std::vector<TransferVectors>& channels,
+                 const ProgressFunction& progress) {
+  std::vector<TracedReceivers> traced = untraced(receivers);
+  add_bounced(engine, light, receivers, traced, directions, channels, progress);
 }
 
 }  // namespace kiln

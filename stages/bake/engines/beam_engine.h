@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 #include "bake/engines/transfer_engine.h"
 #include "raycast/beam_transfer.h"
 
@@ -18,6 +20,8 @@ class BeamEngine : public TransferEngine {
 
   void set_receivers(const Receivers& receivers, int bands) override;
   void add(std::span<const Eigen::Vector3f> directions, const ProgressFunction& progress) override;
+  void keep_blocked(RayMemory* memory) override { memory_ = memory; }
+  BlockedRays take_blocked() override { return std::exchange(blocked_, {}); }
   TransferSums sums() override { return sums_; }
   TransferWork work() const override { return work_; }
   std::string renderer() const override { return "Kiln beams"; }
@@ -27,6 +31,8 @@ class BeamEngine : public TransferEngine {
   BeamScene scene_;
   float ray_offset_;
   BeamReceivers packets_;
+  RayMemory* memory_ = nullptr;
+  BlockedRays blocked_;
   TransferSums sums_;
   TransferWork work_;
 };

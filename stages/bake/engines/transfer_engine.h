@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/progress.h"
+#include "raycast/known_rays.h"
 #include "sh/transfer_sums.h"
 
 namespace kiln {
@@ -60,6 +61,14 @@ class TransferEngine {
   /// Adds unit vectors towards the light, block after block of block_directions. The same directions in the same blocks
   /// add the same bits whichever calls they come in. Directions of a block that lie close together go faster.
   virtual void add(std::span<const Eigen::Vector3f> directions, const ProgressFunction& progress) = 0;
+
+  /// From the next set_receivers on, rays found to be blocked are kept as far as `memory` has room, which must outlive
+  /// additions; null: no longer. All calls of add() but the last then add whole blocks. Engines that do not cast beams
+  /// keep nothing.
+  virtual void keep_blocked(RayMemory* /*memory*/) {}
+
+  /// Gives away what was kept since set_receivers, whose packets are those of packet_order.
+  virtual BlockedRays take_blocked() { return {}; }
 
   /// What was added since set_receivers.
   virtual TransferSums sums() = 0;

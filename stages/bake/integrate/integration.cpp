@@ -8,6 +8,7 @@
 #include "bake/integrate/unoccluded.h"
 #include "base/errors.h"
 #include "base/stopwatch.h"
+#include "raycast/beam_transfer.h"
 #include "sh/basis.h"
 
 namespace kiln {
@@ -147,9 +148,9 @@ Json Integration::key(const Shard& shard, const std::string& renderer) const {
   BakeSettings settings = settings_;
   settings.sampling = sampling_;
   Json relevant = bake_options(settings).to_json();
-  for (const char* name :
-       {"bits", "size", "directions", "max-error", "max-directions", "verify-directions", "verify-texels", "backend",
-        "gl-device", "bounces", "bounce-edge", "bake-albedo", "albedo", "albedo-texture", "albedo-encoding"})
+  for (const char* name : {"bits", "size", "directions", "max-error", "max-directions", "verify-directions",
+                           "verify-texels", "backend", "gl-device", "bounces", "bounce-edge", "bounce-memory",
+                           "bake-albedo", "albedo", "albedo-texture", "albedo-encoding"})
     relevant.erase(name);
   OptionSet after;  // what is done with the transfer afterwards
   add_subsurface_options(after, settings.subsurface);
@@ -193,6 +194,7 @@ SumsFile Integration::sum(std::size_t slab, const Shard& shard, const Checkpoint
   if (file.complete()) return file;
 
   // Step 2: step after step of about a second, each of whole blocks, with a checkpoint now and then.
+  engine().keep_blocked(memory_);
   engine().set_receivers({own.positions, own.normals}, settings_.bands);
   const std::int64_t blocks_before = file.blocks_done;
   std::int64_t blocks_added = 0, step_blocks = 1;
@@ -229,7 +231,23 @@ SumsFile Integration::sum(std::size_t slab, const Shard& shard, const Checkpoint
     }
     if (interrupted) throw Interrupted();
   }
+  blocked_.resize(slabs());
+  blocked_[slab] = engine().take_blocked();
+  blocked_[slab].start_at(static_cast<std::size_t>(blocks_before));
   return current();
+}
+
+std::vector<TracedReceivers> Integration::take_traced() {
+  blocked_.resize(slabs());
+  std::vector<TracedReceivers> traced(slabs());
+  for (std::size_t slab = 0; slab < slabs(); ++slab) {
+    const Slab own = gather(slab);
+    traced[slab].order = packet_order({own.positions, own.normals});
+    for (std::uint32_t& receiver : traced[slab].order) receiver = tested_[own.first + receiver];
+    traced[slab].blocked = std::move(blocked_[slab]);
+  }
+  blocked_.clear();
+  return traced;
 }
 
 void Integration::put(std::size_t slab, const TransferSums& sums, TransferVectors& transfer) const {

@@ -12,6 +12,7 @@
 #include "bake/integrate/sums_file.h"
 #include "bake/scene/occluders.h"
 #include "base/progress.h"
+#include "raycast/known_rays.h"
 
 namespace kiln {
 
@@ -45,6 +46,12 @@ class Integration {
   /// Sums one slab over the shard's directions, from the checkpoint where that is asked for. Throws Interrupted after
   /// it has left a checkpoint; BadInput for a checkpoint of something else.
   SumsFile sum(std::size_t slab, const Shard& shard, const Checkpoints& checkpoints, const ProgressFunction& progress);
+
+  /// From now on sum() keeps which rays it finds blocked, as far as `memory` has room, which must outlive it.
+  void keep_blocked(RayMemory& memory) { memory_ = &memory; }
+
+  /// Slab after slab its receivers, in packets, and what sum() kept of them, which is then no longer here.
+  std::vector<TracedReceivers> take_traced();
 
   /// Puts a complete slab's transfer in its place. Throws std::logic_error if it is not complete.
   void put(std::size_t slab, const TransferSums& sums, TransferVectors& transfer) const;
@@ -88,6 +95,8 @@ class Integration {
   BakeBackend backend_;
   Sampling sampling_;
   std::unique_ptr<TransferEngine> engine_;
+  RayMemory* memory_ = nullptr;
+  std::vector<BlockedRays> blocked_;   // by slab
   std::vector<std::uint32_t> tested_;  // receivers that something may shadow
   std::optional<DirectionChoice> choice_;
   std::optional<ShadowSizeChoice> shadow_choice_;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "raycast/vector_width.h"
+
 namespace kiln {
 
 namespace {
@@ -434,6 +436,17 @@ void BeamTracer::trace_quarter(const BeamBlock& block, std::uint32_t facing, con
     const auto shade = ray.candidate_count > few_clusters ? kernels_.shade_crowded : kernels_.shade;
     if (!shade(packet_, span_, ray, first, weights.weight[d])) weights.lit |= 1u << d;
   }
+}
+
+KILN_ANY_VECTOR_WIDTH BlockLanes blocked_lanes(const BeamWeights& weights) {
+  BlockLanes blocked = {};
+  for (std::uint32_t left = weights.facing & ~weights.lit; left != 0; left &= left - 1) {
+    const int d = __builtin_ctz(left);
+    std::uint32_t lanes = 0;
+    for (int r = 0; r < beam_lanes; ++r) lanes |= (weights.weight[d][r] > 0 ? 0u : 1u) << r;
+    blocked[d] = static_cast<std::uint16_t>(lanes);
+  }
+  return blocked;
 }
 
 void add_products(const BeamWeights& weights, const float* basis, int coefficients, std::int64_t (*sums)[beam_lanes]) {

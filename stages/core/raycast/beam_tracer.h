@@ -7,6 +7,7 @@
 
 #include "raycast/beam_kernels.h"
 #include "raycast/beam_scene.h"
+#include "raycast/known_rays.h"
 
 namespace kiln {
 
@@ -109,6 +110,9 @@ class BeamTracer {
   std::vector<std::uint32_t> queue_;
   Front root_, of_block_, of_quarter_, of_direction_;
 };
+
+/// The lanes that do not see a direction which some lane faces; of directions that are `lit`, none.
+BlockLanes blocked_lanes(const BeamWeights& weights);
 
 /// sums[i][lane] += to_fixed_point(the sum over the directions d of `weights.facing`, in order, of weight[d][lane] *
 /// basis[d * coefficients + i]).

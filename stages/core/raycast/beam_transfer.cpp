@@ -46,7 +46,7 @@ void sort_into_packets(std::span<const Place> places, std::span<std::uint32_t> o
 
 }  // namespace
 
-BeamReceivers::BeamReceivers(const Receivers& receivers, float ray_offset) : order(receivers.size()) {
+std::vector<std::uint32_t> packet_order(const Receivers& receivers) {
   // A turn by a radian counts as a tenth of the receivers' extent.
   Place lower = Place::Constant(std::numeric_limits<float>::infinity()), upper = -lower;
   std::vector<Place> places(receivers.size());
@@ -57,10 +57,17 @@ BeamReceivers::BeamReceivers(const Receivers& receivers, float ray_offset) : ord
   }
   const float turn = receivers.size() > 0 ? 0.1f * (upper - lower).head<3>().maxCoeff() : 0;
   for (Place& place : places) place.tail<3>() *= turn;
+  std::vector<std::uint32_t> order(receivers.size());
   std::iota(order.begin(), order.end(), 0u);
   sort_into_packets(places, order);
+  return order;
+}
 
-  packets.resize((order.size() + beam_lanes - 1) / beam_lanes);
+BeamReceivers::BeamReceivers(const Receivers& receivers, float ray_offset)
+    : BeamReceivers(receivers, ray_offset, packet_order(receivers)) {}
+
+BeamReceivers::BeamReceivers(const Receivers& receivers, float ray_offset, std::vector<std::uint32_t> in_packets)
+    : packets((in_packets.size() + beam_lanes - 1) / beam_lanes), order(std::move(in_packets)) {
   for (std::size_t k = 0; k < packets.size() * beam_lanes; ++k) {
     const std::uint32_t receiver = order[std::min(k, order.size() - 1)];
     const Eigen::Vector3f& normal = receivers.normals[receiver];
@@ -74,12 +81,15 @@ BeamReceivers::BeamReceivers(const Receivers& receivers, float ray_offset) : ord
 
 BeamSavings add_transfer_by_beams(const BeamScene& scene, const BeamReceivers& receivers,
                                   std::span<const Eigen::Vector3f> directions, TransferSums& sums,
-                                  const ProgressFunction& progress) {
+                                  const ProgressFunction& progress, BlockedRays* blocked) {
   const auto coefficients = static_cast<std::size_t>(sums.coefficients);
   const std::vector<float> rows = sh_rows(directions, band_of(sums.coefficients - 1) + 1);
   std::vector<BeamBlock> blocks;
   for (std::size_t d = 0; d < directions.size(); d += block_directions)
     blocks.emplace_back(directions.subspan(d, std::min<std::size_t>(block_directions, directions.size() - d)));
+  std::vector<BlockLanes*> kept(blocks.size(), nullptr);
+  for (std::size_t b = 0; b < blocks.size() && blocked != nullptr; ++b)
+    kept[b] = blocked->add_block(receivers.packets.size());
   struct alignas(64) Lanes {
     std::int64_t value[beam_lanes];
   };
@@ -99,8 +109,10 @@ BeamSavings add_transfer_by_beams(const BeamScene& scene, const BeamReceivers& r
     worker.tracer.begin(receivers.packets[packet]);
     for (std::size_t d = 0; d < directions.size(); d += block_directions) {
       const auto block = directions.subspan(d, std::min<std::size_t>(block_directions, directions.size() - d));
+      const std::size_t b = d / block_directions;
       BeamWeights weights;
-      worker.tracer.trace(blocks[d / block_directions], weights);
+      worker.tracer.trace(blocks[b], weights);
+      if (kept[b] != nullptr) kept[b][packet] = blocked_lanes(weights);
       const auto facing = static_cast<std::size_t>(std::popcount(weights.facing));
       worker.savings.behind += count * (block.size() - facing);
       worker.savings.lit += count * static_cast<std::size_t>(std::popcount(weights.lit));

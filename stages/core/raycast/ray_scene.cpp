@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -151,8 +152,8 @@ SurfacePoint RayScene::first_hit(const Eigen::Vector3f& origin, const Eigen::Vec
   return {query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar};
 }
 
-void RayScene::first_front_hits(const float (&origin)[3][PacketHits::lanes], const Eigen::Vector3f& direction,
-                                std::uint32_t rays, PacketHits& hits) const {
+std::uint32_t RayScene::first_front_hits(const float (&origin)[3][PacketHits::lanes], const Eigen::Vector3f& direction,
+                                         std::uint32_t rays, PacketHits& hits) const {
   constexpr std::size_t lanes = PacketHits::lanes;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -176,9 +177,9 @@ void RayScene::first_front_hits(const float (&origin)[3][PacketHits::lanes], con
     query.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
   }
   rtcIntersect16(valid, implementation_->scene, &context, &query);
-  for (std::size_t k = 0; k < lanes; ++k) {
-    hits.triangle[k] = SurfacePoint::none;
-    if (valid[k] == 0) continue;
+  std::uint32_t found = 0;
+  for (; rays != 0; rays &= rays - 1) {
+    const auto k = static_cast<std::size_t>(std::countr_zero(rays));
     const Eigen::Vector3f from(origin[0][k], origin[1][k], origin[2][k]);
     SurfacePoint hit;
     if (query.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID)
@@ -190,7 +191,9 @@ void RayScene::first_front_hits(const float (&origin)[3][PacketHits::lanes], con
     hits.triangle[k] = hit.triangle;
     hits.u[k] = hit.u;
     hits.v[k] = hit.v;
+    found |= 1u << k;
   }
+  return found;
 }
 
 SurfacePoint RayScene::closest_point(const Eigen::Vector3f& point, float farthest) const {

@@ -27,14 +27,14 @@ class RayScene {
                          float farthest) const;
 
   /// The first hits of up to 16 parallel rays, those whose bit is set in `rays`, from `origin` along the unit vector
-  /// `direction`. Of the others, and of those that hit nothing or the back of a triangle, `triangle` becomes `none`.
+  /// `direction`. Returns the bits of those that hit the front of a triangle; only of these, `hits` is set.
   struct PacketHits {
     static constexpr std::size_t lanes = 16;
     std::uint32_t triangle[lanes];
     float u[lanes], v[lanes];  ///< as in SurfacePoint
   };
-  void first_front_hits(const float (&origin)[3][PacketHits::lanes], const Eigen::Vector3f& direction,
-                        std::uint32_t rays, PacketHits& hits) const;
+  std::uint32_t first_front_hits(const float (&origin)[3][PacketHits::lanes], const Eigen::Vector3f& direction,
+                                 std::uint32_t rays, PacketHits& hits) const;
 
   /// The surface point closest to `point`, at most `farthest` away.
   SurfacePoint closest_point(const Eigen::Vector3f& point, float farthest) const;
