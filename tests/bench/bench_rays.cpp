@@ -1,6 +1,7 @@
 // The rays of a bake against a straightforward loop over Embree's streams, in one run, so that the ratio holds on any
 // machine:
 //   bench_rays [--directions 10000] [--threads 2] [--asset FOLDER] [--mesh MESH] [--reference 65536] [--repeats 1]
+//              [--visible] [--share 1]
 // FOLDER is an asset of `kiln build` (atlas.drc and normals/): the receivers are its texels. Without one they are the
 // vertices of MESH, whose triangles are the occluders.
 #include <CLI/CLI.hpp>
@@ -153,6 +154,31 @@ Points vertices_of(const TriangleMesh& mesh) {
   return points;
 }
 
+/// The first of every `share` runs of 1,024 points, which stay neighbours.
+Points share_of(const Points& points, std::size_t share) {
+  constexpr std::size_t run = 1024;
+  Points kept;
+  for (std::size_t r = 0; r < points.positions.size(); ++r)
+    if (r / run % share == 0) {
+      kept.positions.push_back(points.positions[r]);
+      kept.normals.push_back(points.normals[r]);
+    }
+  return kept;
+}
+
+/// Without points that see nothing in 256 directions: kiln-bake sets aside those that are inside another part.
+Points visible_of(const Points& points, const TriangleMesh& mesh, float ray_offset) {
+  const TransferVectors seen =
+      transfer_by_rays(RayScene(mesh), points.view(), sample_directions(Sampling::fibonacci, 256, 1), 1, ray_offset);
+  Points kept;
+  for (std::size_t r = 0; r < points.positions.size(); ++r)
+    if (seen.plane(0)[r] > 0) {
+      kept.positions.push_back(points.positions[r]);
+      kept.normals.push_back(points.normals[r]);
+    }
+  return kept;
+}
+
 Points every(const Points& points, std::size_t step) {
   Points thinned;
   for (std::size_t r = 0; r < points.positions.size(); r += step) {
@@ -182,7 +208,8 @@ std::vector<Eigen::Vector3f> coherent(Sampling sampling, int count, int seed) {
 int main(int argc, char** argv) {
   int direction_count = 10000, threads = 2, reference_count = 65536, repeats = 1;
   std::string asset, mesh_file = "/usr/share/glmark2/models/bunny.obj";
-  bool skip_probe = false;
+  bool skip_probe = false, visible = false;
+  std::size_t share = 1;
   CLI::App app("Embree streams against the bake's ray engine");
   app.add_option("--directions", direction_count, "directions of the comparison at equal work")->capture_default_str();
   app.add_option("--threads", threads, "of both")->capture_default_str();
@@ -191,14 +218,17 @@ int main(int argc, char** argv) {
   app.add_option("--reference", reference_count, "directions of the reference of errors; 0: no errors")
       ->capture_default_str();
   app.add_option("--repeats", repeats, "runs of each, in turn; the fastest counts")->capture_default_str();
+  app.add_flag("--visible", visible, "without receivers that see nothing, as those inside other parts");
+  app.add_option("--share", share, "one run in so many of 1,024 neighbouring receivers")->capture_default_str();
   app.add_flag("--skip-probe", skip_probe, "only the engine");
   CLI11_PARSE(app, argc, argv);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
 
   const TriangleMesh mesh = load_mesh(mesh_file);
-  const Points points = asset.empty() ? vertices_of(mesh) : texels_of(asset);
-  const Receivers receivers = points.view();
   const float ray_offset = rounding_offset(mesh.positions);
+  Points points = share_of(asset.empty() ? vertices_of(mesh) : texels_of(asset), share);
+  if (visible) points = visible_of(points, mesh, ray_offset);
+  const Receivers receivers = points.view();
   std::printf("%zu triangles, %zu receivers, %d directions, %d coefficients, %d threads, %s\n", mesh.triangles.size(),
               receivers.size(), direction_count, coefficients, threads, ray_library_name().c_str());
 
