@@ -7,7 +7,7 @@ install(TARGETS kiln-runtime kiln-runtime-gl EXPORT kilnTargets LIBRARY)
 install(DIRECTORY runtime/include/kiln TYPE INCLUDE)
 install(DIRECTORY shaders/ DESTINATION ${CMAKE_INSTALL_DATADIR}/kiln/shaders
         FILES_MATCHING PATTERN "common_*" PATTERN "render_*")
-install(FILES LICENSE README.md TYPE DOC)
+install(FILES LICENSE LICENSES/MIT.txt README.md TYPE DOC)
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
 install(DIRECTORY examples TYPE DOC)
 

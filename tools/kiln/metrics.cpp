@@ -11,7 +11,7 @@ namespace {
 constexpr const char* of_every_stage = "seconds peak_memory_bytes";
 
 constexpr const char* of_simplify =
-    "triangles vertices input_triangles dropped_components dropped_triangles dropped_area dropped_size hausdorff rms "
+    "triangles vertices input_triangles dropped_components dropped_triangles dropped_area dropped_size hausdorff hausdorff_from_result rms "
     "hausdorff_distance manifold closed degenerate_triangles flipped_triangles collapse_seconds position_bits "
     "input_components input_border_loops hard_edges repairs.merged_vertices repairs.welded_vertices "
     "repairs.unused_vertices repairs.triangulated_polygons repairs.degenerate_triangles repairs.duplicate_triangles "
@@ -51,7 +51,8 @@ constexpr const char* of_verification =
     "verification.relighting_error verification.relighting_error_uncertainty";
 
 constexpr const char* of_bounces =
-    "bounces.count bounces.seconds bounces.cache_points bounces.cache_triangles bounces.cache_seconds";
+    "bounces.count bounces.seconds bounces.cache_points bounces.cache_triangles bounces.cache_seconds "
+    "bounces.kept_bytes";
 
 constexpr const char* of_subsurface =
     "subsurface.hierarchy_error subsurface.error_points subsurface.largest_gain "
