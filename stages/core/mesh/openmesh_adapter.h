@@ -1,6 +1,6 @@
 #pragma once
 
-// The one header that shows CGAL and OpenMesh; for .cpp files only. OpenMesh's names must be seen before CGAL's
+// This header alone shows CGAL and OpenMesh, and is for .cpp files only. OpenMesh's names must be seen before CGAL's
 // algorithms.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/boost/graph/Euler_operations.h>
@@ -24,11 +24,12 @@ struct DoubleTraits : OpenMesh::DefaultTraits {
   HalfedgeAttributes(OpenMesh::Attributes::PrevHalfedge | OpenMesh::Attributes::Status);
 };
 
-/// A half-edge mesh with positions in double precision. CGAL's algorithms take it as a face graph (kernel: Epick).
+/// Half-edge mesh with positions in double precision. CGAL's algorithms take it as a face graph (kernel: Epick).
 using HalfedgeMesh = OpenMesh::TriMesh_ArrayKernelT<DoubleTraits>;
 using HalfedgeKernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-/// The positions of a HalfedgeMesh as CGAL points. CGAL's own map for OpenMesh rounds to float what it writes.
+/// Property map of a HalfedgeMesh's positions as CGAL points. CGAL's own map for OpenMesh rounds to float what it
+/// writes.
 struct HalfedgePositions {
   using category = boost::read_write_property_map_tag;
   using key_type = HalfedgeMesh::VertexHandle;
@@ -45,13 +46,14 @@ struct HalfedgePositions {
   }
 };
 
-/// Vertices and faces in the mesh's order and with its indices. The triangles must be an oriented manifold: throws
+/// Converts a mesh; vertices and faces keep their order and indices. The triangles must be an oriented manifold: throws
 /// std::invalid_argument otherwise.
 inline HalfedgeMesh to_halfedges(const TriangleMesh& mesh) {
   HalfedgeMesh result;
   result.reserve(mesh.positions.size(), mesh.triangles.size() * 3 / 2, mesh.triangles.size());
   for (const Eigen::Vector3f& p : mesh.positions) result.add_vertex(HalfedgeMesh::Point(p.x(), p.y(), p.z()));
-  // CGAL joins faces to whatever is there already, where OpenMesh refuses some orders of a manifold's faces.
+  // Add faces through CGAL, which attaches them to whatever is there already; OpenMesh refuses some orders of a
+  // manifold's faces.
   std::array<HalfedgeMesh::VertexHandle, 3> corners;
   for (const Triangle& triangle : mesh.triangles) {
     for (int i = 0; i < 3; ++i) corners[i] = HalfedgeMesh::VertexHandle(static_cast<int>(triangle[i]));

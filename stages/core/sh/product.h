@@ -14,18 +14,18 @@ class ShProduct {
   /// `bands` of 1 to 6. The triple products are computed once, by quadrature that is exact for them.
   explicit ShProduct(int bands);
 
-  /// One for each number of bands, made at its first use; safe to call from several threads.
+  /// Returns the product of that many bands, made at its first use; safe to call from several threads.
   static const ShProduct& of_bands(int bands);
 
   int bands() const { return bands_; }
 
-  /// All three of bands^2 coefficients.
+  /// Multiplies `f` and `g`; both and the result have bands^2 coefficients.
   std::vector<float> operator()(std::span<const float> f, std::span<const float> g) const;
 
-  /// The integral of Y_i Y_j Y_k; any order of indices below bands^2.
+  /// Returns the integral of Y_i Y_j Y_k; indices below bands^2, in any order.
   double triple(int i, int j, int k) const;
 
-  /// Triples i <= j <= k whose product is not zero.
+  /// Counts the triples i <= j <= k whose product is not zero.
   std::size_t nonzero_triples() const { return entries_.size(); }
 
  private:
