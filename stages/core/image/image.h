@@ -6,7 +6,7 @@
 
 namespace kiln {
 
-/// A pixel buffer, channels interleaved, row 0 at the BOTTOM (as uv has it; files are flipped on their way in and out).
+/// Pixel buffer, channels interleaved, row 0 at the BOTTOM (as uv has it; files are flipped when read and written).
 template <class T>
 class Image {
  public:
