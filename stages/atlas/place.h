@@ -13,7 +13,7 @@ namespace kiln {
 /// Bitmaps of a chart, one per rotation tried.
 using Shape = std::vector<ChartBitmap>;
 
-/// What of a chart is to lie as low as possible: its top, or its middle.
+/// Part of a chart that is to lie as low as possible.
 enum class Objective : std::uint8_t { top, middle };
 
 /// Plan for putting charts down.
@@ -36,8 +36,8 @@ struct Spot {
 /// last kept is placed from where they differ.
 class Placer {
  public:
-  /// What a placer is used for. A `search` keeps the grid before each step; placing `once` does not. In a `crowd`, a
-  /// chart starts a little below where the last one of the same size came to lie, so that placing thousands takes
+  /// Purpose of a placer. A `search` keeps the grid before each step; placing `once` does not. In a `crowd`, a chart
+  /// starts a little below where the last one of the same size came to lie, so that placing thousands takes seconds.
   /// seconds.
   enum class Use : std::uint8_t { search, once, crowd };
 

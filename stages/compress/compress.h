@@ -18,7 +18,7 @@ enum class CompressScheme {
   clustered_pca,  ///< a basis for each cluster of texels
 };
 
-/// "planes", "pca", "clustered-pca".
+/// Returns "planes", "pca" or "clustered-pca".
 std::string scheme_name(CompressScheme scheme);
 
 /// Bounds on the worst errors, whatever mean error is asked for (README.md, "The worst", tells how they were chosen).

@@ -25,7 +25,7 @@ MapError measure_map_error(const TriangleMesh& high, const TriangleMesh& atlas, 
 /// Differences between the high mesh's albedo and that which the low mesh shows with its map, linear.
 struct AlbedoError {
   double rms = 0;            ///< over points and channels
-  double percentile_95 = 0;  ///< of the largest channel's difference
+  double percentile_95 = 0;  ///< percentile of the largest channel's difference
 };
 
 /// Measures the albedo at the points of measure_map_error; `map` has three linear channels, gutters filled.

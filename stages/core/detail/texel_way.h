@@ -5,7 +5,8 @@
 
 namespace kiln {
 
-/// How a texel's point of the high mesh was found, as match.png shows it; `buried`: nothing can see that point.
+/// Way in which a texel's point of the high mesh was found, as match.png shows it; `buried`: nothing can see that
+/// point.
 enum class TexelWay : std::uint8_t { uncovered, ray_outwards, ray_inwards, nearest_point, disagreeing, buried };
 
 struct TexelWayColour {

@@ -23,7 +23,7 @@ void for_each_row(int height, const Body& body) {
   });
 }
 
-/// Pushes: every coarse texel is the mean of the known ones of its (up to) four.
+/// Pushes: makes every coarse texel the mean of the known ones among its (up to) four.
 Level coarser(const Image<float>& fine, const std::vector<std::uint8_t>& known) {
   const int width = (fine.width() + 1) / 2, height = (fine.height() + 1) / 2;
   Level coarse{Image<float>(width, height, fine.channels()),
@@ -47,7 +47,7 @@ Level coarser(const Image<float>& fine, const std::vector<std::uint8_t>& known) 
   return coarse;
 }
 
-/// Pulls: unknown texels are interpolated bilinearly from the coarser level, where every texel has a value by now.
+/// Pulls: interpolates unknown texels bilinearly from the coarser level, where every texel has a value by now.
 void fill_from_coarser(Image<float>& fine, const std::vector<std::uint8_t>& known, const Image<float>& coarse) {
   for_each_row(fine.height(), [&](int j) {
     // The centre of an even texel lies a quarter of a coarse texel below the coarse centre, that of an odd one above.

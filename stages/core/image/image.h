@@ -24,7 +24,7 @@ class Image {
   T& at(int i, int j, int channel = 0) { return values_[offset(i, j) + channel]; }
   const T& at(int i, int j, int channel = 0) const { return values_[offset(i, j) + channel]; }
 
-  /// All channels of one pixel.
+  /// Returns all channels of one pixel.
   std::span<T> pixel(int i, int j) { return {values_.data() + offset(i, j), static_cast<std::size_t>(channels_)}; }
   std::span<const T> pixel(int i, int j) const {
     return {values_.data() + offset(i, j), static_cast<std::size_t>(channels_)};

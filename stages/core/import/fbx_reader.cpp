@@ -81,7 +81,7 @@ class FbxReader {
   }
 
  private:
-  /// Reads the file's axes as rows: coordinate, up and front. The coordinate axis is derived from the other two for a
+  /// Reads the file's axes as rows: coordinate, up and front. The front axis is derived from the other two for a
   /// right-handed frame, since exporters differ in its sign.
   void read_axes() {
     const FbxProperties settings(document_.root().child("GlobalSettings"), nullptr);

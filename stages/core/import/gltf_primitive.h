@@ -18,7 +18,7 @@ struct GltfPrimitive {
   std::string place;  ///< for messages: "mesh 2, primitive 0"
   std::vector<Eigen::Vector3d> positions;
   std::vector<std::uint32_t> numbers;    ///< numbers of the vertices in the file, for messages
-  std::vector<Eigen::Vector3d> normals;  ///< of any length
+  std::vector<Eigen::Vector3d> normals;  ///< not normalised
   std::vector<Eigen::Vector2f> uvs;      ///< (0, 0) is a picture's lower left corner
   std::vector<Eigen::Vector3f> colors;   ///< linear
   std::vector<std::array<std::uint32_t, 3>> triangles;

@@ -58,7 +58,7 @@ struct SourceMesh {
   std::vector<Eigen::Vector3d> places;   ///< in the file's units and axes; those that faces use are finite
   std::vector<Eigen::Vector3f> colors;   ///< as many as places, or none; 0 to 1
   bool linear_colors = false;            ///< `colors` are proportional to light whatever the settings say (glTF)
-  std::vector<Eigen::Vector3f> normals;  ///< of any length; those that faces use are finite
+  std::vector<Eigen::Vector3f> normals;  ///< not normalised; those that faces use are finite
   std::vector<Eigen::Vector2f> uvs;      ///< (0, 0) is a picture's lower left corner
   std::vector<Corner> corners;
   std::vector<Face> faces;  ///< at least one

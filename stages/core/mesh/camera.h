@@ -23,7 +23,7 @@ struct Camera {
   Eigen::Vector3f right;    ///< unit
   Eigen::Vector3f up;       ///< unit
   Eigen::Vector3f forward;  ///< unit
-  float half_width = 1;     ///< of the picture's plane
+  float half_width = 1;     ///< half of the picture plane's width
   float half_height = 1;
   float near_distance = 0;  ///< depth range along `forward` of the part of the shape in front of the camera
   float far_distance = 0;

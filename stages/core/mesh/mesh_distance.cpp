@@ -18,7 +18,7 @@ struct SampledSurface {
   struct Face {
     Eigen::Vector3d a, ab, ac;
   };
-  std::vector<Eigen::Vector3d> vertices;  ///< those that a triangle uses
+  std::vector<Eigen::Vector3d> vertices;  ///< only vertices that a triangle uses
   std::vector<Face> faces;
   std::vector<double> area_up_to;  ///< summed area of the faces before and including this one
 };

@@ -26,10 +26,10 @@ struct MeshRepairs {
   int unused_vertices = 0;        ///< in no triangle
   int triangulated_polygons = 0;  ///< faces of more than three corners
   int degenerate_triangles = 0;   ///< with a vertex repeated, or corners on one line
-  int duplicate_triangles = 0;    ///< of the same three vertices as another, wound alike
-  int dropped_backs = 0;          ///< of the same three vertices as another, wound the other way
+  int duplicate_triangles = 0;    ///< same three vertices as another triangle, wound alike
+  int dropped_backs = 0;          ///< same three vertices as another triangle, wound the other way
   int reversed_triangles = 0;     ///< wound against the majority (by area) of the surface that they continue
-  int nonmanifold_edges = 0;      ///< of more than two triangles: sheets taken apart there
+  int nonmanifold_edges = 0;      ///< edges of more than two triangles, where sheets were taken apart
   int nonmanifold_vertices = 0;   ///< where several fans met, ends of cut edges not counted
   int unorientable_edges = 0;     ///< cut, as a Moebius strip cannot be wound consistently
   int inside_out_components = 0;  ///< closed, of negative volume and inside no other: turned
@@ -40,7 +40,7 @@ struct MeshRepairs {
   int components = 0;
   int border_loops = 0;  ///< holes and rims that are left
 
-  /// A name for each kind of repair, as results call it.
+  /// Returns a name for each kind of repair, as results use it.
   static const std::array<std::pair<const char*, int MeshRepairs::*>, 14>& kinds();
 
   /// Tells whether the mesh was clean; filled holes do not count.

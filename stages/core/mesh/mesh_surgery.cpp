@@ -66,7 +66,7 @@ class FlatTriangles {
   FlatTriangles(TriangleMesh& mesh, TriangleOrigins& origins)
       : mesh_(mesh), origins_(origins), is_removed_(mesh.triangles.size(), false) {}
 
-  /// Runs; returns how many there were.
+  /// Removes the flat triangles; returns how many there were.
   int remove() {
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) push_if_flat(t);
     const auto count = static_cast<int>(queue_.size());

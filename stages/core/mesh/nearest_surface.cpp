@@ -25,7 +25,8 @@ struct Face {
 /// Cone of directions about an axis.
 struct Cone {
   Eigen::Vector3f axis = Eigen::Vector3f::UnitZ();
-  float cosine = -1, sine = 0;  ///< of the half-angle; cosine -1 means all directions
+  float cosine = -1,
+        sine = 0;  ///< of the largest angle between the axis and a direction; cosine -1 means all directions
 
   /// Returns an upper bound of the cosine between the unit vector and a direction of the cone.
   float largest_cosine(const Eigen::Vector3f& direction) const {

@@ -10,10 +10,10 @@ namespace kiln {
 
 namespace {
 
-/// The upper 53 bits of a fraction in units of 2^-64.
+/// Returns the upper 53 bits of a fraction in units of 2^-64.
 double as_fraction(std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
 
-/// Uniform in [0, 1). std::uniform_real_distribution may differ between libraries; this does not.
+/// Draws a number from [0, 1) uniformly. std::uniform_real_distribution may differ between libraries; this does not.
 double uniform(std::mt19937_64& random) { return as_fraction(random()); }
 
 /// Draws a uniformly distributed rotation [Shoemake 1992].

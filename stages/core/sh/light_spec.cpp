@@ -16,7 +16,7 @@ namespace {
 
 constexpr double brightest = 1e6;
 
-/// The shortest text that from_chars reads as the same number.
+/// Writes the shortest text that from_chars reads as the same number.
 template <class Number>
 std::string shortest(Number value) {
   char text[32];

@@ -8,7 +8,7 @@ namespace kiln {
 
 /// Multiplies functions on the sphere given in spherical harmonics: coefficient k of f g is the sum over i and j of
 /// f_i g_j times the triple product of Y_i, Y_j and Y_k (real Gaunt coefficients). The product of two functions of n
-/// bands has 2n - 1; what is above the first n is cut off, as D3DX's D3DXSHMultiply does.
+/// bands has 2n - 1; what is above the first n is cut off, as in D3DXSHMultiply [D3DX].
 class ShProduct {
  public:
   /// `bands` of 1 to 6. The triple products are computed once, by quadrature that is exact for them.

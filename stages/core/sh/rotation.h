@@ -20,7 +20,7 @@ class ShRotation {
 
   int bands() const { return static_cast<int>(matrices_.size()); }
 
-  /// The (2l+1) x (2l+1) matrix of band l; row and column of order m are l + m.
+  /// Returns the (2l+1) x (2l+1) matrix of band l; row and column of order m are l + m.
   const Eigen::MatrixXd& band(int l) const { return matrices_[l]; }
 
   /// Rotates a function of all bands' coefficients.

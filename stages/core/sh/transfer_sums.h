@@ -40,7 +40,7 @@ struct TransferSums {
   /// Adds the sums over other directions for the same receivers.
   void add(const TransferSums& other);
 
-  /// t_i = 4/N times the sums: the integral divided by pi, the N directions being spread evenly.
+  /// Returns t_i = 4/N times the sums: the integral divided by pi, for N evenly spread directions.
   TransferVectors transfer() const;
 };
 

@@ -57,7 +57,7 @@ class BandedFunction {
     for (std::size_t l = 0; l < bands.size(); ++l) sum += window[l] * bands[l];
     return sum;
   }
-  /// Pattern search in the tangent plane.
+  /// Descends to a local minimum, by pattern search in the tangent plane.
   double downhill(Eigen::Vector3d at, double value, std::span<const double> window) const {
     for (double step = 0.5 * spacing_; step > 1e-4 * spacing_; step *= 0.5) {
       const Eigen::Vector3d u = at.unitOrthogonal(), v = at.cross(u);
@@ -98,7 +98,7 @@ double least_strength(double weakest, const std::function<bool(double)>& rings) 
   return strong;
 }
 
-/// Sum over l of terms_l P_l(x).
+/// Returns the sum over l of terms_l P_l(x).
 double legendre_sum(std::span<const double> terms, double x) {
   double sum = 0, before = 0, p = 1;  // P_(l-1) and P_l
   for (std::size_t l = 0; l < terms.size(); ++l) {
