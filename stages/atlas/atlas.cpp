@@ -115,8 +115,8 @@ TriangleMesh assemble(const TriangleMesh& low, const std::vector<Chart>& charts,
   return atlas;
 }
 
-/// Counts triangles that have no area or face against their vertices' normals. A file may reorder the triangles, so only
-/// their number can show what rounding did.
+/// Counts triangles that have no area or face against their vertices' normals. A file may reorder the triangles, so
+/// only their number can show what rounding did.
 int count_spoilt(const TriangleMesh& mesh) {
   int count = 0;
   for (const Triangle& t : mesh.triangles) {

@@ -25,7 +25,7 @@ constexpr std::array picture_properties = {"DiffuseColor",
                                            "Maya|base_color"};
 
 /// Finds the file of a path that may come from another machine: as given, from `folder`, or by its bare name there. If
-/// none exists, returns the second; for a path with a drive, the third.
+/// none exists, returns the path from `folder`, or the bare name there where the path has a drive.
 fs::path find_file(const fs::path& folder, std::string given, std::string relative) {
   for (std::string* path : {&given, &relative}) std::replace(path->begin(), path->end(), '\\', '/');
   if (relative.empty()) relative = given;

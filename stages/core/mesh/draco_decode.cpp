@@ -11,7 +11,7 @@
 
 #include "base/errors.h"
 
-// The layout is that of the Draco bitstream specification, https://google.github.io/draco/spec/, sections 3 and 5.
+// The layout is that of the Draco bitstream specification [Draco], sections 3 and 5.
 
 namespace kiln {
 
