@@ -18,7 +18,7 @@
 // prt_light is the light, a small texture: for each incident-light sample, for each cluster, the constant (rgb), then for
 // each layer three texels: what its four planes add to red, to green and to blue.
 //
-// PRT_SAMPLES, 1 unless defined: incident-light sample points (Chapter 2010, 4.3.3 to 4.3.6).
+// PRT_SAMPLES, 1 unless defined: incident-light sample points ([Chapter 2010], 4.3.3 to 4.3.6).
 // PRT_CLUSTERED, not defined unless there are several clusters.
 #ifndef PRT_SAMPLES
 #define PRT_SAMPLES 1

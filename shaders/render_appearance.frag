@@ -1,5 +1,5 @@
-// Deferred shading, first pass: what shading needs to know of the nearest surface, and no light yet. PixelFlow's
-// appearance parameters (Lastra, Molnar, Olano and Wang, "Real-time programmable shading", 1995).
+// First pass of deferred shading: writes what shading needs of the nearest surface, without any light. These are
+// PixelFlow's appearance parameters [Lastra 1995].
 layout(location = 3) uniform float asset_number;  // from 1
 
 in vec2 surface_uv;

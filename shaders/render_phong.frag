@@ -1,5 +1,5 @@
-// Phong, "Illumination for computer generated pictures", 1975: no light is ever in shadow. Balls are lit by their
-// inverse square; light without a direction comes as irradiance in nine harmonics (Ramamoorthi and Hanrahan 2001).
+// [Phong 1975]: no light is ever in shadow. Balls light by the inverse square of their distance; light without a
+// direction arrives as irradiance in nine harmonics [Ramamoorthi 2001].
 // NORMAL_MAP: normals of the high mesh, object space, in place of the low mesh's.
 #include "render_albedo.glsl"
 

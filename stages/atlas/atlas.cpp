@@ -19,7 +19,7 @@ namespace kiln {
 
 namespace {
 
-constexpr int most_bits = 24;       // a float has no more
+constexpr int most_bits = 24;       // the mantissa of a float32
 constexpr int most_texels = 16384;  // a side
 
 ChartSettings chart_settings(const AtlasSettings& settings, double area) {
@@ -27,9 +27,10 @@ ChartSettings chart_settings(const AtlasSettings& settings, double area) {
   charts.largest_l2 = settings.max_stretch;
   charts.largest_linf = settings.max_stretch_linf;
   charts.crease_degrees = settings.crease;
-  constexpr double usual_share = 0.68;   // of the atlas that is covered
-  constexpr double narrow = 0.9;         // in lengths of the surface's side; twice as long as wide is just that
-  constexpr double narrow_share = 0.55;  // of a narrow atlas's width that a chart may reach across
+  constexpr double usual_share = 0.68;  // usual share of the atlas that is covered
+  constexpr double narrow =
+      0.9;  // an atlas is narrow below this, in lengths of the surface's side; twice as long as wide is just that
+  constexpr double narrow_share = 0.55;  // share of a narrow atlas's width that a chart may span
   const double texels_per_unit = settings.texels_per_unit > 0
                                      ? settings.texels_per_unit
                                      : std::sqrt(usual_share * settings.size.width * settings.size.height / area);
@@ -55,7 +56,7 @@ PackSettings pack_settings(const AtlasSettings& settings) {
   return pack;
 }
 
-/// `texels` of a given density, over the whole surface, cannot be had: says which density can.
+/// Refuses a density at which the surface takes too many texels; says which density is possible.
 [[noreturn]] void refuse_density(double texels_per_unit, double side_texels) {
   throw WrongUsage(
       fmt::format("an atlas of {:g} texels per unit of length would be about {:.0f} texels a side; at most {} "
@@ -63,7 +64,7 @@ PackSettings pack_settings(const AtlasSettings& settings) {
                   texels_per_unit, side_texels, most_texels, 0.98 * texels_per_unit * most_texels / side_texels));
 }
 
-/// What cannot fit even when packed well is told at once.
+/// Refuses a density that cannot fit even when packed well, before the work.
 void check_density(const AtlasSettings& settings, double area) {
   constexpr double dense = 0.8;
   const double least_side = settings.texels_per_unit * std::sqrt(area / dense);
@@ -77,7 +78,7 @@ Packing pack(const std::vector<Chart>& charts, const AtlasSettings& settings, co
   return packing;
 }
 
-/// The mesh with vertices split at seams, triangles in their old order.
+/// Assembles the mesh with vertices split at seams, triangles in their old order.
 TriangleMesh assemble(const TriangleMesh& low, const std::vector<Chart>& charts, const Packing& packing) {
   TriangleMesh atlas;
   atlas.frame = low.frame;
@@ -103,7 +104,7 @@ TriangleMesh assemble(const TriangleMesh& low, const std::vector<Chart>& charts,
     for (std::size_t i = 0; i < charts[c].faces.size(); ++i)
       for (int k = 0; k < 3; ++k) atlas.triangles[charts[c].faces[i]][k] = first + charts[c].triangles[i][k];
   }
-  // Degenerate faces shrink to a point where a corner of theirs is.
+  // Degenerate faces shrink to a point, where one of their corners is.
   for (std::size_t f = 0; f < low.triangles.size(); ++f) {
     if (atlas.triangles[f][0] != no_index) continue;
     const auto known = std::find_if(low.triangles[f].begin(), low.triangles[f].end(),
@@ -114,8 +115,8 @@ TriangleMesh assemble(const TriangleMesh& low, const std::vector<Chart>& charts,
   return atlas;
 }
 
-/// Triangles that have no area or face against their vertices' normals. A file may change the triangles' order, so that
-/// rounding shows in their number only.
+/// Counts triangles that have no area or face against their vertices' normals. A file may reorder the triangles, so
+/// only their number can show what rounding did.
 int count_spoilt(const TriangleMesh& mesh) {
   int count = 0;
   for (const Triangle& t : mesh.triangles) {
@@ -139,7 +140,7 @@ AtlasResult make_atlas(const TriangleMesh& low, const AtlasSettings& settings, c
     mesh = &with_normals;
   }
 
-  // Step 1: charts, each flat.
+  // Step 1: cut and flatten charts.
   Surface surface = analyse_surface(*mesh);
   if (!(surface.area > 0)) throw BadInput(name, "has no triangle with an area", "a surface", "check how it was made");
   check_density(settings, surface.area);
@@ -151,7 +152,7 @@ AtlasResult make_atlas(const TriangleMesh& low, const AtlasSettings& settings, c
                      : cut_into_charts(surface, how_to_cut, cutting);
   const double chart_seconds = watch.seconds();
 
-  // Step 2: their scales.
+  // Step 2: scale them.
   AtlasResult result;
   if (settings.density == AtlasDensity::transfer) {
     const ChartDensities densities = densities_by_transfer(surface, cut.charts, high);
@@ -160,10 +161,10 @@ AtlasResult make_atlas(const TriangleMesh& low, const AtlasSettings& settings, c
   }
   const double scaled_seconds = watch.seconds();
 
-  // Step 3: a place for each.
+  // Step 3: place them.
   const Packing packing = pack(cut.charts, settings, [&](double fraction) { progress(0.6 + 0.4 * fraction); });
 
-  // Step 4: the mesh with uvs.
+  // Step 4: build the mesh with uvs.
   result.mesh = assemble(*mesh, cut.charts, packing);
   result.size = {packing.width, packing.height};
   result.gutter = settings.gutter;

@@ -14,16 +14,16 @@ struct AtlasResult {
   TriangleMesh mesh;  ///< positions, normals and uvs; vertices are split at seams
   Extent size;        ///< texels
   int gutter = 0;
-  int unfolded_charts = 0;  ///< charts by what their map started from: their parts, laid side by side
+  int unfolded_charts = 0;  ///< number of charts by what their map started from: here their parts, laid side by side
   int lscm_charts = 0;
   int arap_charts = 0;
   int mean_value_charts = 0;
-  bool kept = false;             ///< these are the uvs that the mesh came with
-  double density_order = 0;      ///< with density transfer: power of the spacing that squared errors grow with; else 0
-  int split_charts = 0;          ///< had to be taken apart, since no way of flattening gave a valid map
-  int degenerate_triangles = 0;  ///< have no area: they lie in a point of the atlas and cover nothing
+  bool kept = false;         ///< the uvs are those that the mesh came with
+  double density_order = 0;  ///< with density transfer: the power of the spacing that squared errors grow with; else 0
+  int split_charts = 0;      ///< charts taken apart because no way of flattening gave a valid map
+  int degenerate_triangles = 0;  ///< triangles without area: they shrink to a point of the atlas and cover nothing
   double seconds = 0;
-  double chart_seconds = 0;  ///< of it, cutting and flattening
+  double chart_seconds = 0;  ///< part of the time spent on cutting and flattening
   double density_seconds = 0;
   double pack_seconds = 0;
 
@@ -31,14 +31,14 @@ struct AtlasResult {
 };
 
 /// Cuts a mesh into charts, flattens and packs them. Every triangle lands in the atlas once, in the mesh's order; none
-/// is flipped and none overlaps another. Normals are taken over, or computed where there are none; colours are taken
-/// over. `high`, which may be null, is what transfer-aware density takes transfer from; it needs normals. Throws
-/// WrongUsage where the atlas is too small for the charts, or would be too large at a given density, BadInput (naming
-/// `name`) where no triangle has an area.
+/// is flipped and none overlaps another. Normals are kept, or computed where there are none; colours are kept. `high`,
+/// which may be null, is the mesh whose transfer decides density; it needs normals. Throws WrongUsage where the atlas
+/// is too small for the charts, or would be too large at a given density; BadInput (naming `name`) where no triangle
+/// has an area.
 AtlasResult make_atlas(const TriangleMesh& low, const AtlasSettings& settings, const std::string& name = "the mesh",
                        const ProgressFunction& progress = no_progress, const TriangleMesh* high = nullptr);
 
-/// What an atlas is once it was written to a file and read again.
+/// Atlas as a file holds it, with what was measured of it.
 struct WrittenAtlas {
   TriangleMesh mesh;
   AtlasMeasures measures;
@@ -49,8 +49,8 @@ struct WrittenAtlas {
 };
 
 /// Writes the atlas as a Draco file and measures what the file holds. Positions and uvs get 16 bits, or more where
-/// rounding to 16 would take a triangle's area, turn it over or spoil the gutter. Throws std::runtime_error where two
-/// triangles cover one texel or the gutter is not kept: a defect of Kiln.
+/// rounding to 16 would flatten or flip a triangle or narrow the gutter. Throws std::runtime_error where two triangles
+/// cover one texel or the gutter is not kept: a defect of Kiln.
 WrittenAtlas write_atlas(const std::filesystem::path& file, const AtlasResult& atlas);
 
 }  // namespace kiln

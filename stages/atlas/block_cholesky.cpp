@@ -1,5 +1,5 @@
-// Davis, "Algorithm 849: a concise sparse Cholesky factorization package", 2005: the factorisation L D L^T, row by row
-// along the elimination tree; here of 2 x 2 blocks. The order is approximately that of minimum degree.
+// [Davis 2005]: the factorisation L D L^T, row by row along the elimination tree; here of 2 x 2 blocks. The order is
+// approximately that of minimum degree.
 #include "atlas/block_cholesky.h"
 
 #include <Eigen/OrderingMethods>
@@ -27,7 +27,7 @@ BlockCholesky::BlockCholesky(std::size_t vertices, const std::vector<Edge>& edge
 void BlockCholesky::order(std::size_t vertices, const std::vector<Edge>& edges) {
   using Pattern = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
   Pattern pattern(static_cast<Eigen::Index>(vertices), static_cast<Eigen::Index>(vertices));
-  // Both triangles, column by column; the order of a column's rows does not matter to what reads it.
+  // Store both triangles, column by column; readers do not depend on the order of a column's rows.
   std::vector<int> starts(vertices + 1, 0);
   for (const auto& [a, b] : edges) ++starts[a + 1], ++starts[b + 1];
   for (std::size_t v = 0; v < vertices; ++v) starts[v + 1] += starts[v] + 1;
@@ -77,7 +77,8 @@ bool BlockCholesky::factorise(const std::vector<SymmetricBlock>& diagonal,
   std::vector<std::uint32_t> seen(count, no_index), path(count), pattern(count);
   std::vector<std::uint32_t> ends(factor_offsets_.begin(), factor_offsets_.end() - 1);
   for (std::uint32_t k = 0; k < count; ++k) {
-    // Step 1: column k above the diagonal, and which columns of the factor it meets, children before parents.
+    // Step 1: scatter column k above the diagonal, and find which columns of the factor it meets, children before
+    // parents.
     std::size_t top = count;
     seen[k] = k;
     for (std::uint32_t e = offsets_[k]; e < offsets_[k + 1]; ++e) {
@@ -90,7 +91,7 @@ bool BlockCholesky::factorise(const std::vector<SymmetricBlock>& diagonal,
       }
       while (length > 0) pattern[--top] = path[--length];
     }
-    // Step 2: row k of the factor, and its diagonal.
+    // Step 2: compute row k of the factor, and its diagonal.
     SymmetricBlock d = diagonal[vertex_[k]];
     for (; top < count; ++top) {
       const std::uint32_t i = pattern[top];
@@ -105,7 +106,7 @@ bool BlockCholesky::factorise(const std::vector<SymmetricBlock>& diagonal,
         target[3] -= l[2] * x[1] + l[3] * x[3];
       }
       const SymmetricBlock& inverse = inverse_diagonal_[i];
-      // Its block is x^T D^-1.
+      // The row's block is x^T D^-1.
       const Block l = {x[0] * inverse.xx + x[2] * inverse.xy, x[0] * inverse.xy + x[2] * inverse.yy,
                        x[1] * inverse.xx + x[3] * inverse.xy, x[1] * inverse.xy + x[3] * inverse.yy};
       d.xx -= l[0] * x[0] + l[1] * x[2];

@@ -8,7 +8,7 @@
 
 namespace kiln {
 
-/// A symmetric 2 x 2 matrix.
+/// Symmetric 2 x 2 matrix.
 struct SymmetricBlock {
   double xx = 0, xy = 0, yy = 0;
 
@@ -19,20 +19,20 @@ struct SymmetricBlock {
   }
 };
 
-/// Solves sparse symmetric positive definite systems of one 2 x 2 block a vertex on the diagonal and one, itself
-/// symmetric, an edge: what least squares over a planar map's vertices give. The pattern is analysed once and
-/// factorised for as many values as there are. Quicker than a general sparse solver, which sees four entries where this
-/// sees a block.
+/// Solves sparse symmetric positive definite systems of 2 x 2 blocks: one per vertex on the diagonal, and one, itself
+/// symmetric, per edge. Least squares over the vertices of a planar map give such systems. The pattern is analysed once
+/// and factorised for any number of values. Faster than a general sparse solver, which sees four entries in every
+/// block.
 class BlockCholesky {
  public:
   using Edge = std::pair<std::uint32_t, std::uint32_t>;  ///< two different vertices; each edge once
 
   BlockCholesky(std::size_t vertices, const std::vector<Edge>& edges);
 
-  /// `diagonal` per vertex, `off_diagonal` per edge. False where the matrix is not positive definite.
+  /// Factorises; `diagonal` per vertex, `off_diagonal` per edge. False where the matrix is not positive definite.
   bool factorise(const std::vector<SymmetricBlock>& diagonal, const std::vector<SymmetricBlock>& off_diagonal);
 
-  /// Two unknowns a vertex, after `factorise` was true.
+  /// Solves for two unknowns per vertex, after `factorise` returned true.
   std::vector<Eigen::Vector2d> solve(const std::vector<Eigen::Vector2d>& right_side) const;
 
  private:
@@ -44,11 +44,11 @@ class BlockCholesky {
   void order(std::size_t vertices, const std::vector<Edge>& edges);
   void find_factor_pattern();
 
-  std::vector<std::uint32_t> place_;    ///< per vertex, in the order of elimination
-  std::vector<std::uint32_t> vertex_;   ///< the other way round
-  std::vector<std::uint32_t> offsets_;  ///< per column, of its entries above the diagonal
+  std::vector<std::uint32_t> place_;    ///< place of each vertex in the order of elimination
+  std::vector<std::uint32_t> vertex_;   ///< the inverse of place_
+  std::vector<std::uint32_t> offsets_;  ///< per column: start of its entries above the diagonal
   std::vector<UpperEntry> upper_;
-  std::vector<std::uint32_t> parent_;          ///< in the elimination tree, or no_index
+  std::vector<std::uint32_t> parent_;          ///< parent in the elimination tree, or no_index
   std::vector<std::uint32_t> factor_offsets_;  ///< per column of the factor
   std::vector<std::uint32_t> factor_rows_;
   std::vector<Block> factor_;

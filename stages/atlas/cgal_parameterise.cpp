@@ -51,7 +51,7 @@ std::vector<Eigen::Vector2d> cgal_parameterise(const Surface& surface, const Cha
         break;
     }
   } catch (const std::exception&) {
-    return {};  // a failed precondition inside CGAL: some other way must do
+    return {};  // a failed precondition inside CGAL: another way must do
   }
   if (status != smp::OK) return {};
   std::vector<Eigen::Vector2d> uvs;

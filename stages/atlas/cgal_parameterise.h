@@ -7,8 +7,7 @@
 
 namespace kiln {
 
-/// CGAL's parameterisation of a chart, in units of its own; empty where CGAL reports an error. No promise that it is
-/// valid.
+/// Flattens a chart by CGAL, in CGAL's own units; empty where CGAL reports an error. The result may be invalid.
 std::vector<Eigen::Vector2d> cgal_parameterise(const Surface& surface, const Chart& chart, Parameteriser parameteriser);
 
 }  // namespace kiln

@@ -13,7 +13,7 @@ bool within_box(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen:
          p.y() <= std::max(a.y(), b.y());
 }
 
-/// Whether two segments with no common end meet, a touch included.
+/// Tells whether two segments with no common end meet; touching counts.
 bool segments_meet(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
                    const Eigen::Vector2d& d) {
   const double abc = cross(a, b, c), abd = cross(a, b, d), cda = cross(c, d, a), cdb = cross(c, d, b);
@@ -56,7 +56,7 @@ bool has_simple_border(const Chart& chart) {
   const std::vector<BorderEdge> border = border_edges(chart);
   if (border.empty()) return false;
 
-  // A grid of cells about as large as a border segment; only segments that share a cell are compared.
+  // Sort segments into a grid of cells about as large as a border segment; compare only those that share a cell.
   Eigen::Vector2d lowest = chart.uvs[border[0].from], highest = lowest;
   double length = 0;
   for (const BorderEdge& s : border) {
@@ -94,7 +94,7 @@ bool keeps_clear(const Surface& surface, const Chart& chart, double distance) {
   const std::vector<BorderEdge> border = border_edges(chart);
   double perimeter = 0;
   for (const auto& [from, to] : border) perimeter += (chart.uvs[to] - chart.uvs[from]).norm();
-  constexpr double most_samples = 20'000;  // apart from one an edge
+  constexpr double most_samples = 20'000;  // besides one per edge
   distance = std::max(distance, 2 * perimeter / most_samples);
   struct Sample {
     Eigen::Vector2d uv;

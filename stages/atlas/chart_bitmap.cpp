@@ -7,7 +7,7 @@ namespace kiln {
 
 namespace {
 
-/// A plain bit image, rows of 64-bit words.
+/// Bit image, rows of 64-bit words.
 class Bits {
  public:
   Bits(int width, int height)
@@ -28,7 +28,7 @@ class Bits {
   int words_per_row() const { return words_per_row_; }
   int height() const { return height_; }
 
-  /// Bits of a word of this image and its eight neighbours' positions, or-ed: the image grown by one texel.
+  /// Returns a word of this image or-ed with its eight shifted neighbours: the image grown by one texel.
   std::uint64_t grown(int row, int word) const {
     std::uint64_t result = 0;
     for (int r = std::max(0, row - 1); r <= std::min(height_ - 1, row + 1); ++r) {
@@ -45,7 +45,7 @@ class Bits {
   std::vector<std::uint64_t> words_;
 };
 
-/// Sets, row by row, the texels whose centre lies within `across` (in the maximum norm; 1/2 is a texel's extent) of the
+/// Sets, row by row, the texels whose centre lies within `across` (in the maximum norm; 1/2 is a texel's extent) of a
 /// segment drawn `margin` wide to all sides, with square ends.
 void fill_segment(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double margin, double across, Bits& bits,
                   int width) {
@@ -53,7 +53,8 @@ void fill_segment(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double mar
   const double length = difference.norm();
   const Eigen::Vector2d along = length > 0 ? Eigen::Vector2d(difference / length) : Eigen::Vector2d(1, 0);
   const Eigen::Vector2d middle = 0.5 * (a + b);
-  // |along . (c - middle)| <= half_length and |normal . (c - middle)| <= half_width, the box of a texel added to each.
+  // Solve |along . (c - middle)| <= half_length and |normal . (c - middle)| <= half_width, each enlarged by the texel's
+  // box.
   const double spread = across * (std::abs(along.x()) + std::abs(along.y()));
   const double half_length = 0.5 * length + margin + spread, half_width = margin + spread;
   const Eigen::Vector2d reach(
@@ -85,7 +86,8 @@ void fill_segment(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double mar
   }
 }
 
-/// Sets the texels whose centre is inside: where a row crosses the outline an odd number of times to the left.
+/// Sets the texels whose centre is inside: those with an odd number of the outline's crossings to the left in their
+/// row.
 void fill_inside(const ChartOutline& outline, Bits& bits, int width) {
   std::vector<std::vector<double>> crossings(bits.height());
   for (const auto& [a, b] : outline) {
@@ -163,7 +165,7 @@ ChartBitmap rasterise_chart(const ChartOutline& outline, const BitmapSettings& s
   if (settings.every_touched) {
     for (const auto& [a, b] : turned_outline) fill_segment(a, b, settings.margin, 0.5, result, width);
   } else if (settings.slivers) {
-    // What is touched and not needed is touched by the border.
+    // Texels that are touched but not needed are all touched by the border.
     Bits touched(width, height), strays(width, height);
     for (const auto& [a, b] : turned_outline) fill_segment(a, b, settings.margin, 0.5, touched, width);
     for (int row = 0; row < height; ++row)
@@ -175,7 +177,7 @@ ChartBitmap rasterise_chart(const ChartOutline& outline, const BitmapSettings& s
         result.row_words(row)[word] |= strays.row_words(row)[word];
   }
 
-  // Crop the empty rows and columns.
+  // Crop empty rows and columns.
   bitmap.rows.resize(height);
   int left = width, right = -1, bottom = height, top = -1;
   for (int row = 0; row < height; ++row) {

@@ -18,8 +18,8 @@ bool within_bounds(const Surface& surface, const Chart& chart, const ChartSettin
   return stretch.l2 <= settings.largest_l2 && stretch.linf <= settings.largest_linf;
 }
 
-/// Flattens every disk of the list; those that cannot be within the bounds are taken apart and grown again to flatter
-/// ones. Returns how many that were.
+/// Flattens every disk of the list; disks that cannot be flattened within the bounds are taken apart and grown again to
+/// flatter ones. Returns the number of those.
 int flatten_or_split(Disks& disks, std::vector<Chart>& charts, std::vector<std::uint32_t> ids,
                      const ChartSettings& settings, GrowSettings grow_settings) {
   int splits = 0;
@@ -64,7 +64,7 @@ ChartSet cut_into_charts(const Surface& surface, const ChartSettings& settings, 
   merge_charts(disks, charts, settings, [&](double fraction) { progress(0.2 + 0.6 * fraction); });
 
   for (const std::uint32_t id : disks.ids()) result.charts.push_back(std::move(charts[id]));
-  // The last word: each chart by the best of several ways, its merged uvs among them.
+  // Finally flatten each chart by the best of several ways, its merged uvs among them.
   std::vector<std::uint8_t> flat(result.charts.size());
   tbb::parallel_for(std::size_t{0}, flat.size(), [&](std::size_t i) {
     Chart best = result.charts[i];

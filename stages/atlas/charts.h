@@ -8,25 +8,27 @@
 namespace kiln {
 
 struct ChartSettings {
-  double largest_l2 = 1.005;    ///< stretch of one chart (stretch.h)
-  double largest_linf = 2;      ///< of any triangle
-  double crease_degrees = 75;   ///< a border that bends more on average stays a seam
-  double largest_extent = 0.6;  ///< of a merged chart, over the square root of the surface's area: longer ones pack
-                                ///< badly, unless they are compact or rectangles
-  double largest_width = 1e9;   ///< of a merged chart's smallest rectangle, the shorter side, over the same
-  double clearance = 0;         ///< object units; a merged chart's border does not come nearer to itself in the plane,
-                                ///< but where it does so on the surface, too: at corners and along slits
+  double largest_l2 = 1.005;   ///< largest L2 stretch of a chart (stretch.h)
+  double largest_linf = 2;     ///< largest L-infinity stretch of a triangle
+  double crease_degrees = 75;  ///< a border whose mean bend is larger stays a seam
+  /// Largest length of a merged chart, relative to the square root of the surface's area: longer charts pack badly,
+  /// unless they are compact or rectangles.
+  double largest_extent = 0.6;
+  double largest_width = 1e9;  ///< largest width (shorter side of the smallest rectangle) of a merged chart, likewise
+  /// Distance, in object units, that borders of merged charts keep from themselves in the plane, except where they are
+  /// as near on the surface: at corners and along slits.
+  double clearance = 0;
 };
 
 struct ChartSet {
   std::vector<Chart> charts;
-  int split_charts = 0;  ///< had to be taken apart since no way of flattening them was valid and within the bounds
+  int split_charts = 0;  ///< charts taken apart because no way of flattening them was valid and within the bounds
 };
 
-/// Cuts a surface into charts, each a topological disk with a valid map to the plane (parameterise.h): every face that
-/// is not degenerate lies in just one. Nearly flat disks are grown first (grow.h), then neighbours are merged as long
-/// as the result flattens within the bounds, those first that share most of their border. A single triangle always
-/// flattens, so this always ends. Independent of the number of threads.
+/// Cuts a surface into charts, each a topological disk with a valid map to the plane (parameterise.h); every face that
+/// is not degenerate lies in exactly one. Nearly flat disks are grown first (grow.h); then neighbours are merged while
+/// the result flattens within the bounds, those first that share most of their border. It always ends, because a single
+/// triangle always flattens. Independent of the number of threads.
 ChartSet cut_into_charts(const Surface& surface, const ChartSettings& settings,
                          const ProgressFunction& progress = no_progress);
 

@@ -8,7 +8,7 @@ namespace kiln {
 ChartSet choose_charts(const Surface& surface, const ChartSettings& charts, const PackSettings& pack,
                        const ProgressFunction& progress) {
   constexpr std::array extents{0.6, 0.45, 0.7, 0.52, 0.9};
-  constexpr std::uint32_t most_faces_for_all = 100'000;  // beyond, cutting takes minutes
+  constexpr std::uint32_t most_faces_for_all = 100'000;  // with more, cutting takes minutes
   const std::size_t ways = surface.face_count() > most_faces_for_all ? 2 : extents.size();
   PackSettings quick = pack;
   quick.thorough = false;

@@ -5,9 +5,8 @@
 
 namespace kiln {
 
-/// Cuts a surface in several ways, which differ in how long charts may become, and returns the charts that pack best
-/// with the given settings, in a quick attempt each: into the atlas at the largest scale or, where the scale is given,
-/// into the fewest texels.
+/// Cuts a surface in several ways, which differ in how long charts may become, and returns the charts that pack best in
+/// a quick attempt with the given settings: at the largest scale or, where the scale is given, into the fewest texels.
 ChartSet choose_charts(const Surface& surface, const ChartSettings& charts, const PackSettings& pack,
                        const ProgressFunction& progress = no_progress);
 

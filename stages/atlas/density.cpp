@@ -14,7 +14,7 @@ namespace kiln {
 
 namespace {
 
-/// The samples of one chart: a grid over its uvs.
+/// Samples of one chart: a grid over its uvs.
 struct ChartGrid {
   int width = 0;
   int height = 0;
@@ -30,9 +30,9 @@ struct Samples {
   std::vector<ChartGrid> grids;  ///< per chart
 };
 
-/// Points of the surface at the crossings of a grid of that spacing, chart after chart.
+/// Places samples at the crossings of a grid of that spacing, chart after chart.
 Samples sample_charts(const Surface& surface, const std::vector<Chart>& charts, double spacing) {
-  constexpr int widest = 4096;  // a chart of an extreme shape gets a coarser grid
+  constexpr int widest = 4096;  // texels a side; charts of an extreme shape get a coarser grid
   Samples samples;
   for (const Chart& chart : charts) {
     Eigen::Vector2d lowest = chart.uvs[0], highest = lowest;
@@ -44,7 +44,7 @@ Samples sample_charts(const Surface& surface, const std::vector<Chart>& charts, 
     ChartGrid grid;
     grid.width = static_cast<int>((highest.x() - lowest.x()) / step) + 1;
     grid.height = static_cast<int>((highest.y() - lowest.y()) / step) + 1;
-    TriangleMesh flat;  // of the chart, the grid's cells being texels
+    TriangleMesh flat;  // the chart, with the grid's cells as texels
     flat.triangles = chart.triangles;
     const Eigen::Vector2d extent(grid.width * step, grid.height * step);
     for (std::size_t v = 0; v < chart.vertices.size(); ++v) {
@@ -88,7 +88,7 @@ struct ErrorSum {
   double count = 0;
 };
 
-/// Of interpolating each sample of a chart from its neighbours `reach` to either side.
+/// Sums the error of interpolating each sample of a chart from its neighbours `reach` to either side.
 ErrorSum interpolation_error(const ChartGrid& grid, const std::vector<float>& by_sample, int coefficients, int reach) {
   ErrorSum sum;
   for (int j = 0; j < grid.height; ++j)
@@ -112,7 +112,7 @@ ErrorSum interpolation_error(const ChartGrid& grid, const std::vector<float>& by
   return sum;
 }
 
-/// Brings scales between the bounds and the sum of area times scale squared to that of the areas.
+/// Clamps scales to the bounds, and scales all so that the sum of area times squared scale equals the sum of areas.
 void normalise(std::vector<double>& scales, const std::vector<double>& areas, const DensitySettings& settings) {
   const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
   for (int round = 0; round < 20; ++round) {
@@ -128,7 +128,7 @@ void normalise(std::vector<double>& scales, const std::vector<double>& areas, co
 
 ChartDensities densities_by_transfer(const Surface& surface, const std::vector<Chart>& charts, const TriangleMesh* high,
                                      const DensitySettings& settings) {
-  // Step 1: transfer over a grid on each chart.
+  // Step 1: compute transfer over a grid on each chart.
   const double grid_spacing = std::sqrt(surface.area / settings.samples);
   Samples samples = sample_charts(surface, charts, grid_spacing);
   if (high != nullptr) move_to(*high, samples);
@@ -140,7 +140,7 @@ ChartDensities densities_by_transfer(const Surface& surface, const std::vector<C
     for (std::size_t r = 0; r < transfer.receivers; ++r)
       by_sample[r * transfer.coefficients + k] = transfer.plane(k)[r];
 
-  // Step 2: the error of interpolation, and how it grows with the spacing.
+  // Step 2: measure the error of interpolation, and how it grows with the spacing.
   ChartDensities result;
   result.spacing = 2 * grid_spacing;
   std::vector<double> areas(charts.size());
@@ -155,11 +155,12 @@ ChartDensities densities_by_transfer(const Surface& surface, const std::vector<C
   }
   result.scales.assign(charts.size(), 1);
   result.errors.assign(charts.size(), 0);
-  if (!(total.squares > 0) || !(total_wide.squares > 0)) return result;  // nothing varies, or nothing was told
+  if (!(total.squares > 0) || !(total_wide.squares > 0))
+    return result;  // transfer does not vary, or there were no samples to compare
   const double mean = total.squares / total.count;
   result.order = std::clamp(std::log2(total_wide.squares / total_wide.count / mean), 1.0, 4.0);
 
-  // Step 3: scales. Charts with few samples lean towards the mean.
+  // Step 3: compute scales. Those of charts with few samples lean towards the mean.
   constexpr double lean = 8;
   for (std::size_t c = 0; c < charts.size(); ++c) {
     result.errors[c] = (sums[c].squares + lean * mean) / (sums[c].count + lean);

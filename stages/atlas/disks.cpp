@@ -38,7 +38,8 @@ Disks::Run Disks::run_through(std::uint32_t h) const {
   if (!on_border(h) || twins[h] == no_index) return {};
   const bool same_disk = disk_of(h) == disk_of(twins[h]);
 
-  // Grow both ways while both borders walk along the same edges; stop at a slit's end, where they would turn back.
+  // Extend the run both ways while both borders follow the same edges; stop at a slit's end, where they would turn
+  // back.
   std::uint32_t first = h, last = h;
   bool whole_loop = false;
   while (next_[last] != twins[last]) {
@@ -62,9 +63,9 @@ Disks::Run Disks::run_through(std::uint32_t h) const {
 
   if (same_disk) {
     const bool ends_forwards = next_[last] == twins[last], ends_backwards = next_[twins[first]] == first;
-    if (ends_forwards == ends_backwards) return {};  // no slit's end, or the whole border: a closed surface
+    if (ends_forwards == ends_backwards) return {};  // no end of a slit, or the whole border of a closed surface
   } else if (whole_loop && next_[twins[first]] == twins[last]) {
-    // Both disks are bounded by this very run: leave one edge open, or nothing would be left of the border.
+    // Both disks are bounded by this very run: leave one edge open, else no border would remain.
     if (first == last) return {};
     last = previous_[last];
   }
@@ -100,9 +101,9 @@ std::uint32_t Disks::glue(const Run& run) {
     else
       link(twin_before, after);
   } else if (before == run.last) {
-    link(twin_before, twin_after);  // the run is all of this disk's border
+    link(twin_before, twin_after);  // the run is the whole border of this disk
   } else if (twin_before == first_twin) {
-    link(before, after);  // or all of the other's
+    link(before, after);  // or of the other one
   } else {
     link(before, twin_after);
     link(twin_before, after);

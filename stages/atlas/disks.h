@@ -8,21 +8,20 @@
 
 namespace kiln {
 
-/// A partition of a surface's faces into topological disks, made by gluing: every face starts alone, and two disks are
-/// glued along one run of consecutive border edges, after which they are again a disk, whatever the surface's genus.
-/// Where two disks share several runs the others stay open: a chart may have a slit, along which it is its own
-/// neighbour.
+/// Partition of a surface's faces into topological disks, made by gluing: every face starts alone, and two disks are
+/// glued along one run of consecutive border edges, which gives a disk again, whatever the surface's genus. Where two
+/// disks share several runs, the others stay open: the chart has a slit, along which it borders on itself.
 class Disks {
  public:
   explicit Disks(const Surface& surface);
 
-  /// Consecutive border half-edges of one disk, the twins of which are consecutive, the other way, in another disk's
-  /// border, or next to them in the same one's (a slit's end, that can be zipped). As long as possible.
+  /// Run: as many consecutive border half-edges of one disk as possible whose twins are consecutive, in reverse, in
+  /// another disk's border, or next to them in the same disk's border (the end of a slit, which can be zipped).
   struct Run {
     std::uint32_t first = no_index;
     std::uint32_t last = no_index;
     double length = 0;
-    double cost = 0;  ///< of leaving it a seam: Surface::seam_costs
+    double cost = 0;  ///< cost of leaving it a seam: sum of Surface::seam_costs
     double bend = 0;  ///< mean angle between the faces' normals, weighted by length, radians
     bool possible() const { return first != no_index; }
   };
@@ -32,8 +31,8 @@ class Disks {
     double area = 0;
     double perimeter = 0;
     Eigen::Vector3d area_normal = Eigen::Vector3d::Zero();  ///< sum of area times normal
-    std::uint32_t version = 0;                              ///< grows with every change
-    /// 0 for a flat disk, towards 1 for one that looks everywhere.
+    std::uint32_t version = 0;                              ///< increases with every change
+    /// Returns 0 for a flat disk, towards 1 for one whose normals point everywhere.
     double spread() const { return area > 0 ? 1 - area_normal.norm() / area : 0; }
   };
 
@@ -43,14 +42,14 @@ class Disks {
   const Disk& disk(std::uint32_t id) const { return disks_[id]; }
   bool exists(std::uint32_t id) const { return !disks_[id].faces.empty(); }
   std::uint32_t id_count() const { return static_cast<std::uint32_t>(disks_.size()); }
-  /// Ids of the disks there are, ascending.
+  /// Returns the ids of the disks, ascending.
   std::vector<std::uint32_t> ids() const;
 
   bool on_border(std::uint32_t h) const { return next_[h] != no_index; }
   std::uint32_t next(std::uint32_t h) const { return next_[h]; }
   std::uint32_t previous(std::uint32_t h) const { return previous_[h]; }
 
-  /// The run that a border half-edge lies in; not possible() where gluing there would not leave a disk.
+  /// Returns the run that a border half-edge lies in; not possible() where gluing along it would not give a disk.
   Run run_through(std::uint32_t h) const;
 
   /// Glues along a run and returns the id of the result, one of the two.

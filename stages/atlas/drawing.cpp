@@ -14,7 +14,8 @@ namespace {
 
 using Colour = std::array<double, 3>;
 
-/// Hues a golden section apart, so that charts of neighbouring numbers differ most; two brightnesses.
+/// Returns a chart's colour. Hues are a golden section apart, so that neighbouring numbers differ most; two
+/// brightnesses.
 Colour chart_colour(std::uint32_t chart) {
   const double hue = std::fmod(0.618033988749895 * chart, 1.0) * 6;
   const double value = chart % 2 == 0 ? 235 : 185;
@@ -26,7 +27,7 @@ Colour chart_colour(std::uint32_t chart) {
   return colour;
 }
 
-/// Distance in pixels from a point of a triangle to its nearest side.
+/// Returns the distance in pixels from a point of a triangle to its nearest side.
 double side_distance(const TriangleMesh& atlas, const TexelSource& source, const Eigen::Vector2d& pixels) {
   const Triangle& t = atlas.triangles[source.triangle];
   const double weights[3] = {1.0 - source.u - source.v, source.u, source.v};
@@ -40,7 +41,7 @@ double side_distance(const TriangleMesh& atlas, const TexelSource& source, const
   return least;
 }
 
-/// Whether something is covered within `reach` pixels, per pixel: a square window, first along rows, then columns.
+/// Tells per pixel whether one within `reach` pixels is covered: a square window, first along rows, then columns.
 std::vector<std::uint8_t> near_covered(const UvRaster& raster, int reach) {
   std::vector<std::uint8_t> along(raster.texels.size()), result(raster.texels.size());
   for (const bool columns : {false, true}) {
@@ -52,7 +53,7 @@ std::vector<std::uint8_t> near_covered(const UvRaster& raster, int reach) {
       const auto on = [&](int i) { return columns ? along[index(i)] != 0 : raster.texels[index(i)].covered(); };
       for (int i = 0; i < size + reach; ++i) {
         if (i < size && on(i)) last = i;
-        const int centre = i - reach;  // its window ends at i
+        const int centre = i - reach;  // centre of the window that ends at i
         if (centre >= 0) (columns ? result : along)[index(centre)] = last >= centre - reach;
       }
     }
@@ -77,7 +78,7 @@ Image<std::uint8_t> draw_atlas(const TriangleMesh& atlas, const Extent& size, in
       Colour colour{30, 30, 34};
       if (source.covered()) {
         colour = chart_colour(chart_of[source.triangle]);
-        // An edge is a line one pixel wide on each side.
+        // Edges are lines one pixel wide on each side.
         const double edge =
             std::clamp(1.5 - side_distance(atlas, source, Eigen::Vector2d(pixels.width, pixels.height)), 0.0, 1.0);
         for (double& channel : colour) channel *= 1 - 0.6 * edge;

@@ -5,10 +5,10 @@
 namespace kiln {
 
 FreeRuns::FreeRuns(int width, int height, int longest) : width_(width), grid_words_((width + 63) / 64) {
-  constexpr int wide = 4096;  // where memory is more than a step or two
+  constexpr int wide = 4096;  // where memory costs more than a step or two
   const int doublings = width <= wide ? 1 : 2;
   for (int length = 1; length <= std::clamp(longest, 1, width); length <<= doublings) lengths_.push_back(length);
-  // A span may begin at the last word, and one more is read for its last bits.
+  // A span may begin at the last word, and its last bits are in one word more.
   row_words_ = static_cast<std::size_t>(grid_words_ + FreeRuns::span_words);
   words_.assign(row_words_ * lengths_.size() * static_cast<std::size_t>(height), 0);
 }
@@ -42,7 +42,8 @@ std::int64_t FreeRuns::update(const TexelGrid& grid, int first_row, int last_row
   return word_steps;
 }
 
-/// Twice as long a run is free where two are, one behind the other; past the grid nothing is.
+/// Computes the longer lengths: a run of twice the length is free where two runs, one behind the other, are. Nothing
+/// past the grid is free.
 void FreeRuns::find_levels(std::uint64_t* words) const {
   for (std::size_t level = 1; level < lengths_.size(); ++level, words += row_words_) {
     std::uint64_t* next = words + row_words_;

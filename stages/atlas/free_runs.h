@@ -9,32 +9,33 @@
 
 namespace kiln {
 
-/// Where in the rows of a grid a run of texels is free: for some lengths, a bit per texel that says whether so many
-/// from it on are free. Any run is covered by a few of such a length, so that one step tells it for 256 places at once.
+/// Index of free runs of texels in the rows of a grid. For some lengths it keeps one bit per texel: whether that many
+/// texels from it on are free. Any run is covered by a few runs of such lengths, so one step decides it for 256 places
+/// at once.
 class FreeRuns {
  public:
-  /// `longest`: the longest run that will be asked for.
+  /// `longest` is the longest run that will be asked for.
   FreeRuns(int width, int height, int longest);
 
-  /// Takes over what a grid of that size has taken in these rows; returns over how many words it went.
+  /// Updates these rows from a grid of that size; returns the number of words it passed over.
   std::int64_t update(const TexelGrid& grid, int first_row, int last_row);
 
   static constexpr int span = 256;
   static constexpr int span_words = span / 64;
-  /// A bit per place, from the lowest on. A vector of the compiler's, for what registers the machine has.
+  /// One bit per place, from the lowest on, in a vector of the compiler's for whatever registers the machine has.
   using Mask __attribute__((vector_size(span / 8))) = std::uint64_t;
 
-  /// A part of a chart's run that is told in one step.
+  /// Part of a chart's run that one step decides.
   struct Probe {
-    std::size_t words = 0;  ///< those of its row and length, where the chart lies at row 0
-    int first = 0;          ///< columns at which such lengths begin
+    std::size_t words = 0;  ///< offset of the words of its row and length, with the chart at row 0
+    int first = 0;          ///< first column of such a length
     int second = 0;
   };
 
-  /// What tells of a run in a row of a chart.
+  /// Appends the probes that decide a run in a row of a chart.
   void append_probes(int row, const TexelRun& run, std::vector<Probe>& probes) const;
 
-  /// Leaves only those places x of the mask, the first being `start`, at which the run is free with its chart moved to
+  /// Clears in `mask`, whose first place is `start`, the places x at which the run is not free with its chart moved to
   /// column x and row y.
   void keep_free(const Probe& probe, int y, int start, Mask& mask) const {
     const std::uint64_t* words =
@@ -56,7 +57,7 @@ class FreeRuns {
 
   int width_, grid_words_;
   std::vector<int> lengths_;  ///< powers of two
-  std::size_t row_words_;     ///< of one length, with zeros behind, for what reaches across
+  std::size_t row_words_;     ///< words per row of one length, with zeros behind for runs that reach across
   std::vector<std::uint64_t> words_;
 };
 

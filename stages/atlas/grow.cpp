@@ -13,12 +13,12 @@ struct Candidate {
   std::uint32_t half_edge;
   std::uint32_t version_here, version_there;
 
-  bool operator<(const Candidate& other) const {  // the queue's top is the largest: the cheapest here
+  bool operator<(const Candidate& other) const {  // the queue's top is the largest: here the cheapest
     return cost != other.cost ? cost > other.cost : half_edge > other.half_edge;
   }
 };
 
-/// Of the normals' deviation: area minus the length of the area-weighted normal.
+/// Returns the deviation of normals: area minus the length of the area-weighted normal.
 double bending(double area, const Eigen::Vector3d& area_normal) { return area - area_normal.norm(); }
 
 class Grower {
@@ -53,7 +53,7 @@ class Grower {
           (!once_per_pair || h < twin)) {
         const Disks::Run run = disks_.run_through(h);
         if (run.possible()) push(run);
-        // The rest of the run has nothing to add, as far as it goes before the start is met again.
+        // The rest of the run has nothing to add: skip it, up to where the walk meets its start again.
         while (run.possible() && h != run.last && disks_.next(h) != start) h = disks_.next(h);
       }
       h = disks_.next(h);
@@ -77,8 +77,7 @@ class Grower {
     if (together > settings_.largest_spread * area) return;
     const double perimeter = a.perimeter + b.perimeter - 2 * run.length;
     const double roundness = perimeter * perimeter / (4 * std::numbers::pi * area);
-    if (roundness > 4 && 0.5 * perimeter > std::sqrt(disks_.surface().area))
-      return;  // a ribbon too long to be packed well
+    if (roundness > 4 && 0.5 * perimeter > std::sqrt(disks_.surface().area)) return;  // too long a ribbon to pack well
     const double added = together - bending(a.area, a.area_normal) - bending(b.area, b.area_normal);
     // Between flat disks roundness alone decides, small ones first.
     const double visibility = run.length > 0 ? run.cost / run.length : 1;

@@ -9,9 +9,9 @@
 
 namespace kiln {
 
-/// Loads the mesh that is to get an atlas, with normals, one vertex for each normal at a place, so that hard edges
-/// become seams: a Draco file as it stands, others by import_mesh; with `settings.keep_uv` by load_uv_mesh. Adds to
-/// `warnings` what the file has and is not used. Throws BadInput.
+/// Loads the mesh that is to get an atlas, with normals, and with vertices split so that hard edges become seams. A
+/// Draco file is taken as it is, others are read by import_mesh; with `settings.keep_uv` by load_uv_mesh. Adds to
+/// `warnings` what the file has and Kiln does not use. Throws BadInput.
 TriangleMesh load_low_mesh(const std::filesystem::path& file, const AtlasSettings& settings,
                            std::vector<std::string>& warnings);
 

@@ -17,7 +17,7 @@ double uv_area(const TriangleMesh& atlas, const Triangle& t) {
   return 0.5 * cross(atlas.uvs[t[0]].cast<double>(), atlas.uvs[t[1]].cast<double>(), atlas.uvs[t[2]].cast<double>());
 }
 
-/// For each vertex, the first one with the very same key.
+/// Returns, for each vertex, the first one with the very same key.
 template <class Key>
 std::vector<std::uint32_t> first_of_equals(std::size_t count, const Key& key) {
   std::vector<std::uint32_t> order(count), result(count);
@@ -41,17 +41,17 @@ std::vector<std::uint32_t> welded_by_place_and_uv(const TriangleMesh& atlas) {
   });
 }
 
-/// An edge of the surface that is none of the atlas.
+/// Edge of the surface across which the atlas is cut.
 struct SeamEdge {
-  std::uint32_t from, to;  ///< vertices of the atlas, on one side of it
+  std::uint32_t from, to;  ///< vertices of the atlas on one side of it
   double length = 0;
 };
 
 std::vector<SeamEdge> seam_edges(const TriangleMesh& atlas) {
   const std::vector<std::uint32_t> place = welded_by_place(atlas), vertex = welded_by_place_and_uv(atlas);
   struct Edge {
-    std::uint32_t low, high;                // places
-    std::uint32_t low_vertex, high_vertex;  // of the atlas
+    std::uint32_t low, high;                // places of its ends
+    std::uint32_t low_vertex, high_vertex;  // vertices of the atlas
   };
   std::vector<Edge> edges;
   for (const Triangle& t : atlas.triangles) {
@@ -74,7 +74,7 @@ std::vector<SeamEdge> seam_edges(const TriangleMesh& atlas) {
   return seams;
 }
 
-/// Seams weighted by how much of the sky their ends see.
+/// Sums the seams' lengths, weighted by how much of the sky their ends see.
 double visible_length(const TriangleMesh& atlas, const std::vector<SeamEdge>& seams) {
   std::vector<std::uint32_t> index(atlas.positions.size(), no_index);
   std::vector<Eigen::Vector3f> positions, normals;
@@ -94,7 +94,7 @@ double visible_length(const TriangleMesh& atlas, const std::vector<SeamEdge>& se
   return length;
 }
 
-/// Sums of each chart, and what they say of the whole.
+/// Sums each chart's areas and texels, and derives the whole atlas's measures.
 void measure_scales(const TriangleMesh& atlas, const std::vector<std::uint32_t>& chart_of, int width, int height,
                     AtlasMeasures& measures) {
   const Eigen::Vector2d size(width, height);
@@ -136,7 +136,7 @@ void measure_scales(const TriangleMesh& atlas, const std::vector<std::uint32_t>&
   measures.visible_seam_length_relative = visible_length(atlas, seams) / std::sqrt(area);
 }
 
-/// Which triangles and charts have no texel.
+/// Finds triangles and charts without a texel.
 void measure_coverage(const TriangleMesh& atlas, const std::vector<std::uint32_t>& chart_of, const UvRaster& raster,
                       AtlasMeasures& measures) {
   constexpr std::size_t most_listed = 100;
@@ -192,7 +192,7 @@ int smallest_gap(const UvRaster& raster, const std::vector<std::uint32_t>& chart
     for (int i = 0; i < width; ++i)
       if (raster.at(i, j).covered()) gap = std::min({gap, i, j, width - 1 - i, height - 1 - j});
 
-  // Look around every texel on a chart's outline, in growing windows, until something is met.
+  // Search around every texel on a chart's outline, in growing windows, until another chart is met.
   for (int reach = 8;; reach *= 2) {
     const int window = std::min(reach, gap);  // a chart at Chebyshev distance d leaves a gap of d - 1
     int least = gap;

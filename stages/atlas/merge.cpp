@@ -19,7 +19,7 @@ namespace kiln {
 
 namespace {
 
-/// Place of a face in a chart, whose faces ascend.
+/// Returns the place of a face in a chart, whose faces ascend.
 std::uint32_t slot_of(const Chart& chart, std::uint32_t face) {
   return static_cast<std::uint32_t>(std::lower_bound(chart.faces.begin(), chart.faces.end(), face) -
                                     chart.faces.begin());
@@ -32,7 +32,7 @@ std::uint32_t local_target(const Chart& chart, std::uint32_t h) {
   return chart.triangles[slot_of(chart, h / 3)][(h % 3 + 1) % 3];
 }
 
-/// A vertex of one chart and the vertex of the other (or the same) that it is glued to.
+/// Pairs of a vertex of one chart and the vertex of the other (or the same) that it is glued to.
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 Pairs vertex_pairs(const Disks& disks, const Disks::Run& run, const Chart& here, const Chart& there) {
@@ -45,7 +45,7 @@ Pairs vertex_pairs(const Disks& disks, const Disks::Run& run, const Chart& here,
   }
 }
 
-/// Turns and moves the uvs of `there` so that paired vertices come together as well as they can.
+/// Turns and moves the uvs of `there` so that paired vertices come together as closely as possible.
 std::vector<Eigen::Vector2d> aligned_uvs(const Chart& here, const Chart& there, const Pairs& pairs) {
   Eigen::Vector2d mean_here = Eigen::Vector2d::Zero(), mean_there = Eigen::Vector2d::Zero();
   for (const auto& [a, b] : pairs) {
@@ -65,14 +65,14 @@ std::vector<Eigen::Vector2d> aligned_uvs(const Chart& here, const Chart& there, 
   return result;
 }
 
-/// Keeps one vertex of each class, with the mean of their uvs, and sorts the faces. The vertices `tracked` are told
+/// Keeps one vertex of each class, with the mean of their uvs, and sorts the faces. Replaces the vertices `tracked` by
 /// their new numbers.
 Chart compact(Chart chart, DisjointSets& classes, std::vector<std::uint32_t>* tracked = nullptr) {
   std::vector<std::uint32_t> new_index(chart.vertices.size(), no_index);
   Chart result;
   std::vector<double> members;
   for (std::uint32_t v = 0; v < chart.vertices.size(); ++v) {
-    std::uint32_t& index = new_index[classes.root(v)];  // the least of its class, so met first
+    std::uint32_t& index = new_index[classes.root(v)];  // the root is the least of its class, so it is met first
     if (index == no_index) {
       index = static_cast<std::uint32_t>(result.vertices.size());
       result.vertices.push_back(chart.vertices[v]);
@@ -99,13 +99,13 @@ Chart compact(Chart chart, DisjointSets& classes, std::vector<std::uint32_t>* tr
   return result;
 }
 
-/// A chart and those of its vertices that lie on what was its parts' common border.
+/// Chart, and those of its vertices that lie on the former common border of its parts.
 struct GluedChart {
   Chart chart;
   std::vector<std::uint32_t> seam;
 };
 
-/// The chart that gluing along a run gives, started from the uvs of its parts.
+/// Returns the chart that results from gluing along a run, started from the uvs of its parts.
 GluedChart glued_chart(const Disks& disks, const Disks::Run& run, const Chart& here, const Chart& there) {
   const Pairs pairs = vertex_pairs(disks, run, here, there);
   Chart both = here;
@@ -139,14 +139,14 @@ double chart_area(const Surface& surface, const Chart& chart) {
   return area;
 }
 
-/// How far a chart reaches.
+/// Extents of a chart.
 struct Extents {
-  double largest = 0;         ///< in any direction
-  double rectangle_area = 0;  ///< of the smallest rectangle around it
-  double rectangle_side = 0;  ///< the longer one
+  double largest = 0;         ///< largest extent in any direction
+  double rectangle_area = 0;  ///< area of the smallest rectangle around it
+  double rectangle_side = 0;  ///< longer side of that rectangle
 };
 
-/// From 32 directions in a half-circle; between two of them an extent changes by less than 1 %.
+/// Measures extents along 32 directions in a half-circle; between two of them an extent changes by less than 1 %.
 Extents measure_extents(const Chart& chart) {
   constexpr int directions = 32;
   std::array<double, directions> along;
@@ -172,13 +172,13 @@ Extents measure_extents(const Chart& chart) {
   return extents;
 }
 
-/// Whether a merged chart packs well enough: small, compact, or about a rectangle that is not too long.
+/// Tells whether a merged chart packs well enough: small, compact, or about a rectangle that is not too long.
 bool packs_well(const Surface& surface, const Chart& chart, const ChartSettings& settings) {
   const Extents extents = measure_extents(chart);
   const double area = chart_area(surface, chart), side = std::sqrt(surface.area);
   if (extents.rectangle_area > settings.largest_width * side * extents.rectangle_side) return false;
   const bool small = extents.largest <= settings.largest_extent * side;
-  const bool compact_shape = extents.largest < 1.5 * std::sqrt(area);  // a square's diagonal is 1.41
+  const bool compact_shape = extents.largest < 1.5 * std::sqrt(area);  // 1.41 is a square's diagonal
   const bool rectangle = area > 0.85 * extents.rectangle_area && extents.rectangle_side < 1.1 * side;
   return small || compact_shape || rectangle;
 }
@@ -189,16 +189,17 @@ bool within_bounds(const Surface& surface, const Chart& chart, const ChartSettin
          stretch.linf - 1 <= excess * (settings.largest_linf - 1);
 }
 
-/// Whether relaxing may still bring a chart within the bounds, as far as its energy tells.
+/// Predicts whether relaxing may still bring a chart within the bounds, as far as its energy tells.
 class Prospect {
  public:
-  /// Excess of the energy: of singular values 1 + e it is 4 e^2 to second order, summed over both, and that of the L2
-  /// stretch of a chart of equal area an eighth to a quarter of it (Sander et al. 2001, section 3, expanded).
+  /// Sets the largest excess of energy. For singular values 1 + e the excess is 4 e^2 to second order, summed over
+  /// both; the excess of the L2 stretch of a chart of equal area is an eighth to a quarter of that ([Sander 2001],
+  /// section 3, expanded).
   explicit Prospect(const ChartSettings& settings) : most_(8 * (settings.largest_l2 - 1)) {}
 
   bool stepped() const { return steps_ > 0; }
 
-  /// Told the energy before the first step and after each.
+  /// Takes the energy before the first step and after each; false where going on is hopeless.
   bool hopeful(double energy) {
     constexpr int most_steps = 8;
     constexpr double isometry = 4;
@@ -206,7 +207,7 @@ class Prospect {
     last_excess_ = excess;
     if (steps_++ == 0) return true;
     if (steps_ > most_steps) return false;
-    // Steps fall by ever less: the first one by most of what there is, later ones by half of the one before or less.
+    // Steps gain ever less: the first one most of what there is, later ones half of the one before or less.
     return steps_ == 2 ? excess < 5 * most_ : fall > 1e-2 * excess && excess - 2 * fall < most_;
   }
 
@@ -215,7 +216,7 @@ class Prospect {
   int steps_ = 0;
 };
 
-/// The relaxed chart, if it is valid and within the bounds.
+/// Returns the relaxed chart, if it is valid and within the bounds.
 std::optional<Chart> flattened(const Surface& surface, GluedChart glued, const ChartSettings& settings) {
   constexpr std::size_t largest_relaxed_whole = 4000;  // faces
   Chart& chart = glued.chart;
@@ -230,7 +231,7 @@ std::optional<Chart> flattened(const Surface& surface, GluedChart glued, const C
     };
     if (!relax_until(surface, chart, goes_on) || !within) return {};
   } else {
-    // Only the surroundings of the seam have something to gain, at first.
+    // At first, only the surroundings of the seam have something to gain.
     const std::size_t most_faces = std::max(largest_relaxed_whole, 16 * glued.seam.size());
     if (!relax_around(surface, chart, glued.seam, most_faces, {8, 1e-2})) return {};
     equalise_area(surface, chart);
@@ -274,8 +275,8 @@ class Merger {
   }
 
  private:
-  /// Takes the best candidates that have no chart in common, tries them side by side and glues those that work. The
-  /// size of the batch does not depend on the number of threads, so neither does the result.
+  /// Takes the best candidates that share no chart, tries them in parallel and glues those that succeed. The size of
+  /// the batch does not depend on the number of threads, so neither does the result.
   void try_batch() {
     constexpr std::size_t batch_size = 8;
     struct Trial {
@@ -316,7 +317,7 @@ class Merger {
     }
   }
 
-  /// The best run to each neighbour, and every slit's end.
+  /// Queues the best run to each neighbour, and every slit's end.
   void push_runs(std::uint32_t id, bool to_all) {
     std::uint32_t start = no_index;
     for (const std::uint32_t face : disks_.disk(id).faces) {
@@ -324,7 +325,7 @@ class Merger {
         if (disks_.on_border(3 * face + k)) start = 3 * face + k;
       if (start != no_index) break;
     }
-    // From a run's first edge on, run by run.
+    // Walk run by run, from a run's first edge on.
     if (disks_.run_through(start).possible()) start = disks_.run_through(start).first;
     std::vector<std::pair<std::uint32_t, Candidate>> best;
     std::uint32_t h = start;
@@ -347,7 +348,7 @@ class Merger {
                 std::vector<std::pair<std::uint32_t, Candidate>>& best) const {
     if (run.bend > settings_.crease_degrees * std::numbers::pi / 180) return;
     const Disks::Disk &a = disks_.disk(here), &b = disks_.disk(there);
-    // The share of a chart's border that would no longer be a seam, weighed by how visible it is.
+    // Score: the share of a chart's border that would no longer be a seam, weighted by its visibility.
     const double share = run.length / std::min(a.perimeter, b.perimeter);
     if (share < 0.1 && here != there) return;
     const double score = run.cost / std::min(a.perimeter, b.perimeter);
@@ -372,7 +373,7 @@ Chart chart_of_disk(const Disks& disks, std::uint32_t id) {
   Chart chart;
   chart.faces = disks.disk(id).faces;
   std::sort(chart.faces.begin(), chart.faces.end());
-  // Every corner is a vertex of its own until glued edges make some of them one.
+  // Every corner starts as a vertex of its own, until glued edges join some of them.
   for (std::uint32_t i = 0; i < chart.faces.size(); ++i) {
     const Triangle& t = surface.mesh->triangles[chart.faces[i]];
     chart.vertices.insert(chart.vertices.end(), t.begin(), t.end());

@@ -1,6 +1,6 @@
-// The search is one over orders in which charts are put down, bottom left first (Baker, Coffman and Rivest 1980; with
-// turned bitmaps as in Levy et al. 2002, section 4): simulated annealing at a resolution at which a packing takes less
-// than a millisecond; what it finds is then placed at the resolution of the texels.
+// The search runs over orders in which charts are put down, bottom left first ([Baker 1980]; with turned bitmaps as in
+// [Levy 2002], section 4): simulated annealing at a resolution at which one packing takes less than a millisecond. Its
+// best orders are then placed at the resolution of the texels.
 #include "atlas/pack.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace kiln {
 
 namespace {
 
-/// Finds places in an atlas that is not wider than high, or of a given width.
+/// Packs into an atlas that is not wider than high, or of a given width.
 class Packer {
  public:
   Packer(const std::vector<Chart>& charts, const PackSettings& settings)
@@ -31,7 +31,7 @@ class Packer {
     if (settings.width > 0 && settings.height > 0) set_size(settings.width, settings.height);
   }
 
-  /// The largest scale that is found to fit.
+  /// Finds a packing of the largest scale.
   std::optional<Packing> at_largest_scale(const ProgressFunction& progress) {
     if (crowd()) return crowd_at_largest_scale(progress);
     const double full_scale = std::sqrt(static_cast<double>(settings_.width) * settings_.height / area_);
@@ -43,7 +43,7 @@ class Packer {
         [](const Packing& a, const Packing& b) { return a.texels_per_unit > b.texels_per_unit; });
   }
 
-  /// The least height found for the given width and scale.
+  /// Finds a packing of the least height for the given width and scale.
   std::optional<Packing> at_given_scale(const ProgressFunction& progress) {
     set_size(settings_.width, static_cast<int>(1.4 * texel_area() / settings_.width) + 2 * settings_.gutter + 1);
     if (crowd()) return crowd_at_given_scale();
@@ -54,7 +54,7 @@ class Packer {
         [](const Packing& a, const Packing& b) { return a.height < b.height; });
   }
 
-  /// The smallest square found at the given scale.
+  /// Finds the smallest square at the given scale.
   std::optional<Packing> in_smallest_square(const ProgressFunction& progress) {
     const int step = settings_.size_multiple;
     const auto rounded = [&](double size) { return step * static_cast<int>(std::ceil(size / step)); };
@@ -84,31 +84,34 @@ class Packer {
   void set_size(int width, int height) {
     settings_.width = width;
     settings_.height = height;
-    // Rounding of uvs to 16 bits, and of the rasteriser.
+    // Allow for the rounding of uvs to 16 bits, and for that of the rasteriser.
     if (find_slack_) settings_.slack = std::max(width, height) / 65535.0 + 1.0 / 1024;
   }
 
   double texel_area() const { return area_ * settings_.texels_per_unit * settings_.texels_per_unit; }
-  /// Of many small charts, little depends on the order: they are put down once, the largest first.
+  /// Tells whether there are so many charts that little depends on the order: they are put down once, the largest
+  /// first.
   bool crowd() const { return pieces_.size() > 200; }
 
   std::size_t chain_count() const { return pieces_.size() == 1 ? 1 : settings_.thorough ? 16 : 4; }
 
   SearchBounds bounds() const {
     const int count = static_cast<int>(pieces_.size());
-    if (count == 1) return {1'000'000'000, 0};  // there is no order to be found, only a scale
+    if (count == 1) return {1'000'000'000, 0};  // one chart: there is no order to find, only a scale
     const std::int64_t work = std::int64_t{440'000} * std::clamp(settings_.rotations, 2, 64);
     return {settings_.thorough ? 4 * work : work, 30 * count * count};
   }
 
-  /// Of many charts, half of the chains try fewer angles, and more orders instead.
+  /// Returns the number of angles tried; with many charts, half of the chains try fewer angles, and more orders
+  /// instead.
   int search_rotations(std::size_t chain) const {
     const std::size_t count = pieces_.size();
     return std::min(settings_.rotations, count <= 24 || (chain + chain / 2) % 2 == 0 ? settings_.rotations : 8);
   }
 
-  /// The scale at which the charts' rectangles, each half a gutter larger to all sides, would have `share` of the room
-  /// inside the atlas's border, were they as full as their charts. Not positive where gutters alone take more.
+  /// Returns the scale at which the charts' rectangles, each half a gutter larger to all sides, would have `share` of
+  /// the room inside the atlas's border, if they were as full as their charts. Not positive where gutters alone take
+  /// more.
   double scale_that_fills(double share) const {
     double perimeter = 0;
     for (const Piece& piece : pieces_) perimeter += piece.perimeter;
@@ -120,12 +123,12 @@ class Packer {
     return left > 0 ? left / (half + std::sqrt(half * half + area_ * left)) : 0;
   }
 
-  /// What each chain of a search found, the best first.
+  /// Runs the chains of a search; returns what each found, the best first.
   std::vector<std::vector<FoundPlan>> searched(PackSearch::Aim aim, double texels_per_unit,
                                                const ProgressFunction& progress) const {
     const PackGrid grid = grid_of(settings_, coarse_zoom());
     std::vector<std::unique_ptr<PackSearch>> chains(chain_count());
-    constexpr int slices = 20;  // between which progress is told
+    constexpr int slices = 20;  // progress is reported between slices
     for (int slice = 0; slice <= slices; ++slice) {
       tbb::parallel_for(std::size_t{0}, chains.size(), [&](std::size_t i) {
         if (slice == 0) {
@@ -143,7 +146,7 @@ class Packer {
     return found;
   }
 
-  /// The best of what plans give in texels.
+  /// Returns the best of the packings that plans give in texels.
   template <typename PlacePlanInTexels, typename Better>
   std::optional<Packing> best_of(const std::vector<std::vector<FoundPlan>>& found, const PlacePlanInTexels& place,
                                  const ProgressFunction& progress, const Better& better) const {
@@ -156,10 +159,10 @@ class Packer {
     return best;
   }
 
-  /// Less than 1 where searching at fewer texels saves time.
+  /// Returns the zoom of the coarse grid: less than 1 where searching at fewer texels saves time.
   double coarse_zoom() const {
     double zoom = 320.0 / std::sqrt(static_cast<double>(settings_.width) * settings_.height);
-    // Small charts must not become mere dots.
+    // Small charts must stay more than dots.
     const double chart_texels = 0.6 * settings_.width * settings_.height / static_cast<double>(pieces_.size());
     zoom = std::max(zoom, 16 / std::sqrt(chart_texels));
     return zoom < 0.75 ? zoom : 1;
@@ -173,7 +176,7 @@ class Packer {
     return angles;
   }
 
-  /// Large ones first; which are large depends on the chain.
+  /// Makes a first plan, large charts first; the measure of size depends on the chain.
   PlacePlan start_plan(std::size_t chain) const {
     PlacePlan plan;
     plan.order.resize(pieces_.size());
@@ -186,8 +189,8 @@ class Packer {
     return plan;
   }
 
-  /// In texels charts may come to lie elsewhere, and the plan that was best not be the best any more: others are tried
-  /// at a scale a little larger than what is had so far.
+  /// Places plans in texels, where charts may land elsewhere and the best plan may no longer be the best: others are
+  /// tried at a scale a little larger than the best so far.
   std::optional<Packing> best_at_texels(const std::vector<FoundPlan>& plans) const {
     constexpr double little = 1.003;
     std::optional<Packing> best = at_texels(plans[0], 0);
@@ -196,7 +199,7 @@ class Packer {
     return best;
   }
 
-  /// The same order and angles in texels, at the largest scale that does, if that is `least_scale` or more.
+  /// Places the same order and angles in texels, at the largest scale that fits, if that is at least `least_scale`.
   std::optional<Packing> at_texels(const FoundPlan& found, double least_scale) const {
     Angles angles;
     for (const double angle : found.angles) angles.push_back({angle});
@@ -211,7 +214,7 @@ class Packer {
       best = packing(shapes, placer.spots(), scale);
       return true;
     };
-    // Step 1: a scale that fits and one that does not.
+    // Step 1: find a scale that fits and one that does not.
     double lower = least_scale > 0 ? least_scale : found.texels_per_unit, upper = lower;
     if (fits(lower)) {
       for (int i = 0; i < 8 && fits(upper = lower * 1.008); ++i) lower = upper;
@@ -223,7 +226,7 @@ class Packer {
         if (step == 0.5 && upper < 1e-3 * found.texels_per_unit) return {};
       }
     }
-    // Step 2: the largest between them, as far as it is one.
+    // Step 2: bisect between them, as far as fitting is monotone.
     for (int i = 0; i < 3; ++i) {
       const double middle = 0.5 * (lower + upper);
       (fits(middle) ? lower : upper) = middle;
@@ -239,7 +242,7 @@ class Packer {
     return best;
   }
 
-  /// The same order and angles in texels, at the same scale.
+  /// Places the same order and angles in texels, at the same scale.
   std::optional<Packing> at_texels_and_scale(const FoundPlan& found) const {
     Angles angles;
     for (const double angle : found.angles) angles.push_back({angle});
@@ -264,7 +267,7 @@ class Packer {
     return {};
   }
 
-  /// As above, of a crowd: by regula falsi, as far as a packing is as full at one scale as at another.
+  /// Packs a crowd at the largest scale: by regula falsi, as far as a packing is as full at one scale as at another.
   std::optional<Packing> crowd_at_largest_scale(const ProgressFunction& progress) const {
     const PackGrid grid = grid_of(settings_, 1);
     const auto count = static_cast<double>(pieces_.size());
@@ -356,7 +359,7 @@ Packing pack_charts(const std::vector<Chart>& charts, const PackSettings& settin
           " texels per unit of length find no room in such an atlas; choose fewer texels or a larger atlas");
     return *packing;
   }
-  // Charts are stacked along the longer side: the last ones' uneven top then wastes least.
+  // Stack charts along the longer side: the uneven top of the last ones wastes least there.
   const bool lies = settings.width > settings.height;
   PackSettings upright = settings;
   if (lies) std::swap(upright.width, upright.height);

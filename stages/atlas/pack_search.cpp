@@ -9,8 +9,8 @@ namespace kiln {
 
 namespace {
 
-/// The angle that lays a chart's smallest enclosing rectangle along the axes. One side of it lies along an edge of the
-/// convex hull; trying evenly spread angles instead is as good as can be told after rasterising.
+/// Returns the angle that lays a chart's smallest enclosing rectangle along the axes. One side of that rectangle lies
+/// along an edge of the convex hull; evenly spread angles would be no worse as far as rasterised charts show.
 double rectangle_angle(const ChartOutline& outline) {
   constexpr int steps = 90;
   double best_area = std::numeric_limits<double>::infinity(), best_angle = 0;
@@ -126,7 +126,7 @@ void PackSearch::start_lowering() {
 void PackSearch::advance(double share) {
   const auto until = static_cast<std::int64_t>(share * static_cast<double>(bounds_.work));
   while (!ended_ && work() < until) {
-    // Rows are whole numbers, and the found height is one divided by the zoom: half a row is more than its rounding.
+    // Rows are whole numbers, and the height found is a row divided by the zoom: half a row is more than its rounding.
     const bool better = aim_ == Aim::raise_scale ? height_.top <= grid_.top_row()
                                                  : height_.top < found_.back().height * grid_.zoom - 0.5;
     if (better) {
@@ -134,7 +134,7 @@ void PackSearch::advance(double share) {
       changes_in_vain_ = 0;
       if (aim_ == Aim::lower_height) continue;
       texels_per_unit_ *= std::clamp(std::sqrt(static_cast<double>(grid_.top_row()) / height_.top), 1.003, 1.05);
-      // Where a chart no longer fits between the sides, a little less may do.
+      // Where a chart no longer fits between the sides, a slightly smaller scale may do.
       ended_ = !set_scale(texels_per_unit_, 3 * grid_.height / 2) &&
                !set_scale(texels_per_unit_ = 1.003 * found_.back().texels_per_unit, 3 * grid_.height / 2);
     } else if (++changes_in_vain_ > bounds_.changes_in_vain) {
@@ -145,7 +145,7 @@ void PackSearch::advance(double share) {
   }
 }
 
-/// Draws the pieces and puts them down in a grid `room` high. Whether they fit.
+/// Draws the pieces and puts them down in a grid `room` high; tells whether they fit.
 bool PackSearch::set_scale(double texels_per_unit, int room) {
   work_ = work();
   placer_.reset();

@@ -12,22 +12,23 @@
 
 namespace kiln {
 
-/// What packing needs to know of a chart.
+/// Properties of a chart that packing needs.
 struct Piece {
   ChartOutline outline;
   double area = 0;
   double extent = 0;     ///< longer side of its smallest rectangle
-  double perimeter = 0;  ///< of that rectangle
+  double perimeter = 0;  ///< perimeter of that rectangle
   double base_angle = 0;
 };
 
 Piece piece_of(const Chart& chart);
 
-/// The atlas at some resolution. Below that of the texels each piece is drawn half a gutter larger to all sides.
+/// The atlas at some resolution. At a coarser one than the texels', each piece is drawn half a gutter larger to all
+/// sides.
 struct PackGrid {
   double zoom = 1;  ///< grid texels per texel
   int width = 0;
-  int height = 0;  ///< that charts should keep to
+  int height = 0;  ///< height that charts should keep to
   int gutter = 0;
   BitmapSettings bitmap;
 
@@ -36,39 +37,39 @@ struct PackGrid {
 
 PackGrid grid_of(const PackSettings& settings, double zoom);
 
-using Angles = std::vector<std::vector<double>>;  ///< per piece, those to be tried
+using Angles = std::vector<std::vector<double>>;  ///< per piece, the angles to try
 
 std::vector<Shape> rasterise(const std::vector<Piece>& pieces, const PackGrid& grid, const Angles& angles,
                              double texels_per_unit);
 
-/// A way to put pieces down that fitted.
+/// Plan for putting pieces down that fitted.
 struct FoundPlan {
   double texels_per_unit = 0;
-  double height = std::numeric_limits<double>::infinity();  ///< used, texels
+  double height = std::numeric_limits<double>::infinity();  ///< height used, texels
   PlacePlan plan;
   std::vector<double> angles;  ///< per piece
 };
 
-/// How long to search: until one of the two is reached.
+/// Bounds of a search, which ends when one of the two is reached.
 struct SearchBounds {
   std::int64_t work = 0;    ///< as Placer counts it
-  int changes_in_vain = 0;  ///< one after the other
+  int changes_in_vain = 0;  ///< failed changes in a row
 };
 
-/// Looks for better orders by small changes, at one resolution: simulated annealing, the same in every run.
+/// Searches for better orders by small changes, at one resolution: simulated annealing, the same in every run.
 class PackSearch {
  public:
   enum class Aim : std::uint8_t { raise_scale, lower_height };
 
-  /// Starts with a plan. Where the scale is to be raised, `texels_per_unit` is where that starts; it may be too large.
+  /// Starts with a plan. Where the scale is to be raised, it starts at `texels_per_unit`, which may be too large.
   PackSearch(const std::vector<Piece>& pieces, const PackGrid& grid, Angles angles, std::uint64_t seed,
              const SearchBounds& bounds);
   void start(Aim aim, PlacePlan plan, double texels_per_unit);
 
-  /// Searches on until `share` of all work is done.
+  /// Continues the search until `share` of all work is done.
   void advance(double share);
 
-  /// The best that fitted, the best one first, then those found before it; none if nothing did.
+  /// Returns the plans that fitted, the best (last found) first; empty if none did.
   std::vector<FoundPlan> found() const { return {found_.rbegin(), found_.rend()}; }
 
  private:

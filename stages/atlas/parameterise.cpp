@@ -10,7 +10,7 @@ namespace kiln {
 
 namespace {
 
-/// Some of CGAL's maps come out mirrored.
+/// Mirrors a chart whose map came out mirrored, as some of CGAL's do.
 void face_up(Chart& chart) {
   double area = 0;
   for (const Triangle& t : chart.triangles) area += cross(chart.uvs[t[0]], chart.uvs[t[1]], chart.uvs[t[2]]);
@@ -59,7 +59,7 @@ bool parameterise_quickly(const Surface& surface, Chart& chart) {
 }
 
 bool parameterise(const Surface& surface, Chart& chart) {
-  // A large chart comes from steps that left little to gain, and each costs seconds.
+  // Large charts come from steps that left little to gain, and each further step takes seconds.
   const RelaxSettings thoroughly = chart.faces.size() < 20000 ? RelaxSettings{40, 1e-3} : RelaxSettings{8, 2e-2};
   bool found = false;
   double least_stretch = std::numeric_limits<double>::infinity();
@@ -72,14 +72,14 @@ bool parameterise(const Surface& surface, Chart& chart) {
     if (!is_valid(trial)) return;
     equalise_area(surface, trial);
     const double stretch = measure_stretch(surface, trial).l2;
-    // A later way must be better by more than the last digits, which depend on where the relaxation stopped.
+    // A later way must win by more than the last digits, which depend on where the relaxation stopped.
     if (!(stretch < least_stretch - 1e-5)) return;
     least_stretch = stretch;
     best = std::move(trial);
     found = true;
   };
 
-  // Relaxed, every valid start comes to about the same map; the chart's own is nearest to it.
+  // Once relaxed, all valid starts give about the same map; the chart's own is nearest to it.
   if (!chart.uvs.empty() && is_flip_free(chart)) consider(chart);
   if (found) {
     chart = std::move(best);

@@ -5,18 +5,17 @@
 
 namespace kiln {
 
-/// Whether a flattened chart can go into the atlas: nothing flipped, not overlapping itself.
+/// Tells whether a flattened chart can go into the atlas: nothing is flipped, and it does not overlap itself.
 bool is_valid(const Chart& chart);
 
-/// Flattens a chart: starts from the uvs it came with, if they are valid, else from the as-rigid-as-possible or the
-/// least-squares conformal map, the one of less stretch; from a mean value map where neither is valid. Then relaxes it
-/// (relax.h). Sets `uvs` and `parameteriser`; false where no way gives a valid map, the chart
-/// then being unchanged. Least squares conformal maps: Levy et al. 2002; as rigid as possible: Liu et al. 2008;
-/// mean value coordinates: Floater 2003; all of CGAL's Surface_mesh_parameterization.
+/// Flattens a chart and relaxes it (relax.h). Starts from the uvs it came with, if they are valid, else from the
+/// as-rigid-as-possible [Liu 2008] or the least-squares conformal map [Levy 2002], whichever has less stretch; from a
+/// mean value map [Floater 2003] where neither is valid. All three are those of CGAL's Surface_mesh_parameterization.
+/// Sets `uvs` and `parameteriser`; where no way gives a valid map, returns false and leaves the chart unchanged.
 bool parameterise(const Surface& surface, Chart& chart);
 
-/// A quick valid map for a chart: by projection to its mean plane where nothing flips, else by mean value
-/// coordinates; relaxed. False where none was found.
+/// Finds a quick valid map for a chart and relaxes it: projection to the chart's mean plane where nothing flips, else
+/// mean value coordinates. False where neither is valid.
 bool parameterise_quickly(const Surface& surface, Chart& chart);
 
 }  // namespace kiln

@@ -18,7 +18,7 @@ void occupy(TexelGrid& grid, const ChartBitmap& bitmap, const Spot& spot, int gu
         grid.take(y, spot.x + run.first - gutter, spot.x + run.last + gutter);
 }
 
-/// Bitmaps of about the same width and height: in steps of a tenth.
+/// Classifies bitmaps by width and height, in steps of a tenth.
 std::uint32_t size_class(const ChartBitmap& bitmap) {
   const auto step = [](int texels) { return static_cast<std::uint32_t>(std::log(texels) / std::log(1.1)); };
   return step(bitmap.width) << 16 | step(bitmap.height);
@@ -31,14 +31,15 @@ int longest_run(const std::vector<Shape>& shapes) {
   return longest;
 }
 
-/// Rows next to each other are blocked by the same: those that follow each other in the search are apart, yet all come.
+/// Returns the stride by which a search visits rows. Neighbouring rows are blocked by the same charts, so consecutive
+/// rows of the search lie apart, yet each is visited once.
 int row_stride(int height) {
   int stride = std::max(1, static_cast<int>(0.382 * height));  // the golden section
   while (std::gcd(stride, height) != 1) ++stride;
   return stride;
 }
 
-/// Sets the bits from `first` to `last`, as far as there are such, and no others.
+/// Sets the bits from `first` to `last`, as far as they exist, and clears all others.
 void set_between(int first, int last, FreeRuns::Mask& mask) {
   for (int word = 0; word < FreeRuns::span_words; ++word) {
     const int low = std::max(first - 64 * word, 0), high = std::min(last - 64 * word, 63);
@@ -83,12 +84,12 @@ Placer::Placer(const std::vector<Shape>& shapes, int width, int height, int gutt
   }
 }
 
-/// The lowest, then leftmost place where a chart fits with its bottom row from `first_row` to `last_row`.
+/// Finds the lowest, then leftmost place where a chart fits with its bottom row from `first_row` to `last_row`.
 bool Placer::lowest_spot(const TexelGrid& grid, std::uint32_t chart, Rows rows, Spot& spot) {
   const ChartBitmap& bitmap = shapes_[chart][spot.rotation];
   const std::vector<FreeRuns::Probe>& probes = probes_[chart][spot.rotation];
   const int last_x = grid.width() - gutter_ - bitmap.width;
-  std::size_t blocker = 0;  // the probe that met something last is the likeliest to do so again
+  std::size_t blocker = 0;  // the probe that last met something is likeliest to do so again
   for (int y = rows.first; y <= rows.last; ++y) {
     if (grid.longest_free(y + bitmap.widest_row) < bitmap.widest_run) continue;
     for (int start = gutter_ / 64 * 64; start <= last_x; start += FreeRuns::span) {
@@ -118,7 +119,7 @@ Placer::Height Placer::place(const PlacePlan& plan, std::size_t first, int highe
   trial_.heights[first] = kept_.heights[first];
   for (std::size_t step = 0; step < first; ++step) trial_.spots[plan.order[step]] = kept_.spots[plan.order[step]];
   highest_top = std::min(highest_top, height_ - gutter_);
-  work_ += static_cast<std::int64_t>(width_) * height_ / 2048;  // copying the grid
+  work_ += static_cast<std::int64_t>(width_) * height_ / 2048;  // for copying the grid
   std::unordered_map<std::uint32_t, int> rows_of_classes;
   for (std::size_t step = first; step < plan.order.size(); ++step) {
     if (step % step_between_grids_ == 0) trial_.grids[step / step_between_grids_] = grid;

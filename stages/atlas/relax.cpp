@@ -1,5 +1,4 @@
-// Smith and Schaefer, "Bijective parameterization with free boundaries", 2015 (energy and line search); Rabinovich,
-// Poranne, Panozzo and Sorkine-Hornung, "Scalable locally injective mappings", 2017 (reweighted proxies).
+// Energy and line search: [Smith 2015]. Reweighted proxies: [Rabinovich 2017].
 #include "atlas/relax.h"
 
 #include <Eigen/LU>
@@ -39,11 +38,11 @@ Decomposition decompose(const Matrix2& j) {
   return d;
 }
 
-/// Squared weight of the proxy for one singular value: that with which the gradient of weight^2 (s - 1)^2 is the
-/// energy's.
+/// Returns the squared weight of the proxy for one singular value: with it, weight^2 (s - 1)^2 has the energy's
+/// gradient.
 double proxy_weight(double s) { return (s + 1) * (s * s + 1) / (s * s * s); }
 
-/// The proxy's metric has the left singular vectors of j, so it is a combination of the identity and j j^T.
+/// Returns the proxy's metric. It has the left singular vectors of j, so it is a combination of the identity and j j^T.
 Matrix2 proxy_metric(const Matrix2& j, const Decomposition& d) {
   const double weight_larger = proxy_weight(d.larger), weight_smaller = proxy_weight(d.smaller);
   const double gap = d.larger * d.larger - d.smaller * d.smaller;
@@ -51,14 +50,14 @@ Matrix2 proxy_metric(const Matrix2& j, const Decomposition& d) {
   return (weight_larger - slope * d.larger * d.larger) * Matrix2::Identity() + slope * j * j.transpose();
 }
 
-/// The largest step along `move` before a triangle has no area.
+/// Returns the largest step along `move` before a triangle loses its area.
 double largest_step(const Chart& chart, const Uvs& uvs, const Uvs& move) {
   double largest = std::numeric_limits<double>::infinity();
   for (const Triangle& t : chart.triangles) {
     const Eigen::Vector2d p = uvs[t[1]] - uvs[t[0]], q = uvs[t[2]] - uvs[t[0]];
     const Eigen::Vector2d dp = move[t[1]] - move[t[0]], dq = move[t[2]] - move[t[0]];
     const auto det = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); };
-    // Area as a quadratic of the step; its smallest positive root, in the form that does not cancel.
+    // Area is a quadratic of the step; take its smallest positive root, in the form that does not cancel.
     const double a = det(dp, dq), b = det(p, dq) + det(dp, q), c = det(p, q);
     const double discriminant = b * b - 4 * a * c;
     if (discriminant < 0) continue;
@@ -83,10 +82,10 @@ double mean_energy(const Surface& surface, const Chart& chart, const Uvs& uvs) {
   return sum / area;
 }
 
-/// The least squares systems of a chart's steps; their pattern is the same in all.
+/// Least squares systems of a chart's steps; they all have the same pattern.
 class Relaxation {
  public:
-  /// Vertices that are `pinned`, where any are given, stay where they are.
+  /// Vertices that are `pinned`, if any are given, do not move.
   Relaxation(const Surface& surface, Chart& chart, std::vector<std::uint8_t> pinned = {})
       : surface_(surface), chart_(chart), pinned_(std::move(pinned)), solver_(chart.uvs.size(), number_edges()) {
     pinned_.resize(chart.uvs.size(), 0);
@@ -97,11 +96,12 @@ class Relaxation {
 
   double energy(const Uvs& uvs) const { return mean_energy(surface_, chart_, uvs); }
 
-  /// As-rigid-as-possible steps (Liu et al. 2008), which need no valid start, until nothing is flipped.
+  /// Runs as-rigid-as-possible steps [Liu 2008], which need no valid start, until nothing is flipped.
   bool unflip(int iterations) {
     for (int i = 0; i < iterations; ++i) {
       assemble(true);
-      if (i == 0 && !solver_.factorise(diagonal_, off_diagonal_)) return false;  // only the right side changes
+      if (i == 0 && !solver_.factorise(diagonal_, off_diagonal_))
+        return false;  // later steps change only the right side
       const Uvs solution = solver_.solve(right_side_);
       if (!all_finite(solution)) return false;
       for (std::size_t v = 0; v < chart_.uvs.size(); ++v)
@@ -111,7 +111,7 @@ class Relaxation {
     return false;
   }
 
-  /// One step; the new energy, or the old one where it cannot be lowered.
+  /// Makes one step; returns the new energy, or the old one where it cannot be lowered.
   double step(double old_energy) {
     assemble(false);
     if (!solver_.factorise(diagonal_, off_diagonal_)) return old_energy;
@@ -138,9 +138,9 @@ class Relaxation {
     return std::all_of(uvs.begin(), uvs.end(), [](const Eigen::Vector2d& uv) { return uv.allFinite(); });
   }
 
-  /// Numbers the edges and remembers which a triangle has.
+  /// Numbers the edges and records which ones a triangle has.
   std::vector<BlockCholesky::Edge> number_edges() {
-    // Per vertex, its edges to vertices of higher numbers, few enough to be looked through.
+    // Keep, per vertex, its edges to vertices of higher numbers: few enough for a linear search.
     std::vector<std::uint32_t> offsets(chart_.uvs.size() + 1, 0);
     const auto edge_of = [](const Triangle& t, int k) -> BlockCholesky::Edge {
       return std::minmax(t[k], t[(k + 1) % 3]);
@@ -170,10 +170,10 @@ class Relaxation {
     return edges;
   }
 
-  /// The quadratic proxy around the present uvs; `rigid` weighs all directions alike.
+  /// Assembles the quadratic proxy around the present uvs; `rigid` weighs all directions alike.
   void assemble(bool rigid) {
     for (std::size_t v = 0; v < chart_.uvs.size(); ++v) {
-      const double proximal = pinned_[v] ? 1e9 : 1e-5;  // the latter fixes the translation
+      const double proximal = pinned_[v] ? 1e9 : 1e-5;  // 1e-5 fixes the translation
       diagonal_[v] = {proximal, 0, proximal};
       right_side_[v] = proximal * chart_.uvs[v];
     }
@@ -204,14 +204,14 @@ class Relaxation {
   Uvs right_side_;
 };
 
-/// A part of a chart, with its own copy of the uvs.
+/// Part of a chart, with its own copy of the uvs.
 struct Region {
   Chart chart;
-  std::vector<std::uint32_t> vertices;  ///< per vertex of the part, that of the whole
-  std::vector<std::uint8_t> pinned;     ///< per vertex of the part: has triangles outside it
+  std::vector<std::uint32_t> vertices;  ///< per vertex of the part: the vertex of the whole
+  std::vector<std::uint8_t> pinned;     ///< per vertex of the part: it has triangles outside the part
 };
 
-/// The triangles next to the seeds, and next to those, until there are enough.
+/// Collects triangles ring by ring around the seeds until there are enough.
 Region region_around(const Chart& whole, const std::vector<std::uint32_t>& seeds, std::size_t most_faces) {
   const std::size_t vertex_count = whole.uvs.size();
   std::vector<std::uint32_t> offsets(vertex_count + 1, 0);

@@ -17,13 +17,13 @@ struct RelaxSettings {
 /// least squares steps. Returns the energy.
 double relax(const Surface& surface, Chart& chart, const RelaxSettings& settings);
 
-/// Relaxes step by step: after each, and before the first, `goes_on` is told the chart's energy and says whether
-/// to go on. A chart that has flipped triangles is first brought to a map near by that has none by a few
-/// as-rigid-as-possible steps; false where these find none.
+/// Relaxes while `goes_on` returns true; it is called with the chart's energy before the first step and after each. A
+/// chart with flipped triangles is first brought to a nearby map without any, by a few as-rigid-as-possible steps;
+/// returns false where these do not succeed.
 bool relax_until(const Surface& surface, Chart& chart, const std::function<bool(double energy)>& goes_on);
 
-/// `relax` for some triangles around the vertices `seeds` of a large chart, the rest of which stays as it is;
-/// triangles there may be flipped before. False where they stay so.
+/// Relaxes some triangles around the vertices `seeds` of a large chart, the rest of which does not move; triangles
+/// there may be flipped before. Returns false where they stay flipped.
 bool relax_around(const Surface& surface, Chart& chart, const std::vector<std::uint32_t>& seeds, std::size_t most_faces,
                   const RelaxSettings& settings);
 

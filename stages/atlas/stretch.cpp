@@ -17,7 +17,7 @@ void StretchSum::add(const std::array<Eigen::Vector3d, 3>& q, const std::array<E
     return;
   }
   uv_area_ += uv_area;
-  // Partial derivatives of the surface by s and t, equations of section 3.
+  // Partial derivatives of the surface by s and t: equations of section 3.
   const Eigen::Vector3d by_s =
       (q[0] * (p[1].y() - p[2].y()) + q[1] * (p[2].y() - p[0].y()) + q[2] * (p[0].y() - p[1].y())) / (2 * uv_area);
   const Eigen::Vector3d by_t =

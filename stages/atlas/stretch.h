@@ -8,19 +8,18 @@
 
 namespace kiln {
 
-/// Texture stretch (Sander, Snyder, Gortler and Hoppe, "Texture mapping progressive meshes", 2001, section 3): how much
-/// longer surface is than its uvs, as root mean square over the surface and all directions, and at its worst.
-/// Normalised by the total areas, so that 1 is best.
+/// Texture stretch ([Sander 2001], section 3): how much longer the surface is than its uvs, as root mean square over
+/// the surface and all directions, and at its worst. Normalised by the total areas, so that 1 is best.
 struct Stretch {
   double l2 = 1;
   double linf = 1;
 };
 
-/// Sums up triangles.
+/// Sums the stretch of triangles.
 class StretchSum {
  public:
-  /// Largest (first) and smallest singular value of the map from uv to the surface; an empty or flipped uv triangle has
-  /// an infinite one.
+  /// Adds a triangle by the largest and the smallest singular value of the map from uv to the surface; an empty or
+  /// flipped uv triangle has an infinite one.
   void add(const std::array<Eigen::Vector3d, 3>& corners, const std::array<Eigen::Vector2d, 3>& uvs);
   Stretch result() const;
 
@@ -28,10 +27,10 @@ class StretchSum {
   double area_ = 0, uv_area_ = 0, square_sum_ = 0, largest_ = 0;
 };
 
-/// Of one chart.
+/// Measures one chart.
 Stretch measure_stretch(const Surface& surface, const Chart& chart);
 
-/// Of a whole atlas; triangles without area or without uv area do not count.
+/// Measures a whole atlas; triangles without area or without uv area do not count.
 Stretch measure_stretch(const TriangleMesh& atlas);
 
 }  // namespace kiln

@@ -49,7 +49,7 @@ Surface analyse_surface(const TriangleMesh& mesh) {
     surface.area += surface.rest[f].area;
   }
 
-  // Half-edges between the same two vertices lie side by side once sorted; a proper edge has just two, one each way.
+  // Half-edges between the same two vertices are adjacent once sorted; a proper edge has exactly two, one each way.
   struct Entry {
     std::uint32_t low, high, half_edge;
   };
@@ -81,7 +81,7 @@ Surface analyse_surface(const TriangleMesh& mesh) {
 }
 
 void weigh_seams(Surface& surface, const std::vector<float>& openness) {
-  constexpr double floor = 0.1;  // a seam in the dark still costs something
+  constexpr double floor = 0.1;  // a seam in the dark still has a cost
   double costs = 0, lengths = 0;
   for (std::uint32_t h = 0; h < surface.half_edge_count(); ++h) {
     const double open =

@@ -5,7 +5,7 @@
 
 namespace kiln {
 
-/// The texels of an atlas that are taken, a bit each.
+/// Occupied texels of an atlas, a bit each.
 class TexelGrid {
  public:
   TexelGrid(int width, int height) : width_(width), height_(height), words_per_row_((width + 63) / 64) {
@@ -16,16 +16,16 @@ class TexelGrid {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// Takes columns `first` to `last` of a row; what lies outside is left out.
+  /// Occupies columns `first` to `last` of a row, as far as they lie inside.
   void take(int row, int first, int last);
 
-  /// The most columns in a row that are free.
+  /// Returns the longest run of free columns in a row.
   int longest_free(int row) const {
     if (longest_free_[row] < 0) longest_free_[row] = find_longest_free(row);
     return longest_free_[row];
   }
 
-  /// The row's bits, 64 columns a word.
+  /// Returns the row's bits, 64 columns a word.
   const std::uint64_t* row_words(int row) const {
     return words_.data() + static_cast<std::size_t>(row) * words_per_row_;
   }
@@ -54,13 +54,13 @@ inline void TexelGrid::take(int row, int first, int last) {
 
 inline int TexelGrid::find_longest_free(int row) const {
   const std::uint64_t* words = words_.data() + static_cast<std::size_t>(row) * words_per_row_;
-  int longest = 0, start = 0;  // of the free columns before the one looked at
+  int longest = 0, start = 0;  // free columns before the one looked at
   for (int word = 0; word < words_per_row_; ++word) {
     std::uint64_t bits = words[word];
     while (bits != 0) {
       const int taken = word * 64 + __builtin_ctzll(bits);
       if (taken - start > longest) longest = taken - start;
-      const std::uint64_t after = ~bits >> (taken % 64);  // skips the taken ones that follow
+      const std::uint64_t after = ~bits >> (taken % 64);  // skips the occupied columns that follow
       const int length = after != 0 ? __builtin_ctzll(after) : 64 - taken % 64;
       start = taken + length;
       const int next = start - word * 64;

@@ -19,15 +19,16 @@ constexpr int tried_subspaces = 16;
 
 using Ids = std::vector<std::uint8_t>;
 
-/// Squared distances of the columns of `vectors` to means, clusters x texels, less the columns' own squared lengths.
+/// Returns squared distances of the columns of `vectors` to means, clusters x texels, minus the columns' own squared
+/// lengths.
 Eigen::MatrixXf mean_distances(const Eigen::MatrixXf& vectors, const Eigen::MatrixXf& means) {
   Eigen::MatrixXf distances = -2 * means.transpose() * vectors;
   distances.colwise() += means.colwise().squaredNorm().transpose();
   return distances;
 }
 
-/// First means: texels far from those taken before, with probability by squared distance (k-means++; Arthur and
-/// Vassilvitskii 2007). Fewer than asked for where no texel is left that differs.
+/// Chooses first means: texels far from those chosen before, with probability by squared distance (k-means++ [Arthur
+/// 2007]). Fewer than asked for where no different texel is left.
 Eigen::MatrixXf first_means(const Eigen::MatrixXf& vectors, int clusters, int seed) {
   std::mt19937 random(static_cast<std::uint32_t>(seed));
   const auto uniform = [&] { return (static_cast<double>(random()) + 0.5) / 4294967296.0; };
@@ -54,7 +55,7 @@ Eigen::MatrixXf first_means(const Eigen::MatrixXf& vectors, int clusters, int se
   return means;
 }
 
-/// Gives each column the nearest mean, the first of equals.
+/// Assigns each column to the nearest mean, the first among equals.
 void assign_to_means(const Eigen::MatrixXf& vectors, const Eigen::MatrixXf& means, std::span<std::uint8_t> ids) {
   const Eigen::MatrixXf distances = mean_distances(vectors, means);
   for (Eigen::Index k = 0; k < vectors.cols(); ++k) {
@@ -64,14 +65,14 @@ void assign_to_means(const Eigen::MatrixXf& vectors, const Eigen::MatrixXf& mean
   }
 }
 
-/// Places in a list of texels, by the cluster of each.
+/// Lists, for each cluster, the indices of its texels in a list of texels.
 std::vector<std::vector<std::uint32_t>> members_of(const Ids& ids, int clusters) {
   std::vector<std::vector<std::uint32_t>> members(static_cast<std::size_t>(clusters));
   for (std::size_t k = 0; k < ids.size(); ++k) members[ids[k]].push_back(static_cast<std::uint32_t>(k));
   return members;
 }
 
-/// The vectors of places in a list of texels.
+/// Callback that returns the vectors at indices of a list of texels.
 using VectorsOf = std::function<Eigen::MatrixXf(std::span<const std::uint32_t> places)>;
 
 VectorsOf vectors_of(const TransferSource& source, std::span<const std::uint32_t> texels) {
@@ -90,11 +91,12 @@ VectorsOf vectors_of(const Eigen::MatrixXf& vectors) {
   };
 }
 
-/// The subspaces that texels near one mean try, as one matrix: of each its basis vectors, and its mean less that one.
+/// Subspaces that texels near one mean try, as one matrix: the basis vectors of each, and the difference of its mean
+/// from that mean.
 struct Tried {
   std::vector<std::uint8_t> clusters;
   Eigen::MatrixXf axes;        ///< length x tried * (components + 1)
-  Eigen::VectorXf own_weight;  ///< axes times the difference of means of their subspace
+  Eigen::VectorXf own_weight;  ///< per subspace: axes times the difference of means
 
   Tried(const PcaModel& model, const Eigen::MatrixXf& means, std::size_t nearest_mean) {
     const auto count = std::min<std::size_t>(tried_subspaces, model.means.size());
@@ -117,19 +119,19 @@ struct Tried {
   }
 };
 
-/// Squared distance of x to a subspace with an orthonormal basis.
+/// Returns the squared distance of x to a subspace with an orthonormal basis.
 float subspace_distance(const Eigen::VectorXf& x, const PcaModel& model, std::size_t cluster) {
   const Eigen::VectorXf centred = x - model.means[cluster];
   return centred.squaredNorm() - (model.bases[cluster].transpose() * centred).squaredNorm();
 }
 
-/// Clusters of the texels of a list, and the mean next to each, which says what subspaces it tries.
+/// Clusters of the texels of a list, and the mean nearest to each, which decides what subspaces it tries.
 struct Assignment {
   Ids ids, near;
 };
 
-/// Gives texels the nearest of the subspaces they try and their present one, and the nearest of the means. `vectors`
-/// are less the mean that all of them are next to. Returns the sum of squared distances, each at least 0.
+/// Assigns texels of one nearest mean to the nearest among the subspaces they try and their present one, and updates
+/// their nearest mean. `vectors` are relative to that mean. Returns the sum of squared distances, each at least 0.
 double assign_group(const Eigen::MatrixXf& vectors, const Eigen::VectorXf& mean, const Tried& tried,
                     const PcaModel& model, std::span<const std::uint32_t> places, Assignment& assignment) {
   const int components = model.components;
@@ -144,7 +146,7 @@ double assign_group(const Eigen::MatrixXf& vectors, const Eigen::VectorXf& mean,
     std::uint8_t nearest = id, near = 0;
     bool has_present = false;
     for (const std::uint8_t cluster : tried.clusters) {
-      // |x - shift|^2, less the squared weights of x - shift.
+      // Squared distance: |x - shift|^2 minus the squared weights of x - shift.
       float distance = lengths[k] - 2 * product[components] + own[components];
       if (distance < least_to_mean) {
         least_to_mean = distance;
@@ -171,11 +173,11 @@ double assign_group(const Eigen::MatrixXf& vectors, const Eigen::VectorXf& mean,
   return sum;
 }
 
-/// Gives every texel the nearest subspace among those whose means are around the one next to it, and its present one;
-/// returns the sum of squared distances. The mean next to a texel is looked for among the same, so it follows means
+/// Assigns every texel to the nearest among its present subspace and those whose means are around the mean nearest to
+/// it; returns the sum of squared distances. The nearest mean is updated among the same candidates, so it follows means
 /// that move.
 double assign(const VectorsOf& vectors, const PcaModel& model, Assignment& assignment) {
-  constexpr std::size_t most_members = 4096;  // whose vectors are in memory at once
+  constexpr std::size_t most_members = 4096;  // number of members whose vectors are in memory at once
   Eigen::MatrixXf means(model.means.front().size(), model.clusters());
   for (int c = 0; c < model.clusters(); ++c) means.col(c) = model.means[static_cast<std::size_t>(c)];
   const auto members = members_of(assignment.near, model.clusters());
@@ -192,7 +194,7 @@ double assign(const VectorsOf& vectors, const PcaModel& model, Assignment& assig
   return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
-/// Finds the mean next to every texel among all means.
+/// Finds the nearest mean of every texel among all means.
 void find_near(const VectorsOf& vectors, const PcaModel& model, Ids& near) {
   Eigen::MatrixXf means(model.means.front().size(), model.clusters());
   for (int c = 0; c < model.clusters(); ++c) means.col(c) = model.means[static_cast<std::size_t>(c)];
@@ -203,7 +205,7 @@ void find_near(const VectorsOf& vectors, const PcaModel& model, Ids& near) {
   });
 }
 
-/// Principal components of every cluster's texels; a cluster without texels keeps its subspace.
+/// Computes principal components of every cluster's texels; a cluster without texels keeps its subspace.
 void refit(const VectorsOf& vectors, const Ids& ids, PcaModel& model) {
   const auto members = members_of(ids, model.clusters());
   tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t c) {
@@ -224,18 +226,18 @@ void move_means(const Eigen::MatrixXf& vectors, const Ids& ids, Eigen::MatrixXf&
       means.col(c) = (sums.col(c) / static_cast<double>(count)).cast<float>();
 }
 
-/// Turns bases and moves means within their subspaces (see the header).
+/// Rotates bases and moves means within their subspaces (see clustered_pca in the header).
 void align(const PrincipalComponents& all, PcaModel& model) {
   const Eigen::MatrixXf axes = all.vectors.leftCols(model.components);
   for (std::size_t c = 0; c < model.means.size(); ++c) {
     Eigen::MatrixXf& basis = model.bases[c];
     const Eigen::JacobiSVD<Eigen::MatrixXf> svd(basis.transpose() * axes, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    basis = basis * (svd.matrixU() * svd.matrixV().transpose());  // orthogonal Procrustes (Schoenemann 1966)
+    basis = basis * (svd.matrixU() * svd.matrixV().transpose());  // orthogonal Procrustes [Schoenemann 1966]
     model.means[c] -= basis * (basis.transpose() * (model.means[c] - all.mean));
   }
 }
 
-/// Rounds on all texels, and what they leave.
+/// Runs rounds on all texels, and measures the residual.
 void settle(const TransferSource& source, const PrincipalComponents& all, int rounds, Assignment& every,
             ClusteredPca& result) {
   const VectorsOf covered = vectors_of(source, source.covered());
@@ -273,10 +275,10 @@ ClusteredPca clustered_pca(const TransferSource& source, const PrincipalComponen
   model.components = components;
   for (Eigen::Index c = 0; c < start.means.cols(); ++c) {
     model.means.emplace_back(start.means.col(c));
-    model.bases.emplace_back(all.vectors.leftCols(components));  // stays where a cluster has no texels
+    model.bases.emplace_back(all.vectors.leftCols(components));  // kept by a cluster without texels
   }
 
-  // Subspaces, on the sample.
+  // Step 1: fit subspaces to the sample.
   const VectorsOf sampled = vectors_of(start.vectors);
   Assignment some{start.ids, start.ids};
   refit(sampled, some.ids, model);
@@ -285,7 +287,7 @@ ClusteredPca clustered_pca(const TransferSource& source, const PrincipalComponen
     refit(sampled, some.ids, model);
   }
 
-  // On all texels.
+  // Step 2: fit them to all texels.
   const std::size_t count = source.covered().size();
   Assignment every{Ids(count), Ids(count)};
   find_near(vectors_of(source, source.covered()), model, every.near);
@@ -296,7 +298,7 @@ ClusteredPca clustered_pca(const TransferSource& source, const PrincipalComponen
 
 void improve(const TransferSource& source, const PrincipalComponents& all, ClusteredPca& clustered) {
   const VectorsOf covered = vectors_of(source, source.covered());
-  refit(covered, clustered.ids, clustered.model);  // aligned means say nothing of what is near
+  refit(covered, clustered.ids, clustered.model);  // aligned means are no longer near their texels
   Assignment every{clustered.ids, Ids(clustered.ids.size())};
   find_near(covered, clustered.model, every.near);
   settle(source, all, further_rounds, every, clustered);

@@ -7,34 +7,33 @@
 
 namespace kiln {
 
-/// Texels in clusters, each near a subspace of its own (Sloan, Hall, Hart and Snyder, "Clustered principal components
-/// for precomputed radiance transfer", SIGGRAPH 2003, section 4).
+/// Clusters of texels, each with a subspace near them ([Sloan 2003], section 4).
 struct ClusteredPca {
   PcaModel model;
-  std::vector<std::uint8_t> ids;  ///< of every covered texel, in the order of TransferSource::covered()
-  double residual = 0;            ///< squared length that the subspaces leave, summed over covered texels
+  std::vector<std::uint8_t> ids;  ///< cluster of every covered texel, in the order of TransferSource::covered()
+  double residual = 0;            ///< squared distance to the subspaces, summed over covered texels
 };
 
-/// A sample of the texels about means: what clusters of any number of components start from.
+/// Sample of the texels in clusters about means, from which models of any number of components start.
 struct TexelClusters {
   std::vector<std::uint32_t> sample;  ///< covered texels
-  Eigen::MatrixXf vectors;            ///< of the sample
-  Eigen::MatrixXf means;              ///< a column for each cluster
-  std::vector<std::uint8_t> ids;      ///< of the sample
+  Eigen::MatrixXf vectors;            ///< vectors of the sample
+  Eigen::MatrixXf means;              ///< one column per cluster
+  std::vector<std::uint8_t> ids;      ///< clusters of the sample
 };
 
-/// Clusters by k-means. `clusters` is 2 to 256; fewer come back where there are fewer distinct texels.
+/// Clusters a sample of texels by k-means. `clusters` is 2 to 256; fewer result where there are fewer distinct texels.
 TexelClusters cluster_texels(const TransferSource& source, int clusters, int seed);
 
-/// From clusters about means, in turn the nearest subspace for every texel and principal components for every cluster
-/// ("iterative PCA" of the paper), first on the sample, then on all texels. A texel tries the subspaces around the mean
-/// next to it, and its present one. Bases are turned within their subspaces to lie along the components of `all`,
-/// and means are moved within them to lie next to the mean of `all`: weights then hardly jump where clusters meet, and
-/// compress as images.
+/// Fits subspaces to clusters: assigns every texel to its nearest subspace and computes principal components of every
+/// cluster, in turn ("iterative PCA" in [Sloan 2003]), first on the sample, then on all texels. A texel tries its
+/// present subspace and those around the mean nearest to it. Bases are rotated within their subspaces to align with the
+/// components of `all`, and means are moved within them to lie near the mean of `all`, so that weights hardly jump
+/// where clusters meet, and compress as images.
 ClusteredPca clustered_pca(const TransferSource& source, const PrincipalComponents& all, const TexelClusters& start,
                            int components);
 
-/// Goes on for further rounds on all texels, which lower the residual by some percent.
+/// Continues for further rounds on all texels, which lower the residual by some percent.
 void improve(const TransferSource& source, const PrincipalComponents& all, ClusteredPca& clustered);
 
 /// Clusters the texels and fits the subspaces.

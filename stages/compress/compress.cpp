@@ -14,11 +14,12 @@ namespace kiln {
 
 namespace {
 
-constexpr std::size_t sampled_texels = 65536;  // that steps are chosen on
+constexpr std::size_t sampled_texels = 65536;  // texels that steps are chosen on
 constexpr int planes_per_lookup = 4;
 constexpr int most_clusters = 256;
-constexpr double rounding_allowance = 1.25;  // error of a stored model over what the model leaves, where that is free
-constexpr double reach = 0.97;  // a model that leaves more of the target than this has no room for rounding
+constexpr double rounding_allowance =
+    1.25;                       // error of a stored model relative to the model's residual, where the error is free
+constexpr double reach = 0.97;  // a model whose residual exceeds this share of the target has no room for rounding
 
 std::uint64_t size_of(const EncodedFiles& files) {
   std::uint64_t bytes = 0;
@@ -26,7 +27,7 @@ std::uint64_t size_of(const EncodedFiles& files) {
   return bytes;
 }
 
-/// What is known of a search; candidates are tried one after another.
+/// Search for the cheapest candidate; candidates are tried one after another.
 class Search {
  public:
   Search(const PrtAsset& asset, const CompressSettings& settings, ProgressFunction progress)
@@ -65,7 +66,7 @@ class Search {
     return source_.squared_norm() > 0 ? std::sqrt(std::max(residual, 0.0) / source_.squared_norm()) : 0;
   }
 
-  /// What rounding to the steps of the asset's own planes costs: step^2 / 12 in every entry.
+  /// Returns the error of rounding to the steps of the asset's own planes: step^2 / 12 in every entry.
   double rounding_error() const {
     double sum = 0;
     for (std::size_t k = 0; k < asset_.planes.size(); ++k) {
@@ -90,7 +91,7 @@ class Search {
     return candidate;
   }
 
-  /// Notes a candidate, and `model` with it if it is the cheapest so far; says whether its bytes are the least.
+  /// Records a candidate, and `model` with it if it is the cheapest so far; tells whether it is.
   bool consider(CompressCandidate candidate, const TexelModel* model) {
     candidate.feasible = candidate.error <= result_.target_error && (is_fixed() || is_bounded(candidate));
     note(candidate);
@@ -100,7 +101,7 @@ class Search {
     return true;
   }
 
-  /// Adds a candidate to those tried, in the place of the same model as it was before it settled.
+  /// Adds a candidate to those tried; it replaces the same model from before it settled.
   void note(const CompressCandidate& candidate) {
     const auto same = std::find_if(result_.tried.begin(), result_.tried.end(), [&](const CompressCandidate& other) {
       return other.scheme == candidate.scheme && other.scheme != CompressScheme::planes &&
@@ -112,14 +113,14 @@ class Search {
       *same = candidate;
   }
 
-  /// Whether the settings leave no choice of a model: then its worst is told of and not bounded.
+  /// Tells whether the settings leave no choice of a model: its worst errors are then reported, not bounded.
   bool is_fixed() const { return settings_.clusters > 0 && settings_.components > 0; }
 
   static bool is_bounded(const CompressCandidate& candidate) {
     return candidate.texel_error <= most_texel_error && candidate.border_jump <= most_border_jump;
   }
 
-  /// Whether a model leaves so much at its worst that rounding cannot be borne. Of one basis a sample tells.
+  /// Tells whether a model's worst residuals leave no room for rounding. With one basis a sample decides.
   bool leaves_worse(const TexelModel& model) const {
     if (is_fixed()) return false;
     const ErrorSpread left =
@@ -129,28 +130,28 @@ class Search {
     return left.texel > reach * most_texel_error || left.border > reach * most_border_jump;
   }
 
-  /// A step for the weights of a model, and what it leaves without rounding.
+  /// Step for the weights of a model, and the model's residual without rounding.
   struct Step {
-    double step = 0;  ///< 0: none stays within the target
+    double step = 0;  ///< 0: no step stays within the target
     double left = 0;
 
-    /// The step that reaches `aim` if one of `at` leaves `error`: rounding adds squares of steps, nearly.
+    /// Estimates the step that reaches `aim` if step `at` gives `error`: rounding adds squares of steps, nearly.
     double towards(double aim, double at, double error) const {
       return at * std::sqrt(std::max(0.01, (aim * aim - left * left) / (error * error - left * left)));
     }
   };
 
-  /// The largest step that stays within the target, on the sample.
+  /// Finds the largest step that stays within the target, on the sample.
   Step step_for(const TexelModel& model, double target) const {
     const auto error_at = [&](double step) {
       const TexelModel rounded{step > 0 ? rounded_model(model.model, source_, all_, step) : model.model, model.ids, {}};
       return error_spread(source_, vector_errors(rounded, step), sample_vectors_, sample_).mean;
     };
-    constexpr double nearly = 0.998, aim = 0.999;  // of the target
+    constexpr double nearly = 0.998, aim = 0.999;  // relative to the target
     constexpr int most_tries = 12;
     Step found{0, error_at(0)};
     if (found.left >= target) return found;
-    // All the error a step's rounding can make is step^2 / 12 per component.
+    // Largest possible error of a step's rounding: step^2 / 12 per component.
     const double room = std::sqrt(source_.squared_norm() / static_cast<double>(source_.covered().size())) *
                         std::sqrt(target * target - found.left * found.left);
     double step = room * std::sqrt(12.0 / std::max(1, model.model.components)), high = 0;
@@ -166,7 +167,8 @@ class Search {
     return found;
   }
 
-  /// Tries a model: as coarse as the target allows, measured on all texels. Says whether it is the cheapest so far.
+  /// Tries a model with steps as coarse as the target allows, measured on all texels; tells whether it is the cheapest
+  /// so far.
   bool attempt(const TexelModel& model, CompressScheme scheme) {
     return attempt(model, scheme, result_.target_error, !is_fixed());
   }
@@ -187,7 +189,7 @@ class Search {
       candidate.border_jump = spread.border;
       const bool is_worse = bounds_worst && !is_bounded(candidate);
       if ((candidate.error > target || is_worse) && k + 1 < most_tries) {
-        // Else the sample was too kind.
+        // The sample was too favourable: take a smaller step.
         step *= is_worse ? 0.85 : std::clamp(found.towards(0.9995 * target, 1, candidate.error), 0.9, 0.999);
         continue;
       }
@@ -210,7 +212,7 @@ class Search {
     candidate.lookups_at_borders = candidate.clusters == 1 ? layers : 1 + 4 * layers;
   }
 
-  /// A model that leaves more than the target: tried as coarse as fits what it leaves, to show what more error would
+  /// Tries a model whose residual exceeds the target, with steps that fit its residual, to show what more error would
   /// save.
   void attempt_lacking(const TexelModel& model, CompressScheme scheme, double left) {
     attempt(model, scheme, rounding_allowance * left, false);
@@ -218,7 +220,7 @@ class Search {
 
   void note_lacking(double error) { least_error_ = std::min(least_error_.value_or(error), error); }
 
-  /// With one basis: as many components as are worth their bits, and fewer or more as long as that saves bytes.
+  /// Tries one basis: as many components as are worth their bits, then fewer or more as long as that saves bytes.
   void try_one_basis() {
     const int length = source_.length();
     const auto feasible = [&](int n) {
@@ -247,14 +249,14 @@ class Search {
     while (n > fewest && attempt_plain(n - 1)) --n;
   }
 
-  /// How many components have more variance than the rounding of their weights makes error, where both together are
-  /// the target (reverse water-filling; Cover and Thomas, 10.3.3).
+  /// Counts the components whose variance exceeds the error of rounding their weights, where both together reach the
+  /// target (reverse water-filling; [Cover 2006], section 10.3.3).
   int components_worth_bits() const {
     const double allowed = result_.target_error * result_.target_error * source_.squared_norm();
     int n = source_.length();
     while (n > 1) {
       const auto kept = static_cast<std::size_t>(n);
-      const double rounding = (allowed - all_.residual[kept]) / n;  // of each component, if n are kept
+      const double rounding = (allowed - all_.residual[kept]) / n;  // error per component if n are kept
       if (all_.variances[n - 1] > rounding) break;
       --n;
     }
@@ -265,14 +267,14 @@ class Search {
     return attempt(texel_model(source_, all_.model(components), owners_), CompressScheme::pca);
   }
 
-  /// Where the settings fix the model and leave the error open, the error is what the model leaves, and a quarter more
-  /// for rounding.
+  /// Raises the target where the settings fix the model and leave the error open: to the model's residual and a quarter
+  /// more for rounding.
   void raise_target(double left) {
     if (is_fixed() && settings_.max_error == "auto")
       result_.target_error = std::max(result_.target_error, rounding_allowance * left);
   }
 
-  /// Whether a model leaves room, and if so what came of it.
+  /// Outcome of trying a model: it lacks room for rounding, is worse than the best, or is the best.
   enum class Outcome { lacks, worse, best };
   struct Attempt {
     Outcome outcome = Outcome::lacks;
@@ -305,10 +307,10 @@ class Search {
     return place->second.outcome;
   }
 
-  /// The components at which so many clusters may leave just less than the target: errors fall by about the same factor
-  /// from each to the next, that of the two attempts nearest to it.
+  /// Estimates the number of components at which so many clusters just reach the target: errors fall by about the same
+  /// factor with each further component, that of the two attempts nearest to it.
   int expected_components(int clusters) const {
-    constexpr double usual_fall = 0.25;  // of the logarithm, a component
+    constexpr double usual_fall = 0.25;  // of the error's logarithm, per component
     std::vector<std::pair<int, double>> known;
     for (const auto& [key, attempt] : attempted_)
       if (key.first == clusters && attempt.left > 0) known.emplace_back(key.second, std::log(attempt.left));
@@ -322,10 +324,10 @@ class Search {
     return n + static_cast<int>(std::ceil((left - aim) / std::max(fall, 0.02)));
   }
 
-  /// The fewest components that leave less than the target with so many clusters; none where the most do not. `first`
-  /// is tried first, if there is one.
+  /// Finds the fewest components whose residual is below the target with so many clusters; none where even `most` are
+  /// not enough. Tries `first` first, if given.
   std::optional<int> fewest_components(int clusters, int most, std::optional<int> first) {
-    int low = 0, high = most + 1;  // low lacks, high does not
+    int low = 0, high = most + 1;  // low is not enough, high is
     while (high - low > 1) {
       const int n =
           std::clamp(low == 0 && high > most && first ? *first : expected_components(clusters), low + 1, high - 1);
@@ -334,8 +336,9 @@ class Search {
     return high <= most ? std::optional(high) : std::nullopt;
   }
 
-  /// The fewest components that do, and more as long as that saves bytes: bytes first fall with components, as steps
-  /// get coarser, then rise. So they do with clusters, of which there are half as many in turn.
+  /// Tries clusters, halving their number in turn: for each the fewest components that reach the target, and more as
+  /// long as that saves bytes. Bytes first fall with components, as steps get coarser, then rise; the same holds for
+  /// clusters.
   void try_clusters() {
     const bool is_free = settings_.clusters == 0;
     if (settings_.components > 0) {
@@ -374,14 +377,14 @@ class Search {
                     settings_.max_error, *least_error_ / reach));
   }
 
-  /// Lets the cheapest candidate settle, where it is of clusters; keeps it as it was where that saves nothing.
+  /// Improves the cheapest candidate by further rounds, if it has clusters; keeps the old one where that saves nothing.
   void improve_best() {
     if (is_fixed() || best_->scheme != CompressScheme::clustered_pca) return;
     improve(source_, all_, *best_clusters_);
     attempt(texel_model(source_, *best_clusters_, owners_), CompressScheme::clustered_pca);
   }
 
-  /// Encodes the cheapest candidate as small as can be.
+  /// Encodes the cheapest candidate as small as possible.
   void finish() {
     progress_(0.85);
     improve_best();
@@ -423,13 +426,13 @@ class Search {
   std::vector<std::uint32_t> owners_, sample_;
   Eigen::MatrixXf sample_vectors_;
   PrincipalComponents all_;
-  TexelClusters start_;      ///< of the number of clusters tried last:
-  int starts_clusters_ = 0;  ///< that many
+  TexelClusters start_;      ///< for the number of clusters tried last:
+  int starts_clusters_ = 0;  ///< this many
   CompressResult result_;
   std::optional<CompressCandidate> best_;
   std::optional<TexelModel> best_model_;              ///< none: planes
-  std::optional<ClusteredPca> best_clusters_;         ///< of that model, where it is of clusters
-  std::optional<double> least_error_;                 ///< that was left by models which leave too much
+  std::optional<ClusteredPca> best_clusters_;         ///< clusters of that model, if it has several
+  std::optional<double> least_error_;                 ///< least residual among models that exceed the target
   std::map<std::pair<int, int>, Attempt> attempted_;  ///< by clusters and components
 };
 

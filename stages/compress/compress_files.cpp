@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A picture to be encoded, made when its turn comes, so that few are in memory at a time.
+/// Picture to be encoded, made only when its turn comes, so that few are in memory at a time.
 struct Work {
   std::string name;
   std::function<Image<std::uint16_t>()> picture;
@@ -31,7 +31,7 @@ EncodedFiles encode_all(const std::vector<Work>& work, PngEffort effort) {
   return files;
 }
 
-/// What a form of `asset` says of all but its planes.
+/// Returns the description of `asset` except its planes.
 PrtDescription shared_description(const PrtAsset& asset) {
   PrtDescription form = asset;
   form.albedo.picture = {};

@@ -14,17 +14,18 @@ namespace kiln {
 
 using EncodedFiles = std::vector<std::pair<std::string, std::string>>;  ///< name and bytes
 
-/// The files of a compressed asset: weight_<jj>.png, vectors.png, clusters.png where there are several, pca.json last.
+/// Encodes a compressed asset: weight_<jj>.png, vectors.png, clusters.png where there are several clusters, pca.json
+/// last.
 EncodedFiles encode_pca(const StoredPca& stored, const TransferSource& source, PngEffort effort);
 
-/// The files of a plain asset whose planes have `bits`, 8 or the asset's own: the input's planes, ranges.json last.
+/// Encodes a plain asset: the input's planes with `bits`, 8 or the asset's own, and ranges.json last.
 EncodedFiles encode_planes(const PrtAsset& asset, int bits, PngEffort effort);
 
-/// An asset's planes with 8 bits; itself where it has 8.
+/// Returns an asset with planes of 8 bits; the asset itself where it has 8.
 PrtAsset with_eight_bits(const PrtAsset& asset);
 
 /// Writes the files, copies the mesh and the normal map of the folder `input`, removes what an earlier run left behind,
-/// and reads it all back; gives the metrics of compress.json. Throws BadInput.
+/// and reads everything back; returns the metrics of compress.json. Throws BadInput.
 Json save_compressed(OutputSet& outputs, const std::filesystem::path& input, const PrtAsset& asset,
                      const CompressResult& result);
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int strip_rows = 16;
 
-/// What 999 of 1,000 are at most; 0 of none.
+/// Returns the value that 999 of 1,000 do not exceed; 0 for no values.
 double nearly_largest(std::vector<float>& values) {
   if (values.empty()) return 0;
   const auto place = values.begin() + static_cast<std::ptrdiff_t>(values.size() - 1 - values.size() / 1000);
@@ -38,7 +38,7 @@ ErrorSpread spread_of(Lengths& lengths, const TransferSource& source) {
           std::sqrt(nearly_largest(lengths.texels)) / unit, std::sqrt(nearly_largest(lengths.borders)) / unit};
 }
 
-/// Errors of the covered texels of rows `first` to `last` - 1, and of their jumps to the right and upwards.
+/// Collects the errors of covered texels in rows `first` to `last` - 1, and of their jumps to the right and upwards.
 Lengths lengths_of_rows(const TransferSource& source, const TexelErrors& errors, std::span<const std::uint8_t> ids,
                         int first, int last) {
   const auto width = static_cast<std::uint32_t>(source.asset().width);
@@ -47,7 +47,7 @@ Lengths lengths_of_rows(const TransferSource& source, const TexelErrors& errors,
     return std::lower_bound(covered.begin(), covered.end(), static_cast<std::uint32_t>(row) * width);
   };
   const auto begin = from(first), end = from(last);
-  // One row more, for the jumps out of the last.
+  // Read one more row, for the jumps out of the last.
   const std::span<const std::uint32_t> texels(begin, ids.empty() ? end : from(last + 1));
   Lengths lengths;
   if (begin == end) return lengths;

@@ -7,8 +7,8 @@ namespace kiln {
 
 namespace {
 
-/// Eigenvectors by falling eigenvalue; each with its largest entry positive, so that a solver's choice of sign shows
-/// nowhere.
+/// Computes eigenvectors by falling eigenvalue; each gets a positive largest entry, so that the result does not depend
+/// on a solver's choice of sign.
 void sorted_eigenvectors(const Eigen::MatrixXd& covariance, Eigen::MatrixXf& vectors, Eigen::VectorXd& values) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
   values = solver.eigenvalues().reverse().cwiseMax(0);
@@ -31,7 +31,7 @@ PrincipalComponents principal_components(const TransferSource& source) {
   const std::size_t chunks = (texels.size() + chunk_texels - 1) / chunk_texels;
   const auto size = static_cast<double>(texels.size());
 
-  // The mean, then the covariance about it; sums in float64, chunk after chunk.
+  // Compute the mean, then the covariance about it, with sums in float64, chunk after chunk.
   std::vector<Eigen::VectorXd> sums(chunks);
   for_each_chunk(texels.size(), [&](std::size_t first, std::size_t count) {
     sums[first / chunk_texels] = source.vectors(std::span(texels).subspan(first, count)).cast<double>().rowwise().sum();

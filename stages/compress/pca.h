@@ -19,18 +19,18 @@ struct PcaModel {
 /// Principal components of all covered texels.
 struct PrincipalComponents {
   Eigen::VectorXf mean;
-  Eigen::MatrixXf vectors;       ///< columns, orthonormal, those of most variance first
+  Eigen::MatrixXf vectors;       ///< columns, orthonormal, largest variance first
   Eigen::VectorXd variances;     ///< summed over texels
-  std::vector<double> residual;  ///< [n]: the squared length that the first n leave, summed over texels
+  std::vector<double> residual;  ///< [n]: squared distance to the subspace of the first n, summed over texels
 
-  /// The model of the first `components`.
+  /// Returns the model of the first `components`.
   PcaModel model(int components) const;
 };
 
 PrincipalComponents principal_components(const TransferSource& source);
 
-/// Mean and principal components of the columns of `vectors`, at least one. Fewer columns than `components` are
-/// completed to an orthonormal basis.
+/// Computes the mean and principal components of the columns of `vectors`, of which there is at least one. If there are
+/// fewer columns than `components`, the basis is completed to an orthonormal one.
 void fit_subspace(const Eigen::MatrixXf& vectors, int components, Eigen::VectorXf& mean, Eigen::MatrixXf& basis);
 
 }  // namespace kiln

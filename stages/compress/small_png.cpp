@@ -14,9 +14,9 @@ namespace kiln {
 namespace {
 
 constexpr std::size_t most_tried_bytes = 1u << 20;
-constexpr int trial_level = 4;            // of zlib; 9 takes up to ten times as long
-constexpr int large_level = 8;            // 9 takes several times as long for next to nothing
-constexpr int filters = 5, adaptive = 5;  // none, sub, up, average, Paeth; the best of them for each row
+constexpr int trial_level = 4;            // level of zlib for trials; 9 takes up to ten times as long
+constexpr int large_level = 8;            // level for large pictures; 9 takes several times as long for next to nothing
+constexpr int filters = 5, adaptive = 5;  // none, sub, up, average, Paeth; or the best of them for each row
 constexpr int paeth = 4;
 
 using Bytes = std::vector<unsigned char>;
@@ -35,8 +35,8 @@ unsigned char predicted(int filter, int left, int up, int corner) {
   return 0;
 }
 
-/// Rows of the file, top first, each a filter's number and its bytes (PNG specification, second edition, clause 9).
-/// `choice` is a filter, or `adaptive`: for each row the one with the least sum of absolute differences.
+/// Returns the rows of the file, top first, each as a filter's number and its bytes (PNG specification, second edition,
+/// clause 9). `choice` is a filter, or `adaptive`: for each row the one with the least sum of absolute differences.
 Bytes filtered(const Bytes& raw, std::size_t row_bytes, std::size_t texel_bytes, int choice) {
   const std::size_t rows = raw.size() / row_bytes;
   Bytes result;
@@ -83,7 +83,7 @@ Bytes deflated(const Bytes& data, int level, int strategy) {
   return result;
 }
 
-/// Bands of rows, evenly spread over a picture of more than most_tried_bytes.
+/// Returns bands of rows, evenly spread over a picture of more than most_tried_bytes.
 Bytes bands_of(const Bytes& raw, std::size_t row_bytes) {
   constexpr std::size_t band_rows = 64;
   const std::size_t rows = raw.size() / row_bytes;
@@ -97,8 +97,9 @@ Bytes bands_of(const Bytes& raw, std::size_t row_bytes) {
   return part;
 }
 
-/// The smallest of every filter with two strategies of zlib: Z_RLE, the same at every level, for planes with noise in
-/// them, and Z_FILTERED, whose best filter a low level tells, for the others. A large picture is chosen for on a part.
+/// Returns the smallest encoding among all filters and two strategies of zlib: Z_RLE, which gives the same at every
+/// level and suits planes with noise, and Z_FILTERED, whose best filter a low level reveals. For a large picture the
+/// choice is made on a part.
 Bytes smallest_of_all(const Bytes& raw, std::size_t row_bytes, std::size_t texel_bytes) {
   struct Trial {
     Bytes bytes;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double most_steps = 65535;
 
-/// Turns the vector of a texel into weights: (B^T B)^-1 B^T of every cluster.
+/// Returns the matrices (B^T B)^-1 B^T of all clusters, which turn the vector of a texel into weights.
 std::vector<Eigen::MatrixXf> fitting_matrices(const PcaModel& model) {
   std::vector<Eigen::MatrixXf> result;
   for (const Eigen::MatrixXf& basis : model.bases) {
@@ -24,8 +24,8 @@ std::vector<Eigen::MatrixXf> fitting_matrices(const PcaModel& model) {
   return result;
 }
 
-/// Columns of `vectors`, which are those of `texels`, cluster after cluster: `body` gets a cluster's number and its
-/// columns' numbers.
+/// Calls `body` once per cluster with the cluster's number and the indices of its columns among `vectors`, which are
+/// those of `texels`.
 void for_each_cluster(const TexelModel& model, std::span<const std::uint32_t> texels,
                       const std::function<void(std::size_t, const std::vector<Eigen::Index>&)>& body) {
   std::vector<std::vector<Eigen::Index>> columns(model.model.means.size());
@@ -34,7 +34,7 @@ void for_each_cluster(const TexelModel& model, std::span<const std::uint32_t> te
     if (!columns[cluster].empty()) body(cluster, columns[cluster]);
 }
 
-/// components x texels.
+/// Returns the weights, components x texels.
 Eigen::MatrixXf fitted_weights(const TexelModel& model, const std::vector<Eigen::MatrixXf>& fits,
                                const Eigen::MatrixXf& vectors, std::span<const std::uint32_t> texels) {
   Eigen::MatrixXf weights(model.model.components, vectors.cols());
@@ -45,7 +45,7 @@ Eigen::MatrixXf fitted_weights(const TexelModel& model, const std::vector<Eigen:
   return weights;
 }
 
-/// Steps of a mean's entries and of those of each basis vector.
+/// Returns the steps of the means' entries and of those of each basis vector.
 std::vector<double> vector_steps(const PcaModel& model, const TransferSource& source, const PrincipalComponents& all,
                                  double step) {
   const double share = model.clusters() == 1 ? 1.0 / 16 : 1.0 / 4;  // one basis costs next to nothing
@@ -68,7 +68,7 @@ std::vector<std::uint32_t> gutter_owners(const TransferSource& source, int gutte
     tbb::parallel_for(0, height, [&](int j) {
       for (int i = 0; i < width; ++i) {
         std::uint32_t& owner = owners[static_cast<std::size_t>(j) * width + i];
-        // Neighbours across an edge first, then across a corner.
+        // Neighbours across an edge come first, then those across a corner.
         for (const auto& [x, y] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}, {-1, -1}, {1, -1}, {-1, 1}, {1, 1}}) {
           if (owner != no_owner) break;
           if (i + x >= 0 && i + x < width && j + y >= 0 && j + y < height)
@@ -106,7 +106,7 @@ PcaModel rounded_model(const PcaModel& model, const TransferSource& source, cons
   const int rows = model.clusters() * (model.components + 1);
   if (stored != nullptr) stored->vectors = Image<std::uint16_t>(source.length(), rows, 1);
   for (int j = 0; j <= model.components; ++j) {
-    // Row j of every cluster has one range.
+    // Row j of every cluster has one common range.
     const auto row = [&](std::size_t cluster) {
       float* first = j == 0 ? rounded.means[cluster].data() : rounded.bases[cluster].col(j - 1).data();
       return Eigen::Map<Eigen::VectorXf>(first, source.length());
@@ -160,7 +160,7 @@ StoredPca store_pca(const TransferSource& source, const TexelModel& model, const
   stored.decoded = model;
   stored.decoded.model = rounded_model(model.model, source, all, step, &stored);
   const std::vector<Eigen::MatrixXf> fits = fitting_matrices(stored.decoded.model);
-  std::vector<std::uint32_t> kept;  // texels that have values of their own
+  std::vector<std::uint32_t> kept;  // texels with values of their own
   for (std::size_t texel = 0; texel < model.owners.size(); ++texel)
     if (model.owners[texel] != no_owner) kept.push_back(static_cast<std::uint32_t>(texel));
   const auto weights_of = [&](std::size_t first, std::size_t count) {
@@ -168,7 +168,7 @@ StoredPca store_pca(const TransferSource& source, const TexelModel& model, const
     return fitted_weights(stored.decoded, fits, source.vectors(part), part);
   };
 
-  // Ranges; then the values, anew, so that no float planes need memory.
+  // Compute ranges first; then the values again, so that no float planes need memory.
   const int components = model.model.components;
   std::vector<Eigen::VectorXf> least((kept.size() + chunk_texels - 1) / chunk_texels), most = least;
   for_each_chunk(kept.size(), [&](std::size_t first, std::size_t count) {
@@ -184,7 +184,7 @@ StoredPca store_pca(const TransferSource& source, const TexelModel& model, const
       highest = std::max<double>(highest, most[chunk][j]);
     }
     const double unit = std::max(step, (highest - lowest) / most_steps);
-    // Whole steps from zero, where rounding was measured.
+    // Use whole steps from zero, which is what rounding was measured with.
     lowest = unit * std::round(lowest / unit);
     const double steps = std::round((highest - lowest) / unit);
     const int bits = steps > 255 ? 16 : 8;
@@ -205,7 +205,7 @@ StoredPca store_pca(const TransferSource& source, const TexelModel& model, const
     }
   });
 
-  // What no lookup reaches repeats its left neighbour.
+  // Texels that no lookup reaches repeat their left neighbour.
   const auto width = static_cast<std::size_t>(source.asset().width);
   for (StoredPicture& plane : stored.weights)
     for (std::size_t texel = 0; texel < model.owners.size(); ++texel)

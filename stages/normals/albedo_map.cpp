@@ -13,7 +13,7 @@ AlbedoMap make_albedo_map(Image<float> linear, const std::vector<std::uint8_t>& 
   AlbedoMap map;
   map.seam_before = seams.mismatch(linear_from_srgb_bytes(srgb_bytes(linear)));
   if (choice == SeamChoice::equalise && !seams.edges().empty()) {
-    // What clamping undoes, the next round mends.
+    // Repeat, because clamping undoes some of it.
     constexpr int rounds = 3;
     const SeamSolver solver(seams, covered);
     for (int round = 0; round < rounds; ++round) {

@@ -15,16 +15,16 @@ namespace kiln {
 
 /// The high mesh's reflectance in the texels of an atlas.
 struct AlbedoMap {
-  Image<std::uint8_t> picture;  ///< as albedo.png holds it: 3 channels, sRGB-encoded, gutters filled
-  SeamMismatch seam_before;     ///< linear, over all channels; as kept
-  SeamMismatch seam_after;      ///< of what is written
-  AlbedoError error;            ///< over the high mesh, of what is written
+  Image<std::uint8_t> picture;  ///< content of albedo.png: 3 channels, sRGB-encoded, gutters filled
+  SeamMismatch seam_before;     ///< before seams are equalised; linear, over all channels
+  SeamMismatch seam_after;      ///< of the map as written
+  AlbedoError error;            ///< of the map as written, over the high mesh
 
   Json to_json() const;
 };
 
-/// From `linear`, which has values where `known` is 1, makes what is written: gutters filled, seams equal on both
-/// sides, values within 0 to 1, sRGB-encoded. `covered` are the texels inside charts. Errors are not measured yet.
+/// Makes the map that is written from `linear`, which has values where `known` is 1: fills gutters, equalises seams,
+/// clamps to 0 .. 1 and encodes as sRGB. `covered` marks the texels inside charts. Does not measure errors.
 AlbedoMap make_albedo_map(Image<float> linear, const std::vector<std::uint8_t>& known,
                           const std::vector<std::uint8_t>& covered, const Seams& seams, SeamChoice choice);
 

@@ -8,7 +8,7 @@ namespace kiln {
 
 namespace {
 
-/// Where a point lies between two texels' centres: the left one's offset from the point's own texel, -1 or 0, and the
+/// Position of a point between two texels' centres: the left one's offset from the point's own texel, -1 or 0, and the
 /// right one's weight.
 struct Between {
   int left;
@@ -70,12 +70,12 @@ BilinearFit::Rows::Rows(const BilinearFit& fit, int begin, int end)
       rights_(fit.index(0, end_ - begin_), Eigen::Vector3f::Zero()) {}
 
 void BilinearFit::Rows::add(int i, int j, const TexelPoints& points) {
-  // Lookups at the texture's edge are clamped; there is nothing to fit there.
+  // Lookups at the texture's edge are clamped; nothing is fitted there.
   if (points.count == 0 || i == 0 || j == 0 || i == fit_->width_ - 1 || j == fit_->height_ - 1) return;
   const int side = fit_->side_;
   const auto at = [&](int across, int up) { return fit_->index(i + across, j + up - begin_); };
 
-  // The points' values, each shared among four texels: first up, then across.
+  // Distribute each point's value among four texels: first up, then across.
   for (int component = 0; component < 3; ++component) {
     const float* values = points.vectors.col(component).data();
     std::array<std::array<float, 8>, 3> columns{};
@@ -118,10 +118,9 @@ void BilinearFit::join(const Rows& rows) {
 }
 
 void BilinearFit::solve(Image<float>& values, float keep) const {
-  // Chebyshev's semi-iteration on the normal equations, scaled by their diagonal (Saad, "Iterative Methods for Sparse
-  // Linear Systems", 2003, algorithm 12.1). Every point sees four texels, so that no eigenvalue is above 4; where
-  // texels are whole they are at least 1/4, those below belong to texels at charts' edges with few points, which move
-  // slowly.
+  // Chebyshev's semi-iteration on the normal equations, scaled by their diagonal ([Saad 2003], algorithm 12.1). Every
+  // point sees four texels, so no eigenvalue is above 4. For texels with all their points they are at least 1/4;
+  // smaller ones belong to texels with few points at charts' edges, which converge slowly.
   constexpr float highest = 4, lowest = 0.25f;
   constexpr int iterations = 14;
   constexpr float middle = (highest + lowest) / 2, half = (highest - lowest) / 2;

@@ -9,10 +9,11 @@ namespace kiln {
 
 namespace {
 
-/// A lookup sees texels whose centres are less than one texel away along each axis.
+/// Reach of a lookup, which sees texels whose centres are less than one texel away along each axis.
 constexpr float reach_texels = 1.4143f;
 
-/// Weights of the second and third corner of the triangle's point nearest to the one with weights `at` (in its plane).
+/// Returns the weights of the second and third corner at the triangle's point nearest to the one with weights `at` (in
+/// its plane).
 Eigen::Vector2f clamped(const Eigen::Vector2f& at, const Eigen::Vector2f& ab, const Eigen::Vector2f& ac) {
   if (at.x() >= 0 && at.y() >= 0 && at.sum() <= 1) return at;
   const Eigen::Vector2f point = at.x() * ab + at.y() * ac;

@@ -9,14 +9,14 @@
 
 namespace kiln {
 
-/// A texel that no triangle covers, but that bilinear lookups at a chart's edge see.
+/// Texel that no triangle covers, but that bilinear lookups at a chart's edge see.
 struct RingTexel {
   std::uint32_t texel = 0;    ///< j * width + i
-  TexelSource nearest;        ///< the nearest point of a chart
-  Eigen::Vector3f low_point;  ///< that point's triangle, continued to the texel's centre; object space
+  TexelSource nearest;        ///< nearest point of a chart
+  Eigen::Vector3f low_point;  ///< the plane of that point's triangle, continued to the texel's centre; object space
 };
 
-/// All texels that `raster`, that of `atlas`, leaves uncovered within a lookup's reach of a chart.
+/// Finds all texels that `raster`, that of `atlas`, leaves uncovered within a lookup's reach of a chart.
 std::vector<RingTexel> ring_of_charts(const TriangleMesh& atlas, const UvRaster& raster);
 
 }  // namespace kiln

@@ -17,8 +17,7 @@ namespace kiln {
 
 namespace {
 
-/// The `k`-th of `count` points: equal steps of area, and within triangles the R2 sequence (Roberts, "The unreasonable
-/// effectiveness of quasirandom sequences", 2018).
+/// Returns the `k`-th of `count` points: equal steps of area, and within triangles the R2 sequence [Roberts 2018].
 SurfacePoint sample_at(const std::vector<double>& areas_up_to, int k, int count) {
   const double wanted = (k + 0.5) / count * areas_up_to.back();
   const auto triangle = std::upper_bound(areas_up_to.begin(), areas_up_to.end(), wanted) - areas_up_to.begin();
@@ -83,7 +82,7 @@ MapError measure_map_error(const TriangleMesh& high, const TriangleMesh& atlas, 
     if (space == NormalSpace::tangent)
       shown = to_object_space(shown, interpolate(atlas, atlas.normals, source), interpolate(atlas, frames, source));
     const Eigen::Vector3d a = shown.cast<double>(), b = normal_at(high, at_high).cast<double>();
-    // The arc cosine has no digits left for small angles.
+    // The arc cosine is inexact for small angles.
     degrees[k] = std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::acos(-1.0);
   });
 

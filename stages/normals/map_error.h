@@ -9,26 +9,26 @@
 
 namespace kiln {
 
-/// Angles in degrees between the high mesh's normals and what the low mesh shows with its map.
+/// Angles in degrees between the high mesh's normals and those that the low mesh shows with its map.
 struct MapError {
   double mean_degrees = 0;
   double percentile_95_degrees = 0;
   double largest_degrees = 0;
 };
 
-/// Over `samples` points spread evenly over the high mesh's area (with normals): the nearest point of the atlas mesh
-/// that faces the same side, the map looked up bilinearly there and normalised, against the high normal. `map` holds
-/// unit vectors in `space`, gutters filled; `atlas` has normals and uvs.
+/// Measures the map at `samples` points spread evenly over the area of the high mesh (with normals): at the nearest
+/// point of the atlas mesh that faces the same side, the map is looked up bilinearly, normalised and compared with the
+/// high normal. `map` holds unit vectors in `space`, gutters filled; `atlas` has normals and uvs.
 MapError measure_map_error(const TriangleMesh& high, const TriangleMesh& atlas, const Image<float>& map,
                            NormalSpace space, int samples = 200'000);
 
-/// Differences between the high mesh's albedo and what the low mesh shows with its map, linear.
+/// Differences between the high mesh's albedo and that which the low mesh shows with its map, linear.
 struct AlbedoError {
   double rms = 0;            ///< over points and channels
-  double percentile_95 = 0;  ///< of the largest channel's difference
+  double percentile_95 = 0;  ///< percentile of the largest channel's difference
 };
 
-/// At the points of measure_map_error; `map` has three linear channels, gutters filled.
+/// Measures the albedo at the points of measure_map_error; `map` has three linear channels, gutters filled.
 AlbedoError measure_albedo_error(const TriangleMesh& high, const SurfaceAlbedo& albedo, const TriangleMesh& atlas,
                                  const Image<float>& map, int samples = 200'000);
 

@@ -25,23 +25,24 @@ namespace {
 
 constexpr int default_size = 512;
 
-/// Rays along a slanting normal are longer than the distance between the surfaces.
+/// Ratio of the cage to the Hausdorff distance: rays along a slanting normal are longer than the distance between the
+/// surfaces.
 constexpr double cage_per_hausdorff_distance = 2;
 
-/// A cage is at least this fraction of the diagonal: a mesh that was not simplified still is quantised.
+/// Least cage, as a fraction of the diagonal: even a mesh that was not simplified is quantised.
 constexpr double smallest_cage = 1e-4;
 
-/// Fraction of the diagonal below which two surfaces are the same one: positions are quantised to 16 bits.
+/// Distance, as a fraction of the diagonal, below which two surfaces are the same: positions are quantised to 16 bits.
 constexpr double surface_tolerance = 1e-5;
 
 using ConstPixel = Eigen::Map<const Eigen::Vector3f>;
 
 double degrees_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  // The arc cosine has no digits left for small angles.
+  // The arc cosine is inexact for small angles.
   return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / 3.14159265358979323846;
 }
 
-/// The largest distance found between points of both meshes' surfaces: texels of the low one, vertices of the high one.
+/// Measures the largest distance between points of the two surfaces: texels of the low one, vertices of the high one.
 double measure_distance(const TriangleMesh& high, const RayScene& high_scene, const TriangleMesh& atlas,
                         const UvRaster& raster) {
   const auto largest = [](std::size_t count, const auto& distance_of) {
@@ -65,8 +66,8 @@ double measure_distance(const TriangleMesh& high, const RayScene& high_scene, co
   return std::max(from_low, from_high);
 }
 
-/// Makes both sides of seams agree. Lookups are normalised, texels are unit vectors: what normalising undoes, the next
-/// round mends. Points where more is left than elsewhere weigh more from round to round.
+/// Equalises both sides of seams. Lookups are normalised and texels are unit vectors, so rounds repeat what normalising
+/// undoes. Points with a larger mismatch than others gain weight from round to round.
 void equalise(Image<float>& map, const Seams& seams, const std::vector<std::uint8_t>& covered, NormalSpace space) {
   constexpr int rounds = 6;
   SeamSolver solver(seams, covered, space);
@@ -77,7 +78,7 @@ void equalise(Image<float>& map, const Seams& seams, const std::vector<std::uint
   }
 }
 
-/// The largest and the root mean square angle between two maps over the covered texels that differ.
+/// Largest and root mean square angle between two maps over the covered texels that differ.
 struct Angles {
   double largest = 0, rms = 0;
 };
@@ -99,7 +100,7 @@ Angles angles_between(const Image<float>& a, const Image<float>& b, const UvRast
   return angles;
 }
 
-/// Between the low mesh's normals and those that are shown.
+/// Measures the angles between the low mesh's normals and those shown.
 void measure_deviation(const Image<float>& shown_object, const TriangleMesh& atlas, const UvRaster& raster,
                        NormalsResult& result) {
   double sum = 0;
@@ -150,7 +151,7 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   if (atlas.normals.size() != atlas.positions.size() || atlas.uvs.size() != atlas.positions.size())
     throw std::invalid_argument("make_normals: an atlas mesh with normals and uvs is needed");
 
-  // Texels.
+  // Step 1: find the texels.
   const Extent size = settings.size.width > 0 ? settings.size
                       : hints.width > 0       ? Extent(hints.width, hints.height)
                                               : Extent(default_size);
@@ -158,7 +159,7 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   if (raster.covered_texels == 0)
     throw WrongUsage("the atlas covers no texel at --size " + size.text() + "; give a larger one");
 
-  // How far to look.
+  // Step 2: choose how far to look.
   NormalsResult result;
   const RayScene scene(high);
   const BuriedTest is_buried(high.positions, high.triangles, rounding_offset(high.positions));
@@ -174,7 +175,7 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   }
   const MatchLimits limits{static_cast<float>(distance), static_cast<float>(surface_tolerance * diagonal)};
 
-  // A high point and normal for each texel.
+  // Step 3: find a high point and normal for each texel.
   TexelMatches matches = match_texels({high, scene, albedo, is_buried}, atlas, raster, limits, settings.samples,
                                       settings.fit, [&](double fraction) { progress(0.9 * fraction); });
   const std::vector<std::uint8_t> covered = coverage_of(raster);
@@ -185,7 +186,7 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   if (high.frame.exponent != 0)
     for (float& value : result.position.values()) value = static_cast<float>(value * high.frame.unit());
 
-  // The map, and its seams.
+  // Step 4: make the map, and equalise its seams.
   result.space = settings.space;
   Image<float> map = normal_map(matches.normal_object, settings.space, atlas, matches.known);
   const Image<float> kept = map;
@@ -203,7 +204,7 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   result.seconds = stopwatch.seconds();
   progress(1);
 
-  // Metrics, of what is written.
+  // Step 5: measure what is written.
   std::array<std::int64_t, texel_way_colours.size()> found{};
   for (const std::uint8_t way : matches.way.values()) ++found[way];
   result.covered_texels = raster.covered_texels;

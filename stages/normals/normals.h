@@ -19,13 +19,13 @@
 namespace kiln {
 
 struct NormalsResult {
-  Image<std::uint16_t> normal;   ///< as normal.png holds it: 3 channels, n * 0.5 + 0.5, gutters filled
+  Image<std::uint16_t> normal;   ///< content of normal.png: 3 channels, n * 0.5 + 0.5, gutters filled
   Image<float> position;         ///< object-space point of the high mesh, 3 channels, gutters filled
   Image<std::uint8_t> coverage;  ///< 255 where covered, else 0
   Image<std::uint8_t> match;     ///< 3 channels: a colour of texel_way_colours for each texel
 
-  SurfaceAlbedo albedo;                 ///< of the high mesh
-  std::optional<AlbedoMap> albedo_map;  ///< where that is not constant
+  SurfaceAlbedo albedo;                 ///< albedo of the high mesh
+  std::optional<AlbedoMap> albedo_map;  ///< only where the albedo is not constant
 
   NormalSpace space = NormalSpace::object;
   std::int64_t covered_texels = 0;
@@ -35,28 +35,28 @@ struct NormalsResult {
   double disagreeing = 0;    ///< share of texels whose high point faces the other side; part of found_by_nearest_point
   double cage_distance = 0;  ///< object units
   std::string cage_source;   ///< "option", "simplify.json" or "measured"
-  std::size_t buried_texels = 0;  ///< covered texels whose centre's point is inside another part of the high mesh
-  double mean_distance = 0;       ///< low to high points, fractions of the high mesh's diagonal
+  std::size_t buried_texels = 0;  ///< covered texels whose point lies inside another part of the high mesh
+  double mean_distance = 0;       ///< mean distance from low to high points, as a fraction of the high mesh's diagonal
   double largest_distance = 0;
   double normal_deviation_degrees_mean = 0;  ///< between the low mesh's normal and the map's
   double normal_deviation_degrees_largest = 0;
-  double quantisation_degrees_largest = 0;  ///< between the map's normals and those read back
+  double quantisation_degrees_largest = 0;  ///< largest angle between the map's normals and those read back
   std::size_t seam_edges = 0;
-  double seam_change_degrees_rms = 0;  ///< by which equalising turned the covered texels that seams see
-  SeamMismatch seam_before;            ///< degrees; as kept
-  SeamMismatch seam_after;             ///< degrees; of what is written
-  MapError map_error;                  ///< over the high mesh, of what is written
+  double seam_change_degrees_rms = 0;  ///< rms angle by which equalising turned the covered texels that seams see
+  SeamMismatch seam_before;            ///< degrees; before seams are equalised
+  SeamMismatch seam_after;             ///< degrees; of the map as written
+  MapError map_error;                  ///< of the map as written, over the high mesh
   double seconds = 0;
-  double measuring_seconds = 0;  ///< for the metrics
+  double measuring_seconds = 0;  ///< time spent on the metrics
 
   Json to_json() const;
 };
 
-/// For every texel of the atlas the point of the high mesh that it stands for (match_surface), and the high mesh's
-/// normal there. `high` has normals; `atlas` is atlas.drc decoded, with normals and uvs (throws std::invalid_argument
-/// otherwise). Progress is 1 when the maps are made, before they are measured. `hints` replace settings that are left
-/// automatic. `albedo` is that of `high`. Throws WrongUsage where the texture is too small for the atlas to cover a
-/// texel.
+/// Finds, for every texel of the atlas, the point of the high mesh that it stands for (match_surface), and the high
+/// mesh's normal there. `high` has normals; `atlas` is atlas.drc decoded, with normals and uvs (throws
+/// std::invalid_argument otherwise). Progress reaches 1 when the maps are made, before they are measured. `hints`
+/// replace settings that are left automatic. `albedo` is that of `high`. Throws WrongUsage where the texture is too
+/// small for the atlas to cover a texel.
 NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, const NormalsSettings& settings,
                            const AssetHints& hints = {}, const ProgressFunction& progress = no_progress,
                            const SurfaceAlbedo& albedo = {});

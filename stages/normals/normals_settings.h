@@ -9,14 +9,14 @@
 namespace kiln {
 
 struct NormalsSettings {
-  NormalSpace space = NormalSpace::object;  ///< of normal.png
-  Extent size;                              ///< of the maps, texels; 0: the atlas stage's, or 512
+  NormalSpace space = NormalSpace::object;  ///< space of normal.png
+  Extent size;                              ///< size of the maps, texels; 0: the atlas stage's, or 512
   int samples = 1;                          ///< per texel: 1, 4, 16 or 64
-  bool fit = false;                         ///< of one sample: what makes lookups between centres nearest
+  bool fit = false;                         ///< with one sample: fit bilinear lookups between centres, too
   SeamChoice seams = SeamChoice::equalise;
-  MaterialSettings material = {};  ///< of the high mesh
-  ImportSettings import = {};      ///< of the high mesh
-  double cage = 0;  ///< how far rays go each way, as a fraction of the high mesh's bounding box diagonal; 0: automatic
+  MaterialSettings material = {};  ///< reflectance of the high mesh
+  ImportSettings import = {};      ///< how the high mesh is read
+  double cage = 0;  ///< length of rays each way, as a fraction of the high mesh's bounding box diagonal; 0: automatic
 };
 
 OptionSet normals_options(NormalsSettings& settings);

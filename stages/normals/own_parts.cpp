@@ -11,7 +11,7 @@ namespace kiln {
 
 namespace {
 
-/// The part of the high mesh that most texels of each part of the low mesh stand for.
+/// Returns, for each part of the low mesh, the part of the high mesh that most of its texels stand for.
 std::vector<std::uint32_t> most_voted(const Components& low, const Components& high, const UvRaster& raster,
                                       const std::vector<std::uint32_t>& triangles) {
   std::vector<std::map<std::uint32_t, std::size_t>> votes(low.count);
@@ -30,7 +30,7 @@ std::vector<std::uint32_t> most_voted(const Components& low, const Components& h
   return own;
 }
 
-/// One part of a mesh, and which triangle of the mesh each of its own is.
+/// Part of a mesh, and for each of its triangles the triangle of the mesh that it is.
 struct Part {
   std::vector<std::uint32_t> sources;
   std::unique_ptr<RayScene> scene;
@@ -54,7 +54,7 @@ void keep_to_own_parts(const HighSurface& high, const TriangleMesh& atlas, const
   if (high_parts.count < 2) return;
   const Components low_parts = find_components(join_at_places(atlas));
   const std::vector<std::uint32_t> own = most_voted(low_parts, high_parts, raster, triangles);
-  std::map<std::uint32_t, Part> parts;  // those that are asked
+  std::map<std::uint32_t, Part> parts;  // only those that are needed
   for (std::size_t texel = 0; texel < triangles.size(); ++texel) {
     const TexelSource& source = raster.texels[texel];
     if (!source.covered()) continue;

@@ -11,24 +11,24 @@ namespace {
 
 constexpr int most_hits_per_ray = 64;
 
-/// A ray's hit farther than this many times the nearest agreeing point is on another part of the object: rays along an
-/// interpolated normal lengthen distances by the cosine between it and the high surface, which seldom is below a
-/// quarter.
+/// Largest believable ratio of a hit's distance to that of the nearest agreeing point; a farther hit is on another part
+/// of the object. Rays along an interpolated normal lengthen distances by the cosine between it and the high surface,
+/// which is seldom below a quarter.
 constexpr float largest_detour = 4;
 
 struct RayHit {
   SurfacePoint point;
   float cosine = 0;  ///< between the low normal and the high surface's
 
-  /// What the hit with the least of wins: its distance, longer the more oblique it is.
+  /// Returns the cost, the least of which wins: the hit's distance, longer the more oblique it is.
   float cost() const { return point.distance / cosine; }
 };
 
-/// The first hit along `direction` whose face and interpolated normal agree with `low_normal`.
+/// Finds the first hit along `direction` whose face and interpolated normal agree with `low_normal`.
 RayHit first_agreeing_hit(const TriangleMesh& high, const RayScene& scene, const Eigen::Vector3f& low_point,
                           const Eigen::Vector3f& direction, const Eigen::Vector3f& low_normal,
                           const MatchLimits& limits) {
-  // Starting a little behind the low point, a surface that coincides with the low one is not missed by rounding.
+  // Start a little behind the low point, so that rounding does not miss a surface that coincides with the low one.
   const Eigen::Vector3f origin = low_point - limits.surface_tolerance * direction;
   const float farthest = limits.cage_distance + limits.surface_tolerance;
   float nearest = 0;
@@ -42,7 +42,7 @@ RayHit first_agreeing_hit(const TriangleMesh& high, const RayScene& scene, const
       hit.distance = std::abs(hit.distance - limits.surface_tolerance);
       return {hit, cosine};
     }
-    // On past it, by more than rounding.
+    // Continue past the hit, by more than rounding.
     nearest = hit.distance + std::max(0.01f * limits.surface_tolerance, hit.distance * 1e-6f);
   }
   return {};
@@ -52,14 +52,14 @@ RayHit first_agreeing_hit(const TriangleMesh& high, const RayScene& scene, const
 
 SurfaceMatch match_surface(const TriangleMesh& high, const RayScene& scene, const Eigen::Vector3f& low_point,
                            const Eigen::Vector3f& low_normal, const MatchLimits& limits) {
-  // Rays both ways; the less far and less oblique hit.
+  // Trace rays both ways; take the less far and less oblique hit.
   const RayHit outwards = first_agreeing_hit(high, scene, low_point, low_normal, low_normal, limits);
   const RayHit inwards = first_agreeing_hit(high, scene, low_point, -low_normal, low_normal, limits);
   if (outwards.point.found() || inwards.point.found()) {
     const bool take_outwards = outwards.point.found() && (!inwards.point.found() || outwards.cost() <= inwards.cost());
     const SurfacePoint& hit = take_outwards ? outwards.point : inwards.point;
 
-    // Is there surface of the same side much nearer?
+    // Check whether surface that faces the same side is much nearer.
     const float believable = (hit.distance - limits.surface_tolerance) / largest_detour;
     const SurfacePoint nearer =
         believable > 0 ? scene.closest_facing_point(low_point, low_normal, believable) : SurfacePoint{};
@@ -67,13 +67,13 @@ SurfaceMatch match_surface(const TriangleMesh& high, const RayScene& scene, cons
     return {nearer, MatchWay::nearest_point, true};
   }
 
-  // A point of the other side would be worse than one that is a little far.
+  // A point that faces the other side would be worse than one that is a little far.
   const SurfacePoint agreeing =
       scene.closest_facing_point(low_point, low_normal, largest_detour * limits.cage_distance);
   if (agreeing.found()) return {agreeing, MatchWay::nearest_point, true};
   SurfaceMatch nearest{scene.closest_point(low_point, std::numeric_limits<float>::infinity()), MatchWay::nearest_point,
                        false};
-  // At a hard edge the sides are equally near.
+  // At a hard edge both sides are equally near: take the one that agrees.
   const SurfacePoint side =
       scene.closest_facing_point(low_point, low_normal, 1.001f * nearest.point.distance + limits.surface_tolerance);
   if (side.found()) return {side, MatchWay::nearest_point, true};

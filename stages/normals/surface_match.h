@@ -7,27 +7,27 @@
 
 namespace kiln {
 
-/// How the point of the high mesh was found.
+/// Way in which the point of the high mesh was found.
 enum class MatchWay { ray_outwards, ray_inwards, nearest_point };
 
 struct SurfaceMatch {
-  SurfacePoint point;  ///< of the high mesh; its distance is from the low point
+  SurfacePoint point;  ///< point of the high mesh; its distance is from the low point
   MatchWay way = MatchWay::nearest_point;
-  bool agrees = true;  ///< the high surface faces the low normal's side there
+  bool agrees = true;  ///< the high surface there faces the low normal's side
 };
 
-/// How far to look and what to believe; distances in object units.
+/// Limits of the search and of what is believed; distances in object units.
 struct MatchLimits {
-  float cage_distance = 0;      ///< rays go so far each way
-  float surface_tolerance = 0;  ///< distances below it are rounding
+  float cage_distance = 0;      ///< length of rays each way
+  float surface_tolerance = 0;  ///< smaller distances are rounding
 };
 
-/// The point of the high mesh (with normals) that the point `low_point` of a simplified mesh stands for.
-/// Rays go along the unit vector `low_normal`, outwards and inwards; of the hits whose surface faces the same side the
-/// nearest wins, oblique ones counting as farther than they are. A hit much farther than the nearest point that faces
-/// the same side is not believed: it lies on another part of the object. Where no hit is left, it is the nearest point
-/// that faces the same side, within four cages, and then the nearest point of all. A mesh that has triangles always
-/// gives a point.
+/// Finds the point of the high mesh (with normals) that the point `low_point` of a simplified mesh stands for. Rays go
+/// along the unit vector `low_normal`, outwards and inwards; among the hits whose surface faces the same side the
+/// nearest wins, with oblique ones counting as farther than they are. A hit much farther than the nearest point that
+/// faces the same side is not believed, because it lies on another part of the object. Where no hit is left, the match
+/// is the nearest point within four cages that faces the same side, else the nearest point of all. A mesh that has
+/// triangles always gives a point.
 SurfaceMatch match_surface(const TriangleMesh& high, const RayScene& scene, const Eigen::Vector3f& low_point,
                            const Eigen::Vector3f& low_normal, const MatchLimits& limits);
 

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t none = SurfacePoint::none;
 constexpr int most_steps = 32;
 
-/// One number per position, the same for the same bits.
+/// Numbers the positions: equal bits get the same number.
 std::vector<std::uint32_t> number_positions(const std::vector<Eigen::Vector3f>& positions) {
   std::vector<std::pair<std::array<std::uint32_t, 3>, std::uint32_t>> order(positions.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) {
@@ -51,7 +51,7 @@ SurfaceWalk::SurfaceWalk(const TriangleMesh& mesh)
   for (std::size_t begin = 0, end; begin < sides.size(); begin = end) {
     end = begin + 1;
     while (end < sides.size() && sides[end].key == sides[begin].key) ++end;
-    if (end - begin != 2) continue;  // a border, or sheets that touch: walks stop
+    if (end - begin != 2) continue;  // a border, or sheets that touch: walks stop there
     neighbours_[sides[begin].triangle][sides[begin].corner] = sides[begin + 1].triangle;
     neighbours_[sides[begin + 1].triangle][sides[begin + 1].corner] = sides[begin].triangle;
   }
@@ -63,7 +63,7 @@ SurfacePoint SurfaceWalk::meet(const Eigen::Vector3f& point, const Eigen::Vector
     const Triangle& t = mesh_->triangles[triangle];
     const Eigen::Vector3f a = mesh_->positions[t[0]] - point, b = mesh_->positions[t[1]] - point,
                           c = mesh_->positions[t[2]] - point;
-    // Signed volumes of the line and each edge: in proportion to the weights of the corners opposite.
+    // Signed volumes of the line and each edge are proportional to the weights of the opposite corners.
     const Eigen::Vector3f cn = c.cross(normal);
     const float of_a = b.dot(cn), of_b = -a.dot(cn), of_c = a.cross(b).dot(normal);
     const float sum = of_a + of_b + of_c;
@@ -75,7 +75,7 @@ SurfacePoint SurfaceWalk::meet(const Eigen::Vector3f& point, const Eigen::Vector
     }
     const std::array<float, 3> weights = {of_a, of_b, of_c};
     const auto least = static_cast<std::size_t>(std::min_element(weights.begin(), weights.end()) - weights.begin());
-    // Within rounding of an edge either triangle will do; a walk must not go to and fro between them.
+    // Within rounding of an edge either triangle will do; a walk must not oscillate between them.
     const std::uint32_t next = neighbours_[triangle][least];
     if (next == came_from && next != none && weights[least] > -1e-5f * sum) {
       const float u = of_b / sum, v = of_c / sum;

@@ -10,21 +10,21 @@
 
 namespace kiln {
 
-/// Finds where a line meets a surface by walking over it from a triangle nearby, edge by edge: no search, so that
-/// points beside one another cost next to nothing. May be used by several threads at once.
+/// Finds where a line meets a surface by walking over it from a nearby triangle, edge by edge. Neighbouring points thus
+/// cost next to nothing. May be used by several threads at once.
 class SurfaceWalk {
  public:
   /// Keeps a reference to `mesh`. Triangles are neighbours where they share an edge by position.
   explicit SurfaceWalk(const TriangleMesh& mesh);
 
-  /// Where the line through `point` along the unit vector `normal` meets the surface, starting at triangle `start`; its
-  /// distance is from `point`, signed, positive along `normal`. Not found where the walk comes to a border or to
-  /// surface that does not face `normal`, or takes too long.
+  /// Finds where the line through `point` along the unit vector `normal` meets the surface, starting at triangle
+  /// `start`; the result's distance is from `point`, signed, positive along `normal`. Nothing is found where the walk
+  /// comes to a border or to surface that does not face `normal`, or takes too long.
   SurfacePoint meet(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, std::uint32_t start) const;
 
  private:
   const TriangleMesh* mesh_;
-  std::vector<std::array<std::uint32_t, 3>> neighbours_;  ///< opposite each corner
+  std::vector<std::array<std::uint32_t, 3>> neighbours_;  ///< neighbour opposite each corner
 };
 
 }  // namespace kiln

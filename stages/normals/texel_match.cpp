@@ -20,25 +20,25 @@ namespace {
 
 using Pixel = Eigen::Map<Eigen::Vector3f>;
 
-/// A walk from a texel's centre that ends farther off than the centre's own match, by more than so many texels, has
-/// left the surface that the sample stands for.
+/// Largest distance, in texels, between a sample's match and its centre's; a walk that ends farther off has left the
+/// surface that the sample stands for.
 constexpr float largest_step_texels = 4;
 
-/// Samples in a band of rows that is rasterised at once.
+/// Number of samples in a band of rows that is rasterised at once.
 constexpr int band_samples = 1 << 20;
 
-/// Simplification leaves a surface within about so many mean distances: where two parts are that close, the nearer one
-/// may be the wrong one.
+/// Multiple of the mean distance that simplification usually stays within: where two parts are that close, the nearer
+/// one may be the wrong one.
 constexpr float usual_distances = 8;
 
-/// Weight of a texel's centre, as a fraction of a texel's samples: holds texels that hardly any sample sees.
+/// Weight of a texel's centre, as a fraction of a texel's samples; it fixes texels that hardly any sample sees.
 constexpr float keep_centre = 0.02f;
 
 Eigen::Vector3f albedo_at(const SurfaceAlbedo& albedo, const SurfacePoint& point) {
   return albedo.at(point.triangle, point.u, point.v);
 }
 
-/// What one texel row adds to the metrics; rows are added up in order, so that sums do not depend on threads.
+/// Contribution of one texel row to the metrics; rows are added in order, so that sums do not depend on threads.
 struct RowSums {
   double distance = 0, largest_distance = 0;
 };
@@ -71,7 +71,7 @@ RowSums match_centres(int j, const HighSurface& high, const TriangleMesh& atlas,
   return sums;
 }
 
-/// Gives the texels beside the charts their points, but for those that are buried.
+/// Matches the ring texels beside the charts, except buried ones.
 void match_ring(const HighSurface& high, const TriangleMesh& atlas, const UvRaster& raster, const MatchLimits& limits,
                 TexelMatches& matches) {
   const std::vector<RingTexel> ring = ring_of_charts(atlas, raster);
@@ -94,9 +94,9 @@ void match_ring(const HighSurface& high, const TriangleMesh& atlas, const UvRast
   }
 }
 
-/// From the normals at texels' centres those whose bilinear lookups are nearest to what lies between them: the best
-/// linear spline for f at steps of h has the coefficients f - h^2 / 12 f'' + O(h^4), and f'' is a difference of
-/// neighbours, axis by axis. What BilinearFit solves for with many samples, to second order, from one.
+/// Sharpens normals at texels' centres so that bilinear lookups are nearest to what lies between them. The best linear
+/// spline for f at steps of h has the coefficients f - h^2 / 12 f'' + O(h^4), and f'' is a difference of neighbours,
+/// axis by axis. To second order this gives, from one sample, what BilinearFit solves for with many.
 void sharpen(Image<float>& normals, const UvRaster& raster, const UvRaster& known) {
   constexpr float share = 1.0f / 12;
   const Image<float> centres = normals;
@@ -134,14 +134,14 @@ std::vector<Band> bands_of(const TriangleMesh& atlas, int width, int height, int
       const float rows_up = coordinate * static_cast<float>(height);
       return rows_up > 0 ? static_cast<int>(std::min(rows_up, static_cast<float>(height - 1))) : 0;
     };
-    // One row more either way: the rasteriser rounds.
+    // Add one more row either way, because the rasteriser rounds.
     for (int k = std::max(0, row(low) - 1) / rows; k <= std::min(height - 1, row(high) + 1) / rows; ++k)
       bands[static_cast<std::size_t>(k)].triangles.push_back(t);
   }
   return bands;
 }
 
-/// The samples of a band's texels as a raster of their own; its sources' triangles are the atlas'.
+/// Rasterises the samples of a band's texels; triangle numbers are the atlas's.
 UvRaster rasterise_band(const TriangleMesh& atlas, const Band& band, int width, int height, int side) {
   TriangleMesh part;
   const auto rows = static_cast<float>(band.end - band.begin);
@@ -160,7 +160,7 @@ UvRaster rasterise_band(const TriangleMesh& atlas, const Band& band, int width, 
   return raster;
 }
 
-/// The albedo of a texture's samples, gathered as normals are, and the range of every texel's own samples.
+/// Albedo at a texture's samples, gathered as normals are, and the range of every texel's own samples.
 class AlbedoSamples {
  public:
   AlbedoSamples(int width, int height, int side)
@@ -170,7 +170,7 @@ class AlbedoSamples {
 
   BilinearFit& fit() { return fit_; }
 
-  /// The samples of one texel, whose normals `normals` are. Threads may add different texels.
+  /// Adds the samples of one texel, whose normals are `normals`. Threads may add different texels.
   void add(int i, int j, const SurfaceAlbedo& albedo, const TexelSamples& texel, const TexelPoints& normals,
            BilinearFit::Rows& rows) {
     TexelPoints colors;
@@ -187,7 +187,8 @@ class AlbedoSamples {
     rows.add(i, j, colors);
   }
 
-  /// The texels whose lookups fit best, from those at centres, kept in the range of the samples that see them.
+  /// Solves for the texels whose lookups fit best, starting from those at centres, and clamps them to the range of the
+  /// samples that see them.
   void solve(Image<float>& texels) const {
     fit_.solve(texels, keep_centre);
     const int width = texels.width(), height = texels.height();
@@ -221,10 +222,10 @@ TexelMatches match_texels(const HighSurface& high, const TriangleMesh& atlas, co
   if (!high.albedo.is_constant()) matches.albedo = Image<float>(width, height, 3);
   matches.way = Image<std::uint8_t>(width, height, 1);
   matches.known = raster;
-  std::vector<std::uint32_t> triangles;  // that centres found
+  std::vector<std::uint32_t> triangles;  // found by centres
   triangles.resize(raster.texels.size(), SurfacePoint::none);
 
-  // Centres, in groups of rows so that progress can be told.
+  // Step 1: match centres, in groups of rows so that progress can be reported.
   const double centres_part = samples > 1 ? 0.5 : 1;
   std::vector<RowSums> rows(static_cast<std::size_t>(height));
   constexpr int group_rows = 32;
@@ -250,7 +251,7 @@ TexelMatches match_texels(const HighSurface& high, const TriangleMesh& atlas, co
     return matches;
   }
 
-  // Samples.
+  // Step 2: match samples.
   const int side = static_cast<int>(std::lround(std::sqrt(samples)));
   const SurfaceWalk walk(high.mesh);
   const std::vector<Band> bands = bands_of(atlas, width, height, samples);
@@ -266,7 +267,7 @@ TexelMatches match_texels(const HighSurface& high, const TriangleMesh& atlas, co
             static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i);
         float reach = 0;
         if (const TexelSource& centre = raster.texels[index]; centre.covered()) {
-          // A sample's point is about as far as the centre's.
+          // A sample's point is about as far away as the centre's.
           const Triangle& t = atlas.triangles[centre.triangle];
           const Eigen::Vector3f low_point = interpolate(atlas, atlas.positions, centre);
           const Eigen::Vector2f ab = atlas.uvs[t[1]] - atlas.uvs[t[0]], ac = atlas.uvs[t[2]] - atlas.uvs[t[0]];

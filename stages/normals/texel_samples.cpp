@@ -9,7 +9,7 @@ namespace kiln {
 
 namespace {
 
-// Four lanes: both compilers' vector extension, which every machine has instructions for.
+// Vectors of four lanes: an extension of both compilers, for which every machine has instructions.
 using Floats = float __attribute__((vector_size(16)));
 using Ints = std::int32_t __attribute__((vector_size(16)));  ///< of a comparison: -1 or 0
 
@@ -83,7 +83,7 @@ const TexelPoints& TexelSamples::finish() {
   return found_;
 }
 
-/// As SurfaceWalk::meet, for all pending samples, four at a time.
+/// Tries a triangle for all pending samples, four at a time, as SurfaceWalk::meet does.
 void TexelSamples::try_triangle(std::uint32_t triangle) {
   const Triangle& t = high_.triangles[triangle];
   const Eigen::Vector3f p0 = high_.positions[t[0]], p1 = high_.positions[t[1]], p2 = high_.positions[t[2]];
@@ -129,7 +129,7 @@ void TexelSamples::find(int sample) {
 }
 
 void TexelSamples::normalise(TexelPoints::Components& vectors) const {
-  constexpr float least_squared_length = 1e-12f;  // vertex normals that cancel each other stay next to nothing
+  constexpr float least_squared_length = 1e-12f;  // vertex normals that cancel each other stay near zero
   auto used = vectors.topRows(samples_);
   const Eigen::Array<float, Eigen::Dynamic, 1, 0, TexelPoints::most, 1> scale =
       used.square().rowwise().sum().max(least_squared_length).rsqrt();

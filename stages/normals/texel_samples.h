@@ -12,38 +12,38 @@
 
 namespace kiln {
 
-/// Vectors at the points of a grid in a texel, row by row, component by component; those that are absent are zero.
+/// Vectors at the points of a grid in a texel, row by row, component by component; absent points are zero.
 struct TexelPoints {
   static constexpr int most = 64;
   using Components = Eigen::Array<float, most, 3>;
 
   Components vectors = Components::Zero();
   std::array<std::uint8_t, most> present{};
-  int count = 0;  ///< that are present
+  int count = 0;  ///< number of points present
 };
 
-/// The high mesh's normals at the samples of one texel after another. Samples of a texel mostly meet the same few high
-/// triangles: each triangle that a walk finds is tried for all samples of the texel at once.
+/// Finds the high mesh's normals at the samples of one texel after another. Samples of a texel mostly meet the same few
+/// high triangles, so each triangle that a walk finds is tried for all samples of the texel at once.
 class TexelSamples {
  public:
   /// Keeps references. `samples` per texel, at most TexelPoints::most.
   TexelSamples(const TriangleMesh& high, const RayScene& scene, const SurfaceWalk& walk, const TriangleMesh& atlas,
                const MatchLimits& limits, int samples);
 
-  /// Starts a texel: the triangle of its centre's point, if it has one, and how far off samples' points may be.
+  /// Starts a texel: the triangle of its centre's point, if it has one, and how far away samples' points may be.
   void start(std::uint32_t triangle, float reach);
 
-  /// Sample number `sample` of the texel lies at `source`.
+  /// Adds sample number `sample` of the texel, which lies at `source`.
   void add(int sample, const TexelSource& source);
 
-  /// High normals, of unit length, of the samples that were added.
+  /// Returns the high normals, of unit length, of the samples added.
   const TexelPoints& finish();
 
-  /// After finish(): the point of the high mesh that a sample which was added stands for; without its distance.
+  /// Returns, after finish(), the point of the high mesh that an added sample stands for; without its distance.
   const SurfacePoint& place(int sample) const { return places_[static_cast<std::size_t>(sample)]; }
 
  private:
-  /// A low triangle: a value at its first corner, and from there to the others.
+  /// Low triangle: a value at its first corner, and the differences to the others.
   struct Corners {
     Eigen::Vector3f first, second, third;
     Corners() = default;

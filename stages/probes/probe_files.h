@@ -9,9 +9,9 @@
 
 namespace kiln {
 
-/// Loads meshes as one scene, with what they reflect where light is to bounce, and tells `command` of warnings and of
-/// further files that were read. Throws BadInput, also for meshes that need a frame of their own (MeshFrame), and
-/// WrongUsage where light is to bounce and an albedo is not known.
+/// Loads meshes as one scene, with their albedo where light is to bounce, and adds warnings and the further files that
+/// were read to `command`. Throws BadInput, also for meshes that need a frame of their own (MeshFrame), and WrongUsage
+/// where light is to bounce and an albedo is not known.
 ProbeScene load_probe_scene(const std::vector<std::filesystem::path>& files, const ProbesSettings& settings,
                             CommandLine& command);
 

@@ -6,8 +6,8 @@
 
 namespace kiln {
 
-/// The points of a text file: three numbers a line, object units; empty lines and what follows a # are left out. Throws
-/// BadInput that names the line.
+/// Reads points from a text file: three numbers per line, object units; empty lines and text after # are ignored.
+/// Throws BadInput that names the line.
 std::vector<Eigen::Vector3f> read_points(const std::filesystem::path& file);
 
 }  // namespace kiln

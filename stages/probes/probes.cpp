@@ -1,6 +1,5 @@
-// Transfer from distant light to light that comes in at points of space: the neighbourhood transfer of Sloan, Kautz and
-// Snyder, "Precomputed radiance transfer for real-time rendering in dynamic, low-frequency lighting environments",
-// 2002, section 6, by rays that start at the point.
+// Transfer from distant light to light that arrives at points in space: the neighbourhood transfer of [Sloan 2002],
+// section 6, by rays that start at the point.
 #include "probes/probes.h"
 
 #include <Eigen/Geometry>
@@ -21,10 +20,10 @@ namespace {
 using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 constexpr Eigen::Index block = 256;  // directions whose rows are multiplied at once
 constexpr double inside_winding = 0.5;
-constexpr std::size_t group_points = 64;  // between two reports of progress
+constexpr std::size_t group_points = 64;  // points between two reports of progress
 static_assert(most_grid_points == most_probes);
 
-/// One row of basis functions for each direction.
+/// Returns one row of basis functions for each direction.
 Rows basis_rows(const std::vector<Eigen::Vector3f>& directions, int bands) {
   const ShBasis basis(bands);
   Rows rows(static_cast<Eigen::Index>(directions.size()), basis.size());
@@ -34,7 +33,7 @@ Rows basis_rows(const std::vector<Eigen::Vector3f>& directions, int bands) {
   return rows;
 }
 
-/// a^T b, blocks added in float64.
+/// Returns a^T b, with blocks added in float64.
 Eigen::MatrixXd product(const Rows& a, const Rows& b, Eigen::Index count) {
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(a.cols(), b.cols());
   for (Eigen::Index first = 0; first < count; first += block) {
@@ -45,7 +44,7 @@ Eigen::MatrixXd product(const Rows& a, const Rows& b, Eigen::Index count) {
   return sum;
 }
 
-/// Looks around from one point after another.
+/// Computes what each point, one after another, sees around it.
 class Looker {
  public:
   Looker(const TriangleMesh& mesh, const SurfaceLight& light, int bands, const ProbesSettings& settings, int seed)
@@ -110,7 +109,7 @@ class Looker {
   std::vector<Eigen::Vector3f> directions_;
   Rows rows_;
   double weight_;
-  Eigen::MatrixXd surplus_;  // what the sum over the whole sphere lacks of the identity
+  Eigen::MatrixXd surplus_;  // difference of the sum over the whole sphere from the identity
 };
 
 }  // namespace
@@ -153,7 +152,7 @@ ProbeSet place_probes(const TriangleMesh& mesh, const std::vector<Eigen::Vector3
 
 ProbesResult probe_matrices(const TriangleMesh& mesh, const SurfaceLight& light, ProbeSet probes,
                             const ProbesSettings& settings, int seed, const ProgressFunction& progress) {
-  Eigen::AlignedBox3f box;  // outside of it nothing goes around a point
+  Eigen::AlignedBox3f box;  // outside of it the mesh goes around no point
   for (const Eigen::Vector3f& position : mesh.positions) box.extend(position);
   probes.channels = light.channels;
   const std::size_t count = probes.positions.size();

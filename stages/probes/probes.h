@@ -14,25 +14,25 @@ namespace kiln {
 
 struct ProbesResult {
   ProbeSet probes;
-  double open_share = 0;  ///< of the sky that valid points see, their mean
+  double open_share = 0;  ///< mean share of the sky that valid points see
   int bounces = 0;
-  double last_bounce_share = 0;    ///< what the last one added to the light of the surface, relative L2
-  std::size_t surface_points = 0;  ///< that light bounces at
+  double last_bounce_share = 0;    ///< share of the last bounce in the light of the surface, relative L2
+  std::size_t surface_points = 0;  ///< points at which light bounces
 
   std::size_t invalid() const;
   Json to_json() const;
 };
 
-/// Where the probes stand: a grid in `settings.box`, or around `mesh`; or `points`, if there are any.
+/// Places probes: a grid in `settings.box`, or around `mesh`; or `points`, if there are any.
 ProbeSet place_probes(const TriangleMesh& mesh, const std::vector<Eigen::Vector3f>& points,
                       const ProbesSettings& settings);
 
-/// The matrices of the probes: M_ij = integral of B_i(s) B_j(s) V(s) ds, V whether the point sees the sky along s, plus
-/// integral of B_i(s) r_j(q(s)) ds where it sees the front of `mesh` at q, r what `light` is sent from there (backs
-/// send nothing). Points that `mesh` goes around are not valid. Integrals are sums over settings.directions directions
-/// drawn with `seed`; that over the sky is corrected by the error of the same sum over the whole sphere, times the open
-/// share, so that a point which sees nothing of `mesh` has the identity exactly. The same bits for any number of
-/// threads.
+/// Computes the matrices of the probes: M_ij = integral of B_i(s) B_j(s) V(s) ds, where V tells whether the point sees
+/// the sky along s, plus the integral of B_i(s) r_j(q(s)) ds over directions along which it sees the front of `mesh` at
+/// q, where r is what `light` sends from there (backs send nothing). Points inside `mesh` (by winding number) are not
+/// valid. Integrals are sums over settings.directions directions drawn with `seed`; the one over the sky is corrected
+/// by the error of the same sum over the whole sphere, times the open share, so that a point that sees nothing of
+/// `mesh` has the identity exactly. The same bits for any number of threads.
 ProbesResult probe_matrices(const TriangleMesh& mesh, const SurfaceLight& light, ProbeSet probes,
                             const ProbesSettings& settings, int seed, const ProgressFunction& progress = no_progress);
 

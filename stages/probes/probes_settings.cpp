@@ -14,7 +14,7 @@ namespace {
 
 constexpr int most_along_axis = 1024;
 
-/// The whole text as one number; none where it is not.
+/// Parses the whole text as one number; none where it is not.
 template <class Number>
 std::optional<Number> number_of(const std::string& text) {
   Number value{};
@@ -24,7 +24,7 @@ std::optional<Number> number_of(const std::string& text) {
   return value;
 }
 
-/// The numbers between separators; none where one is no number.
+/// Parses the numbers between separators; none where one is not a number.
 template <class Number>
 std::vector<Number> numbers_of(const std::string& text, char separator) {
   std::vector<Number> numbers;

@@ -21,7 +21,7 @@ double norm(const std::vector<float>& values) {
   return std::sqrt(sum);
 }
 
-/// albedo times transfer, point after point; one channel of transfer may serve for all.
+/// Returns albedo times transfer, point after point; one channel of transfer may serve for all.
 std::vector<float> sent(const SurfaceCache& cache, const TransferVectors& transfer, int channels, int coefficients) {
   std::vector<float> values(cache.size() * static_cast<std::size_t>(channels * coefficients));
   for (int c = 0; c < channels; ++c)
@@ -72,7 +72,7 @@ SurfaceLight light_surface(const ProbeScene& scene, const ProbesSettings& settin
   const int coefficients = settings.bands * settings.bands, width = light.channels * coefficients;
   const auto part_done = [&](int part, double fraction) { progress((part + fraction) / (bounces + 1)); };
 
-  // Light from far away.
+  // Step 1: light from far away.
   TransferSums direct(cache.size(), coefficients);
   RayMemory memory(kept_bytes);
   BlockedRays blocked(memory);
@@ -82,7 +82,7 @@ SurfaceLight light_surface(const ProbeScene& scene, const ProbesSettings& settin
   std::vector<float> last = sent(cache, direct.transfer(), light.channels, coefficients);
   light.values.assign(last.size(), 0.f);
 
-  // What the surface sends itself. The last that is sent is what the probes gather.
+  // Step 2: light that the surface sends itself. The probes gather the last one sent.
   for (light.bounces = 1;; ++light.bounces) {
     for (std::size_t k = 0; k < last.size(); ++k) light.values[k] += last[k];
     const double all = norm(light.values);

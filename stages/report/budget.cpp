@@ -55,7 +55,7 @@ BudgetVerdict judge_budget(const Budget& budget, const Json& metrics) {
   BudgetVerdict verdict;
   verdict.budget = budget;
   if (at->is_null())
-    verdict.value = std::numeric_limits<double>::quiet_NaN();  // JSON has no other word for it
+    verdict.value = std::numeric_limits<double>::quiet_NaN();  // the JSON has null for it
   else
     verdict.value = at->is_boolean() ? static_cast<double>(at->get<bool>()) : at->get<double>();
   verdict.met = budget.is_highest ? verdict.value <= budget.limit : verdict.value >= budget.limit;

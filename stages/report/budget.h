@@ -8,14 +8,14 @@
 
 namespace kiln {
 
-/// A limit on one metric.
+/// Limit on one metric.
 struct Budget {
   std::string metric;  ///< "simplify.hausdorff": a path into metrics.json
   bool is_highest = true;
   double limit = 0;
 };
 
-/// How a metric stands to its budget.
+/// Value of a metric, and whether it keeps its budget.
 struct BudgetVerdict {
   Budget budget;
   double value = 0;
@@ -26,10 +26,10 @@ struct BudgetVerdict {
 Budget parse_budget(const std::string& text);
 
 /// Looks the metric up in `metrics` (stages by name, their results beneath). A value that is not finite misses its
-/// budget, a truth counts 1 or 0. Throws WrongUsage where there is no such number, and says which there are.
+/// budget; true counts as 1, false as 0. Throws WrongUsage where there is no such number, and lists those that exist.
 BudgetVerdict judge_budget(const Budget& budget, const Json& metrics);
 
-/// Verdicts on all texts that parse_budget reads, in order.
+/// Judges all texts that parse_budget reads, in order.
 std::vector<BudgetVerdict> judge_budgets(const std::vector<std::string>& texts, const Json& metrics);
 
 Json to_json(const BudgetVerdict& verdict);

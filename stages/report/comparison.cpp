@@ -31,12 +31,12 @@ std::vector<LightSpec> parse_lights(const std::vector<std::string>& texts) {
   return specs;
 }
 
-/// Whether the normals stage found or was given an albedo.
+/// Tells whether the normals stage found or was given an albedo.
 bool has_albedo(const AssetFolder& asset) {
   return asset.record("normals").value("albedo", Json::object()).value("source", "none") != "none";
 }
 
-/// The high mesh's reflectance, by the settings that the normals stage had.
+/// Loads the high mesh's reflectance, by the settings of the normals stage.
 SurfaceAlbedo high_albedo(const AssetFolder& asset, const ImportedMesh& high) {
   MaterialSettings material;
   OptionSet options;
@@ -47,7 +47,7 @@ SurfaceAlbedo high_albedo(const AssetFolder& asset, const ImportedMesh& high) {
   return load_albedo(high, material).albedo;
 }
 
-/// What the bake had around the asset, as one mesh.
+/// Returns the bake's surroundings of the asset as one mesh.
 TriangleMesh surroundings_of(const AssetFolder& asset, const TriangleMesh& high) {
   const Json& bake = asset.record("bake");
   const Json settings = bake.value("settings", Json::object());
@@ -64,13 +64,13 @@ TriangleMesh surroundings_of(const AssetFolder& asset, const TriangleMesh& high)
   return all;
 }
 
-/// Assets under each light.
+/// Pictures of assets under each light.
 struct Rendered {
-  Json said;                           ///< by kiln-render, of the first
+  Json said;                           ///< result of kiln-render for the first picture
   std::vector<Image<float>> pictures;  ///< asset after asset, light after light
 };
 
-/// The asset's pictures have the size that was asked for.
+/// Reads a picture, which has the size asked for.
 Image<float> read_rendered(const fs::path& file, const ReportSettings& settings) {
   Image<float> picture = read_float_image(file);
   if (picture.width() != settings.picture_size || picture.height() != settings.picture_size || picture.channels() != 4)
@@ -78,14 +78,14 @@ Image<float> read_rendered(const fs::path& file, const ReportSettings& settings)
   return picture;
 }
 
-/// Draws the asset and, where there is one, its compressed form under each light, all in one run: to start takes longer
-/// than to draw.
+/// Draws the asset and, if there is one, its compressed form under each light. All in one run of kiln-render, because
+/// starting takes longer than drawing.
 Rendered render(const AssetFolder& asset, const std::vector<std::string>& lights, double albedo,
                 const ReportSettings& settings, const ComparisonRun& run) {
   std::string printed;
   ProcessSettings process;
   process.on_output_line = [&](const std::string& line) { printed += line; };
-  // Everything that the reference has to share is said, whatever the renderer's defaults are.
+  // State everything that the reference must share, whatever the renderer's defaults are.
   const std::string size = std::to_string(settings.picture_size);
   std::vector<std::string> command = {
       (program_folder() / "kiln-render").string(),
@@ -138,7 +138,7 @@ Rendered render(const AssetFolder& asset, const std::vector<std::string>& lights
 
 bool is_whole(float coverage) { return coverage > 0.9999f; }
 
-/// The difference over the pixels that both cover wholly: elsewhere the background would be compared.
+/// Compares two pictures over the pixels that both cover wholly: elsewhere the background would be compared.
 ImageDifference compare(const Image<float>& picture, const Image<float>& reference, std::size_t& compared_pixels) {
   std::vector<float> ours, theirs;
   for (int j = 0; j < picture.height(); ++j)
@@ -177,7 +177,7 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
 
   const double albedo = settings.albedo_factor(has_albedo(asset));
 
-  // The asset, by the program that draws it from its files alone.
+  // Draw the asset by the program that reads only its files.
   const Stopwatch render_watch;
   Rendered rendered = render(asset, lights, albedo, settings, run);
   comparison.renderer = rendered.said.at("renderer").get<std::string>();
@@ -193,7 +193,7 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   }
   comparison.render_seconds = render_watch.seconds();
 
-  // The high mesh, by rays from the very camera that kiln-render had.
+  // Draw the high mesh by rays, from the very camera that kiln-render used.
   const Stopwatch reference_watch;
   const TriangleMesh atlas = load_atlas(asset.prt() / "atlas.drc");
   const ImportSettings how = import_settings_of(asset.record("simplify").value("settings", Json::object()));
@@ -207,7 +207,7 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   view.surface_albedo = high_albedo(asset, imported);
   view.surroundings = surroundings_of(asset, high);
   view.bands = asset.baked.bands;
-  // Not the bake's own directions: an error of theirs must not cancel.
+  // Take other directions than the bake, so that an error of the bake's does not cancel.
   const std::vector<Eigen::Vector3f> directions =
       sample_directions(Sampling::fibonacci, settings.directions, static_cast<std::uint64_t>(run.seed) + 1);
   std::vector<Image<float>> references = reference_pictures(high, view, specs, directions, run.progress);

@@ -92,7 +92,7 @@ constexpr Known known_metrics[] = {
 
 std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
 
-/// With its stage, else by its last part.
+/// Finds a key with its stage, else by its last part.
 const Known* find_known(const std::string& key) {
   for (const std::string& name : {key, last_part(key)})
     for (const Known& known : known_metrics)
@@ -109,7 +109,7 @@ Unit unit_of(const std::string& key) {
   return Unit::plain;
 }
 
-/// Digits in groups of three, with narrow spaces that do not break.
+/// Formats digits in groups of three, with narrow no-break spaces.
 std::string grouped(long long value) {
   std::string text = std::to_string(std::abs(value));
   for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) text.insert(at, "\u202f");

@@ -23,7 +23,7 @@ namespace {
 constexpr double difference_gain = 8, compressed_gain = 32;
 constexpr int crop_margin = 12;  // pixels
 constexpr int texture_pixels = 640;
-constexpr int pyramid_bands = 6;  // more bands have rows too long to be seen
+constexpr int pyramid_bands = 6;  // rows of more bands are too long to be seen
 constexpr int pyramid_pixels = 192;
 constexpr int sheet_pixels = 96;
 
@@ -39,7 +39,7 @@ std::string figure(const std::string& picture, const std::string& caption) {
   return "<figure>" + picture + "<figcaption>" + caption + "</figcaption></figure>\n";
 }
 
-/// Pictures by a software renderer are right but slow: whoever reads timings has to know.
+/// Returns a warning if a software renderer was used: its pictures are right, but its timings are slow.
 std::string software_alarm(const AssetFolder& asset, const Report& report) {
   const Json& bake = asset.record("bake");
   const bool baked = bake.value("software_renderer", Json(false)) == Json(true);
@@ -85,7 +85,7 @@ std::string header(const AssetFolder& asset, const Report& report, const Json& m
   return html + "</dl>\n</header>\n";
 }
 
-/// The part of the pictures that shows anything, with a margin.
+/// Part of the pictures that is not empty, with a margin.
 struct Crop {
   int left = 0, bottom = 0, width = 0, height = 0;
 };
@@ -156,7 +156,8 @@ std::string relit_section(const AssetFolder& asset, const Report& report, const 
   return html + "</section>\n";
 }
 
-/// The compressed asset beside the plain one under the light that shows most of it, and what else was tried.
+/// Makes the section on compression: the compressed asset beside the plain one under the light that shows the largest
+/// difference, and the other candidates.
 std::string compression_section(const AssetFolder& asset, const Report& report, const fs::path& scratch) {
   if (asset.compressed.empty()) return "";
   const Json& record = asset.record("compress");
@@ -191,7 +192,7 @@ std::string compression_section(const AssetFolder& asset, const Report& report, 
          "</details></section>\n";
 }
 
-/// Which texels found their point of the high mesh in which way, and which colour stands for it.
+/// Makes the figure that shows how each texel found its point of the high mesh, with its legend.
 std::string match_figure(const fs::path& file, const fs::path& scratch) {
   std::string legend;
   for (std::size_t way = 1; way < texel_way_colours.size(); ++way) {
@@ -203,7 +204,7 @@ std::string match_figure(const fs::path& file, const fs::path& scratch) {
                 "<b>Match</b> · how texels found their point of the high mesh: " + legend);
 }
 
-/// Whether albedo.png belongs to that record of the normals stage; an older one may have been left behind.
+/// Tells whether albedo.png belongs to that record of the normals stage; an older file may have been left behind.
 bool has_albedo_map(const Json& normals) {
   return normals.contains("albedo") && normals["albedo"].contains("error_rms");
 }

@@ -2,7 +2,7 @@
 
 namespace kiln {
 
-/// The text of report.css.
+/// Returns the text of report.css.
 const char* page_style();
 
 }  // namespace kiln

@@ -23,7 +23,7 @@ std::string row(const std::string& label, const std::string& value) {
   return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", escaped(label), value);
 }
 
-/// The rows of a stage's metrics; an inner object's as "outer: inner", where they are not zero.
+/// Makes the rows of a stage's metrics; those of an inner object as "outer: inner", unless zero.
 std::string metric_rows(const std::string& stage, const Json& metrics) {
   std::string html;
   for (const auto& [key, value] : metrics.items()) {
@@ -78,11 +78,11 @@ std::string stages_section(const Json& metrics) {
   for (const StageColour& stage : stage_colours)
     if (metrics.contains(stage.stage)) total += metrics.at(stage.stage).at("seconds").get<double>();
   for (const auto& [stage, colour] : stage_colours) {
-    if (!metrics.contains(stage)) continue;  // compress is on request
+    if (!metrics.contains(stage)) continue;  // compress is optional
     const Json& result = metrics.at(stage);
     const double seconds = result.at("seconds").get<double>();
     const std::string time = metric_value("seconds", result.at("seconds"));
-    // A sliver has no room for its name; the card has it.
+    // A thin slice has no room for its name; the card names it.
     const std::string label = seconds > 0.08 * total ? stage + (" " + time) : std::string();
     bar += fmt::format("<span style='flex:{:.4f} 0 0;background:{}' title='{} {}'>{}</span>", std::max(seconds, 1e-4),
                        colour, stage, time, label);

@@ -7,7 +7,7 @@
 
 namespace kiln {
 
-/// The sections of the page that hold words and numbers; see page_html. HTML.
+/// Make the sections of the page that hold words and numbers; see page_html. HTML.
 std::string verification_section(const AssetFolder& asset);
 std::string stages_section(const Json& metrics);
 

@@ -22,10 +22,10 @@ constexpr Colour red = {178, 24, 43};
 constexpr Colour blue = {33, 102, 172};
 constexpr std::uint8_t uncompared_grey = 128;
 
-// Coverage is a sum of sample shares, each rounded.
+// Coverage is a sum of sample shares, each of them rounded.
 bool is_whole(float coverage) { return coverage > 0.9999f; }
 
-/// How much of each old pixel the new ones along one axis cover.
+/// Weights of old pixels in the new ones, along one axis.
 struct AxisWeight {
   int from;
   float weight;

@@ -43,7 +43,7 @@ AssetFolder load_asset_folder(const fs::path& folder, const fs::path& compressed
     throw BadInput(folder.string(), "is not a folder", "the folder of a baked asset", "run kiln build");
   AssetFolder asset;
   asset.folder = folder;
-  // "out/bunny/" has an empty last part.
+  // The path "out/bunny/" has an empty last part.
   const fs::path whole = fs::weakly_canonical(folder);
   asset.name = (whole.filename().empty() ? whole.parent_path() : whole).filename().string();
   for (const auto& [stage, file] : {std::pair("simplify", "simplify.json"), std::pair("atlas", "atlas.json"),

@@ -9,20 +9,20 @@
 
 namespace kiln {
 
-/// What one stage left behind of itself.
+/// Record and folder of one stage.
 struct StageRecord {
   std::string stage;
   std::filesystem::path file;
   Json json;
 };
 
-/// The folder of an asset that has passed all stages up to the bake.
+/// Folder of an asset that has passed all stages up to the bake.
 struct AssetFolder {
   std::filesystem::path folder;
-  std::string name;                  ///< of the asset: the folder's
-  std::vector<StageRecord> records;  ///< simplify, atlas, normals, bake; compress where there is `compressed`
-  PrtDescription baked;              ///< what ranges.json says
-  std::filesystem::path compressed;  ///< what kiln-compress made of it; empty: nothing
+  std::string name;                  ///< name of the asset: the folder's
+  std::vector<StageRecord> records;  ///< simplify, atlas, normals, bake; also compress if there is `compressed`
+  PrtDescription baked;              ///< content of ranges.json
+  std::filesystem::path compressed;  ///< output folder of kiln-compress; empty: none
 
   std::filesystem::path prt() const { return folder / "prt"; }
   const StageRecord& stage_record(const std::string& stage) const;
@@ -33,8 +33,8 @@ struct AssetFolder {
 /// that is empty. Throws BadInput where one is missing or is not what its stage writes.
 AssetFolder load_asset_folder(const std::filesystem::path& folder, const std::filesystem::path& compressed = {});
 
-/// The high mesh that the simplification started from, as its record names it. Throws BadInput where that is no longer
-/// there.
+/// Returns the high mesh that the simplification started from, as its record names it. Throws BadInput where that file
+/// no longer exists.
 std::filesystem::path recorded_high_mesh(const AssetFolder& asset);
 
 }  // namespace kiln

@@ -13,14 +13,14 @@ namespace kiln {
 
 namespace {
 
-constexpr std::size_t batch_receivers = 16384;  // bounds the memory that transfer vectors of many bands take
+constexpr std::size_t batch_receivers = 16384;  // bounds the memory of transfer vectors of many bands
 
-/// The surface points that the samples of a picture see, in the order of the samples' rows.
+/// Surface points that the samples of a picture see, in the order of the samples' rows.
 struct VisiblePoints {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
   std::vector<Eigen::Vector3f> albedos;
-  std::vector<std::size_t> pixels;  // whose samples they are, j * width + i
+  std::vector<std::size_t> pixels;  // pixel of each sample, j * width + i
 };
 
 VisiblePoints visible_points(const RayScene& scene, const TriangleMesh& mesh, const ReferenceView& view) {
@@ -46,14 +46,14 @@ VisiblePoints visible_points(const RayScene& scene, const TriangleMesh& mesh, co
   return points;
 }
 
-/// Radiance that receivers send out under one light, at an albedo of 1.
+/// Computes the radiance that receivers send out under one light, at an albedo of 1.
 std::vector<Eigen::Vector3f> radiance_of(const TransferVectors& transfer, const LightSpec& light,
                                          const ReferenceView& view, const Receivers& receivers) {
   std::vector<Eigen::Vector3f> radiance(receivers.size());
   const bool is_local = light.kind == LightSpec::Kind::sphere;
   const LightCoefficients far = windowed_light(light, view.bands, view.window);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, receivers.size(), 512), [&](const auto& range) {
-    // Plane after plane, so that what is read lies together.
+    // Go plane after plane, so that memory is read in order.
     std::vector<Eigen::Vector3d> sums(range.size(), Eigen::Vector3d::Zero());
     std::vector<LightCoefficients> near;
     for (std::size_t r = range.begin(); is_local && r != range.end(); ++r)
@@ -86,9 +86,10 @@ std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const Ref
                                              const ProgressFunction& progress) {
   const VisiblePoints points = visible_points(RayScene(mesh), mesh, view);
   const TriangleMesh occluders = joined(mesh, view.surroundings);
-  const RayScene scene(occluders);  // Embree's, since bakes are made by beams: no fault is on both sides
-  const float ray_offset = rounding_offset(occluders.positions);                      // as kiln-bake has it
-  const float share = 1.f / static_cast<float>(view.supersample * view.supersample);  // of a pixel that one sample has
+  const RayScene scene(occluders);  // Embree's, not the beams that make bakes, so that the two do not share a fault
+  const float ray_offset = rounding_offset(occluders.positions);  // as in kiln-bake
+  const float share =
+      1.f / static_cast<float>(view.supersample * view.supersample);  // share of one sample in its pixel
   std::vector<Image<float>> pictures(lights.size(), Image<float>(view.width, view.height, 4));
   if (lights.empty()) return pictures;
 

@@ -13,23 +13,23 @@
 
 namespace kiln {
 
-/// The picture that an asset is compared with.
+/// View of the reference picture that an asset is compared with.
 struct ReferenceView {
   Camera camera;
   int width = 0;
   int height = 0;
   int supersample = 2;           ///< samples per pixel along each axis
-  float albedo = 0.8f;           ///< of the whole surface, times
-  SurfaceAlbedo surface_albedo;  ///< the mesh's own
-  TriangleMesh surroundings;     ///< casts shadows and is not seen
-  int bands = 5;                 ///< that light is projected on
+  float albedo = 0.8f;           ///< factor of the surface's albedo
+  SurfaceAlbedo surface_albedo;  ///< albedo of the mesh itself
+  TriangleMesh surroundings;     ///< casts shadows but is not seen
+  int bands = 5;                 ///< number of bands that light is projected on
   LightWindow window = LightWindow::hann;
 };
 
-/// Pictures of a mesh under each of `lights`: the first hit of each sample's ray, shaded by the transfer integral over
-/// `directions` (rays against the mesh itself, its normals interpolated, and what stands around) and projected on the
-/// view's bands; a light near the mesh is that of every point. No atlas, no texture, no rasteriser: what the baked
-/// asset approximates. RGBA in linear radiance, alpha is coverage and the colours are multiplied by it.
+/// Draws pictures of a mesh under each of `lights`: the first hit of each sample's ray is shaded by the transfer
+/// integral over `directions` (rays against the mesh, with interpolated normals, and its surroundings), projected on
+/// the view's bands. A light near the mesh is evaluated at every point. Without atlas, textures or rasteriser, this is
+/// what the baked asset approximates. RGBA in linear radiance; alpha is coverage and colours are multiplied by it.
 std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
                                              std::span<const LightSpec> lights,
                                              std::span<const Eigen::Vector3f> directions,

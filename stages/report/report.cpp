@@ -47,7 +47,7 @@ Json all_metrics(const AssetFolder& asset, const Json& report_result) {
 Report make_report(const AssetFolder& asset, const std::filesystem::path& high_file,
                    const std::vector<std::string>& budgets, const ReportSettings& settings, const ComparisonRun& run) {
   const Stopwatch watch;
-  // A mistyped metric should not cost the time of the comparison.
+  // Check budgets first: a mistyped metric should not cost the time of the comparison.
   std::vector<Budget> limits;
   const Json metrics_before = all_metrics(asset, Json::object());
   for (const std::string& text : budgets) {

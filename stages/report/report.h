@@ -11,7 +11,7 @@
 
 namespace kiln {
 
-/// What the report has to say beyond what the stages said of themselves.
+/// Content of the report beyond the stages' own results.
 struct Report {
   Comparison comparison;
   std::vector<BudgetVerdict> budgets;
@@ -21,11 +21,11 @@ struct Report {
 };
 
 /// Compares the asset with the high mesh and judges the budgets ("simplify.hausdorff<=0.012"). Throws WrongUsage for a
-/// budget of a metric that does not exist, before the work where it can be known; else as compare_with_reference.
+/// budget of a metric that does not exist, before the work where possible; otherwise throws as compare_with_reference.
 Report make_report(const AssetFolder& asset, const std::filesystem::path& high_file,
                    const std::vector<std::string>& budgets, const ReportSettings& settings, const ComparisonRun& run);
 
-/// metrics.json: every stage's result under its name, and `report_result` as the report's.
+/// Returns metrics.json: every stage's result under its name, and `report_result` as the report's.
 Json all_metrics(const AssetFolder& asset, const Json& report_result);
 
 }  // namespace kiln

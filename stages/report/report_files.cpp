@@ -16,7 +16,7 @@ void add_records(Json& result, const AssetFolder& asset) {
   for (const StageRecord& record : asset.records) result["inputs"][text_of_path(record.file)] = hash_file(record.file);
 }
 
-/// Whether a record names each of the files that a report has, and they are as it says.
+/// Tells whether a record names each of the files that a report has, with their present hashes.
 bool holds(const Json& record, const fs::path& folder, const std::vector<std::string>& names) {
   const Json outputs = record.value("outputs", Json::object());
   return std::all_of(names.begin(), names.end(), [&](const std::string& name) {

@@ -10,13 +10,13 @@
 
 namespace kiln {
 
-/// Writes the page, its cover and metrics.json. `result` is the report's record so far; gives the record with the
+/// Writes the page, its cover and metrics.json. `result` is the report's record so far; returns the record with the
 /// stages' records among its inputs.
 Json save_report(OutputSet& outputs, const std::string& page_name, const AssetFolder& asset, const Report& report,
                  Json result);
 
-/// What is at `page_file`, where it is a report of the same version, settings and inputs as `result` has (the stages'
-/// records as they are now among them) and none of its files has changed since; else nothing.
+/// Returns the report at `page_file` if it has the same version, settings and inputs as `result` (including the stages'
+/// present records) and none of its files has changed since; else nothing.
 std::optional<EarlierReport> find_earlier(const std::filesystem::path& page_file, const AssetFolder& asset,
                                           Json result);
 

@@ -10,7 +10,7 @@ namespace kiln {
 
 namespace {
 
-/// Nothing for auto.
+/// Parses `albedo`; returns nothing for auto.
 std::optional<double> parse_albedo(const std::string& text) {
   if (text == "auto") return std::nullopt;
   double value = 0;

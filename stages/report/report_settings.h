@@ -8,25 +8,25 @@
 
 namespace kiln {
 
-/// How the report pictures an asset and what it compares it with.
+/// Pictures of the report and its comparison.
 struct ReportSettings {
-  std::string lights = "45,30; -60,20; ambient:1";  ///< as kiln-render takes them, separated by semicolons
+  std::string lights = "45,30; -60,20; ambient:1";  ///< in the form of kiln-render, separated by semicolons
   double camera_azimuth_degrees = 20;               ///< where the camera stands: 0 is +Z, 90 is +X
   double camera_elevation_degrees = 12;
   FramingSettings framing;
   int picture_size = 512;       ///< pixels a side
-  int directions = 1024;        ///< of the reference's transfer integral
-  std::string albedo = "auto";  ///< auto, or a number that the surface's own is multiplied by
+  int directions = 1024;        ///< directions of the reference's transfer integral
+  std::string albedo = "auto";  ///< auto, or a factor of the surface's own albedo
 
-  /// That number; auto is 1 where the asset has an albedo of its own, else 0.8.
+  /// Returns that factor; auto is 1 where the asset has an albedo of its own, else 0.8.
   double albedo_factor(bool asset_has_albedo) const;
 
-  std::string gl_device = "auto";  ///< that kiln-render draws on
+  std::string gl_device = "auto";  ///< device that kiln-render draws on
 };
 
 OptionSet report_options(ReportSettings& settings);
 
-/// The lights one by one, blanks trimmed.
+/// Returns the lights one by one, blanks trimmed.
 std::vector<std::string> list_of_lights(const ReportSettings& settings);
 
 }  // namespace kiln

@@ -12,10 +12,10 @@ namespace kiln {
 
 namespace {
 
-// Of the plot, in its own units.
+// Size of the plot, in its own units.
 constexpr double plot_width = 1000, plot_height = 460;
 constexpr double left = 64, right = plot_width - 24, top = 24, bottom = plot_height - 56;
-constexpr double mark = 5;  // half a mark's width
+constexpr double mark = 5;  // half of a mark's width
 
 StoredWay read_way(const Json& json, double texels) {
   StoredWay way;
@@ -35,7 +35,7 @@ bool is_same(const StoredWay& a, const StoredWay& b) {
 
 bool is_plottable(const StoredWay& way) { return way.error > 0 && way.bytes_per_texel > 0; }
 
-/// A logarithmic axis from `low` to `high`, which lie at `at_low` and `at_high`.
+/// Logarithmic axis from `low` to `high`, which lie at `at_low` and `at_high`.
 struct Axis {
   double low, high, at_low, at_high;
 
@@ -43,7 +43,7 @@ struct Axis {
     return at_low + (at_high - at_low) * std::log(value / low) / std::log(high / low);
   }
 
-  /// 1, 2 and 5 times powers of ten; the powers alone where those would be too many.
+  /// Returns 1, 2 and 5 times powers of ten; only the powers where those would be too many.
   std::vector<double> ticks() const {
     std::vector<double> all;
     const bool is_wide = high / low > 2e3;
@@ -58,7 +58,7 @@ struct Axis {
 
 Axis axis_over(const std::vector<double>& values, double at_low, double at_high) {
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  constexpr double margin = 1.35;  // a factor
+  constexpr double margin = 1.35;  // factor beyond the least and greatest value
   return {*least / margin, *most * margin, at_low, at_high};
 }
 
@@ -72,7 +72,7 @@ const char* family_of(const StoredWay& way) {
   return way.scheme == "pca" ? "one" : "several";
 }
 
-/// A diamond, a circle or a square: told apart without colour.
+/// Draws a diamond, a circle or a square, which are distinct without colour.
 std::string shape(const StoredWay& way, double x, double y, double size, const std::string& kind) {
   const std::string style = fmt::format("class='{} {}'", family_of(way), kind);
   if (way.scheme == "planes")
@@ -152,7 +152,7 @@ std::string tradeoff_plot(const Tradeoff& tradeoff) {
       "relighting "
       "error'>\n",
       plot_width, plot_height);
-  // Axes.
+  // Step 1: draw the axes.
   for (const double tick : across.ticks()) {
     const double x = across.place(tick);
     svg += fmt::format("<path class=grid d='M{:.1f} {}V{}'/>", x, top, bottom) +
@@ -172,7 +172,7 @@ std::string tradeoff_plot(const Tradeoff& tradeoff) {
            text_at(x + 6, top + 14, "start", "error asked for");
   }
 
-  // What was tried, one line for each number of clusters.
+  // Step 2: draw all candidates, one line for each number of clusters.
   for (auto& [key, ways] : series) {
     std::stable_sort(ways.begin(), ways.end(),
                      [](const StoredWay& a, const StoredWay& b) { return a.components < b.components; });
@@ -195,7 +195,7 @@ std::string tradeoff_plot(const Tradeoff& tradeoff) {
                      key.second == 1 ? "one basis" : fmt::format("{} clusters", key.second), family_of(end));
   }
 
-  // The two that matter.
+  // Step 3: draw the two that matter.
   if (is_plottable(tradeoff.plain)) {
     const double x = across.place(tradeoff.plain.error), y = up.place(tradeoff.plain.bytes_per_texel);
     svg += marked(tradeoff.plain, x, y, mark, "") +
@@ -224,7 +224,7 @@ std::string tradeoff_table(const Tradeoff& tradeoff) {
   };
   row(tradeoff.plain, "plain, 8 bits");
   for (const StoredWay& way : tradeoff.tried) {
-    if (way.scheme == "planes" && way.error <= tradeoff.plain.error) continue;  // said above, or the input itself
+    if (way.scheme == "planes" && way.error <= tradeoff.plain.error) continue;  // listed above, or the input itself
     const bool is_chosen = is_same(way, tradeoff.chosen);
     row(is_chosen ? tradeoff.chosen : way, is_chosen         ? "<b>chosen</b>"
                                            : way.is_feasible ? ""

@@ -7,7 +7,7 @@
 
 namespace kiln {
 
-/// One way that kiln-compress knows to store an asset.
+/// Way in which kiln-compress can store an asset.
 struct StoredWay {
   std::string scheme;  ///< planes, pca or clustered-pca
   int clusters = 1;
@@ -22,20 +22,20 @@ struct StoredWay {
 
 /// Bytes against error, as compress.json has them.
 struct Tradeoff {
-  StoredWay plain;   ///< planes of 8 bits, and what they are off by
+  StoredWay plain;   ///< planes of 8 bits, and their error
   StoredWay chosen;  ///< as written
   std::vector<StoredWay> tried;
   double target_error = 0;
 };
 
-/// Throws BadInput where the record is not what kiln-compress writes.
+/// Reads a trade-off. Throws BadInput where the record is not what kiln-compress writes.
 Tradeoff read_tradeoff(const StageRecord& compress);
 
-/// A plot over logarithmic axes: an SVG element and its legend. Ways without error, which such an axis has no place
-/// for, are left out.
+/// Plots it over logarithmic axes: an SVG element and its legend. Ways without error, which a logarithmic axis cannot
+/// show, are left out.
 std::string tradeoff_plot(const Tradeoff& tradeoff);
 
-/// The same as rows of a table.
+/// Lists it as rows of a table.
 std::string tradeoff_table(const Tradeoff& tradeoff);
 
 }  // namespace kiln

@@ -11,7 +11,7 @@ namespace {
 
 std::string percent(const Json& share) { return metric_value("relative_l2", share); }
 
-/// Direct light is 100 %; a bar as long as the share.
+/// Makes a row with a bar as long as the share; direct light is 100 %.
 std::string light_row(const std::string& name, double share, const Json& seconds) {
   return fmt::format(
       "<tr><td>{}<td class=number>{}<td><div class='meter good'><i style='width:{:.1f}%'></i></div><td "

@@ -6,11 +6,11 @@
 
 namespace kiln {
 
-/// Whether an asset's transfer, by its record of the bake, has more than direct light in it.
+/// Tells whether an asset's transfer, by its record of the bake, includes more than direct light.
 bool scatters_light(const Json& bake);
 
-/// Direct light, every bounce and what scatters beneath the surface: energy and time. HTML; empty where there is only
-/// direct light.
+/// Makes the section on direct light, every bounce and subsurface scattering: energy and time. HTML; empty where there
+/// is only direct light.
 std::string transport_section(const Json& bake);
 
 }  // namespace kiln

@@ -25,7 +25,7 @@ std::string verdict_badge(std::span<const BudgetVerdict> verdicts) {
   return fmt::format("<span class='badge bad'>✗ {} of {} budget{} missed</span>", missed, count, plural(count));
 }
 
-/// How much of the budget is used up: 1 is all of it.
+/// Returns the used share of a budget: 1 is all of it.
 double budget_use(const BudgetVerdict& verdict) {
   const double use =
       verdict.budget.is_highest ? verdict.value / verdict.budget.limit : verdict.budget.limit / verdict.value;
@@ -58,7 +58,7 @@ std::string budgets_section(std::span<const BudgetVerdict> verdicts) {
 std::string begin_of(const char* part) { return fmt::format("<!--{}-->", part); }
 std::string end_of(const char* part) { return fmt::format("<!--/{}-->", part); }
 
-/// A part of the page that page_judged_again puts another in the place of.
+/// Wraps a part of the page in marks, so that page_judged_again can replace it.
 std::string marked(const char* part, const std::string& html) { return begin_of(part) + html + end_of(part); }
 
 void replace(std::string& page, const char* part, const std::string& html) {

@@ -1,5 +1,6 @@
-// Time of a frame and GPU memory of every technique, as Chapter 2010, tables 6.1 and 6.2, and of deferred shading where
-// many surfaces lie behind one another; and the error of a few samples of incident light near a mesh. Prints Markdown.
+// Measures the time of a frame and the GPU memory of every technique, as in [Chapter 2010], tables 6.1 and 6.2, and of
+// deferred shading where many surfaces lie behind one another; and the error of a few samples of incident light near a
+// mesh. Prints Markdown.
 //
 //   bench_techniques PRT [--compressed FOLDER] [--width 1280] [--height 720] [--rounds 20] [--gl-device auto]
 #include <CLI/CLI.hpp>
@@ -123,7 +124,7 @@ void compare_shading(const Arguments& arguments, const PrtAsset& asset) {
 
 /// The error of lighting an unshadowed mesh by `count` samples of incident light, against the light of every vertex:
 /// the relative L2 of exit radiance over 18 directions to a ball that stands `distance` half-diagonals from the centre.
-/// `inverse_distance`: contributions as Chapter 2010 means them, 1 / D_s.
+/// `inverse_distance`: contributions as [Chapter 2010] means them, 1 / D_s.
 double error_of_samples(const TriangleMesh& mesh, int count, double distance, bool inverse_distance) {
   const BoundingBox box = bounding_box(mesh);
   const double unit = 0.5 * static_cast<double>(box.diagonal());

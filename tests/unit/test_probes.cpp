@@ -28,7 +28,7 @@ ProbesResult at(const TriangleMesh& mesh, const std::vector<Eigen::Vector3f>& po
 /// The integral of B_i B_j over the upper half sphere, +Y, by products of Gauss-Legendre points in height and equal
 /// steps in azimuth: polynomials of degree 2 (bands - 1) at most are exact but for rounding.
 std::vector<double> half_sphere_matrix(int bands) {
-  // Gauss-Legendre on [0, 1] by Newton's method (Press et al., Numerical Recipes, 4.6).
+  // Gauss-Legendre on [0, 1] by Newton's method ([Press], section 4.6).
   constexpr int order = 16, steps = 64;
   const ShBasis basis(bands);
   const auto size = static_cast<std::size_t>(basis.size());

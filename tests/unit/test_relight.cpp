@@ -326,7 +326,7 @@ TEST(Relight, DirectionalLightIsTheTruncatedCosine) {
         continue;
       }
       const Eigen::Vector3f normal = from - (half_b + std::sqrt(determinant)) * ray;
-      // Ramamoorthi and Hanrahan 2001: sum of A_l (2l+1)/(4 pi) P_l with A = pi, 2 pi/3, pi/4, 0, -pi/24; over what
+      // [Ramamoorthi 2001]: sum of A_l (2l+1)/(4 pi) P_l with A = pi, 2 pi/3, pi/4, 0, -pi/24; over what
       // faces the light, which then has radiance 1.
       constexpr double facing = 0.25 + 0.5 + 5.0 / 16 - 3.0 / 32;
       const double x = normal.dot(towards);

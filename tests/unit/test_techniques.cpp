@@ -205,7 +205,7 @@ TEST(Technique, MemoryCountsWhatIsUploaded) {
   AssetRenderer renderer(asset);
   for (const Technique technique : {Technique::phong, Technique::vertex_prt, Technique::textured_prt})
     renderer.prepare(technique);
-  // 25 planes in 7 layers of 4 bytes; a vertex of Phong has a position and a normal, as in Chapter 2010, table 6.2.
+  // 25 planes in 7 layers of 4 bytes; a vertex of Phong has a position and a normal, as in [Chapter 2010], table 6.2.
   EXPECT_EQ(renderer.memory(Technique::textured_prt).per_mesh, 64u * 32 * 7 * 4);
   EXPECT_EQ(renderer.memory(Technique::phong).per_vertex, 24u);
   EXPECT_EQ(renderer.memory(Technique::vertex_prt).per_vertex, 12u + 28 * 4);

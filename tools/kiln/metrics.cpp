@@ -12,7 +12,8 @@ constexpr const char* of_every_stage = "seconds peak_memory_bytes";
 
 constexpr const char* of_simplify =
     "triangles vertices input_triangles dropped_components dropped_triangles dropped_area dropped_size hausdorff rms "
-    "hausdorff_distance hausdorff_from_result manifold closed degenerate_triangles flipped_triangles collapse_seconds position_bits "
+    "hausdorff_distance hausdorff_from_result manifold closed degenerate_triangles flipped_triangles collapse_seconds "
+    "position_bits "
     "input_components input_border_loops hard_edges repairs.merged_vertices repairs.welded_vertices "
     "repairs.unused_vertices repairs.triangulated_polygons repairs.degenerate_triangles repairs.duplicate_triangles "
     "repairs.dropped_backs repairs.reversed_triangles repairs.nonmanifold_edges repairs.nonmanifold_vertices "

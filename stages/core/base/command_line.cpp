@@ -31,7 +31,7 @@ void require_exists(const fs::path& path) {
   if (!fs::exists(path, error)) throw BadInput(path.string(), "does not exist", "an input file", "check the path");
 }
 
-/// Whether what was printed on stdout got there; says what is wrong.
+/// Tells whether everything printed on stdout was written; prints the reason if not.
 bool stdout_is_whole(const std::string& program) {
   errno = 0;
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
@@ -87,7 +87,7 @@ void CommandLine::input_option(const std::string& name, fs::path& path, const st
 }
 
 void CommandLine::input_option(const std::string& name, std::vector<fs::path>& paths, const std::string& help) {
-  // One path an option, so that a positional input after it is not swallowed.
+  // Take one path per option, so that a positional input after it is not swallowed.
   app_->add_option("--" + name, paths, help)->expected(1)->take_all();
   input_lists_.push_back(&paths);
 }
@@ -247,7 +247,7 @@ int run_program(const std::string& program, const std::function<void()>& body) {
     return fail(program, ExitCode::machine_lacks, error.what());
   } catch (const Interrupted&) {
     std::fprintf(stderr, "%s: interrupted, nothing was written\n", program.c_str());
-    // Ending by the signal itself lets make and the shell see what happened.
+    // End by the signal itself, so that make and the shell see what happened.
     std::signal(noted_signal(), SIG_DFL);
     std::raise(noted_signal());
     return static_cast<int>(ExitCode::failed);

@@ -24,70 +24,70 @@ class CommandLine {
   CommandLine(std::string program, const std::string& purpose);
   ~CommandLine();
 
-  /// A positional input, an existing file or folder; the hash of a file goes into the result.
+  /// Adds a positional input, an existing file or folder; the hash of a file goes into the result.
   void input(const std::string& name, std::filesystem::path& path, const std::string& help);
 
-  /// One or more of them.
+  /// Adds one or more positional inputs.
   void inputs(const std::string& name, std::vector<std::filesystem::path>& paths, const std::string& help);
 
-  /// `-o OUTPUT`, required.
+  /// Adds `-o OUTPUT`, required.
   void output(std::filesystem::path& path, const std::string& help);
 
-  /// An optional input that is named by an option: `--detail FOLDER`.
+  /// Adds an optional input named by an option: `--detail FOLDER`.
   void input_option(const std::string& name, std::filesystem::path& path, const std::string& help);
   void input_option(const std::string& name, std::vector<std::filesystem::path>& paths, const std::string& help);
 
-  /// After parse(): files that inputs or settings name; their hashes go into the result like those of inputs.
+  /// Adds files named by inputs or settings, after parse(); their hashes go into the result like those of inputs.
   void also_read(const std::vector<std::filesystem::path>& files);
 
-  /// `--name TEXT`, which may be repeated, under a heading of --help.
+  /// Adds `--name TEXT`, which may be repeated, under a heading of --help.
   void list_option(const std::string& name, std::vector<std::string>& texts, const std::string& heading,
                    const std::string& help);
 
-  /// The settings of the stage, under a heading of --help.
+  /// Adds the settings of the stage, under a heading of --help.
   void options(const std::string& heading, const OptionSet& options);
 
-  /// For what the above does not cover.
+  /// Returns the parser, for what the functions above do not cover.
   CLI::App& app() { return *app_; }
 
-  /// After parse(): whether `--name` was given.
+  /// Tells, after parse(), whether `--name` was given.
   bool given(const std::string& name) const;
 
-  /// Parses, limits the number of threads; throws CLI::ParseError (run_program knows it) and BadInput where an input
-  /// does not exist.
+  /// Parses the arguments and limits the number of threads. Throws CLI::ParseError (run_program handles it), and
+  /// BadInput where an input does not exist.
   void parse(int argc, char** argv);
 
   bool quiet() const { return quiet_; }
   int threads() const { return threads_; }
   int seed() const { return seed_; }
 
-  /// A progress bar as this command line wants it.
+  /// Returns a progress bar, which shows nothing with --quiet.
   ProgressFunction progress(const std::string& label) const;
 
-  /// A line on stderr, unless --quiet.
+  /// Prints a line on stderr, unless --quiet.
   void say(const std::string& line) const;
 
-  /// Notes warnings, whole sentences without a full stop, for the result, each once; says on stderr, even with --quiet,
-  /// those that are not among `said`, by an earlier stage.
+  /// Records warnings (whole sentences without a full stop) for the result, each once, and prints them on stderr, even
+  /// with --quiet; those among `said` were printed by an earlier stage and are not repeated.
   void warn(const std::vector<std::string>& warnings, const std::vector<std::string>& said = {});
 
-  /// The result: stage, version, settings, inputs' hashes, seconds, peak_memory_bytes, warnings, then `metrics` at the
-  /// same level. `seconds` is the stage's own work, without reading and writing files.
+  /// Returns the result: stage, version, settings, inputs' hashes, seconds, peak_memory_bytes, warnings, then `metrics`
+  /// at the same level. `seconds` is the stage's own work, without reading and writing files.
   Json result(double seconds, const Json& metrics) const;
 
   /// Writes `result`, and under "outputs" the hash of each of `outputs`, to `<stage>.json`; commits them all, and
   /// prints `result` on stdout if --json was given.
   void finish(OutputSet& outputs, const Json& result) const;
 
-  /// The same without `<stage>.json`, for tools whose output is one file anywhere.
+  /// Finishes without `<stage>.json`, for tools whose output is a single file.
   void finish_without_record(OutputSet& outputs, const Json& result) const;
 
-  /// The same for tools that have no output: prints `result` on stdout if --json was given.
+  /// Finishes without outputs: prints `result` on stdout if --json was given.
   void finish_without_output(const Json& result) const;
 
  private:
-  /// The command line's words, values that look like options, such as "-z", joined to the option before that takes
-  /// them.
+  /// Returns the command line's words. Values that look like options, such as "-z", are joined to the option before
+  /// that takes them.
   std::vector<std::string> joined_values(int argc, char** argv) const;
 
   std::string program_;

@@ -15,7 +15,7 @@ enum class ExitCode : int {
   machine_lacks = 5,  ///< the machine lacks something, such as a GL driver
 };
 
-/// A file (or folder) is not what the stage needs.
+/// A file (or folder) does not hold what the stage needs.
 class BadInput : public std::runtime_error {
  public:
   /// The message reads "FILE: FOUND; expected EXPECTED; REMEDY".
@@ -26,7 +26,7 @@ class BadInput : public std::runtime_error {
         expected_(expected),
         remedy_(remedy) {}
 
-  /// The parts of the message.
+  /// Returns the parts of the message.
   const std::string& file() const { return file_; }
   const std::string& found() const { return found_; }
   const std::string& expected() const { return expected_; }
@@ -42,7 +42,7 @@ class WrongUsage : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A quality budget was missed; the outputs are written nevertheless.
+/// A quality budget was missed; the outputs are written all the same.
 class BudgetMissed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -60,7 +60,7 @@ class MachineLacks : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Ctrl-C, or a polite kill.
+/// The process was asked to stop: Ctrl-C, or SIGTERM.
 class Interrupted : public std::runtime_error {
  public:
   Interrupted() : std::runtime_error("interrupted") {}

@@ -8,16 +8,16 @@
 
 namespace kiln {
 
-/// What a camera frames, besides where it stands.
+/// Framing of a camera, beside where it stands.
 struct FramingSettings {
   double zoom = 1;                ///< magnifies the middle of the picture
   std::string target = "auto";    ///< "X,Y,Z", object units, in the middle of the picture
-  std::string distance = "auto";  ///< of the camera from the target, object units
+  std::string distance = "auto";  ///< distance of the camera from the target, object units
 
-  /// None for auto. Throws WrongUsage.
+  /// Returns the target; none for auto. Throws WrongUsage.
   std::optional<std::array<double, 3>> target_place() const;
 
-  /// 0 for auto. Throws WrongUsage.
+  /// Returns the distance; 0 for auto. Throws WrongUsage.
   double target_distance() const;
 };
 

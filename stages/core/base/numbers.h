@@ -1,6 +1,6 @@
 #pragma once
 
-// A header alone, so that rooms which link nothing may use it.
+// This header has no .cpp file, so that rooms which link nothing may use it.
 
 #include <array>
 #include <charconv>
@@ -14,8 +14,8 @@
 
 namespace kiln {
 
-/// Numbers between commas, as in "1,0.9,0.8"; all finite and within `lowest` to `highest`. Throws WrongUsage, which
-/// calls the value `name`, for anything else.
+/// Parses numbers between commas, as in "1,0.9,0.8"; all finite and within `lowest` to `highest`. Throws WrongUsage for
+/// anything else; its message calls the value `name`.
 inline std::vector<double> parse_numbers(std::string_view name, std::string_view text, double lowest, double highest) {
   std::vector<double> numbers;
   for (std::size_t begin = 0;;) {
@@ -34,7 +34,7 @@ inline std::vector<double> parse_numbers(std::string_view name, std::string_view
   }
 }
 
-/// One grey number or R,G,B, as parse_numbers has them.
+/// Parses one grey number or R,G,B, as parse_numbers does.
 inline std::array<float, 3> parse_colour(std::string_view name, std::string_view text, double lowest, double highest) {
   const std::vector<double> numbers = parse_numbers(name, text, lowest, highest);
   if (numbers.size() != 1 && numbers.size() != 3)

@@ -21,15 +21,15 @@ struct Extent {
   Extent(int across, int up) : width(across), height(up) {}
   bool operator==(const Extent&) const = default;
 
-  /// "512" or "1024x512".
+  /// Writes "512" or "1024x512".
   std::string text() const;
 };
 
-/// "0.8" (three times that) or "0.8,0.5,0.2", also with the semicolons that a list of pipeline.yaml becomes: finite
-/// numbers for red, green and blue. Nothing for other text.
+/// Parses red, green and blue: "0.8" (three times that) or "0.8,0.5,0.2", also with the semicolons that a list of
+/// pipeline.yaml becomes; numbers are finite. Nothing for other text.
 std::optional<std::array<double, 3>> parse_colours(const std::string& text);
 
-/// One setting, as the command line, pipeline.yaml and the reports know it.
+/// Setting as the command line, pipeline.yaml and the reports know it.
 struct Option {
   std::string name;                             ///< as in `--name`
   std::string help;                             ///< one sentence, with the unit in it
@@ -39,43 +39,43 @@ struct Option {
   std::function<Json()> get;
 };
 
-/// The settings of one stage, bound to its settings struct, which must outlive the set. The struct's values at the time
-/// of binding are the defaults.
+/// Settings of one stage, bound to its settings struct, which must outlive the set. The struct's values when they are
+/// bound are the defaults.
 class OptionSet {
  public:
-  /// An integer of `lowest` to `highest`.
+  /// Adds an integer of `lowest` to `highest`.
   OptionSet& integer(std::string name, int& value, int lowest, int highest, std::string help);
 
-  /// The same, or "auto", which is kept as 0; `lowest` is above that.
+  /// Adds an integer or "auto", which is stored as 0; `lowest` is above 0.
   OptionSet& integer_or_auto(std::string name, int& value, int lowest, int highest, std::string help);
 
-  /// A number of `lowest` to `highest`, both included, finite; pass an `unset` value that stands for "not given" or
-  /// "automatic".
+  /// Adds a number of `lowest` to `highest`, both included, finite.
   OptionSet& number(std::string name, double& value, double lowest, double highest, std::string help);
 
-  /// A number as above, or "auto", which is kept as nothing.
+  /// Adds a number or "auto", which is stored as nothing.
   OptionSet& number_or_auto(std::string name, std::optional<double>& value, double lowest, double highest,
                             std::string help);
 
-  /// "1024" (square) or "1024x512" (width x height), both of `lowest` to `highest`. In JSON a square is a number, else
-  /// the text. 0, which stands for "automatic" where `lowest` is 0, is square only.
+  /// Adds an extent: "1024" (square) or "1024x512" (width x height), both of `lowest` to `highest`. JSON has a number
+  /// for a square, else the text. 0, which means "automatic" where `lowest` is 0, is always square.
   OptionSet& extent(std::string name, Extent& value, int lowest, int highest, std::string help);
 
-  /// A switch, off unless given.
+  /// Adds a switch, off unless given.
   OptionSet& toggle(std::string name, bool& value, std::string help);
 
-  /// Any text.
+  /// Adds any text.
   OptionSet& text(std::string name, std::string& value, std::string help);
 
-  /// Text that `check` throws WrongUsage for where it does not hold; `value_range` says what may stand there.
+  /// Adds a text for which `check` throws WrongUsage where it is not valid; `value_range` says what is.
   OptionSet& checked_text(std::string name, std::string& value, std::string value_range, std::string help,
                           std::function<void(const std::string&)> check);
 
-  /// Text that is kept parsed: `set` throws WrongUsage for what it does not understand, `print` gives the text back.
+  /// Adds a text that is stored parsed: `set` throws WrongUsage for what it does not understand, `print` returns the
+  /// text.
   OptionSet& parsed(std::string name, std::string value_range, std::string help,
                     std::function<void(const std::string&)> set, std::function<std::string()> print);
 
-  /// One of several words, each standing for a value of an enumeration.
+  /// Adds one of several words, each standing for a value of an enumeration.
   template <class Enum>
   OptionSet& choice(std::string name, Enum& value, std::vector<std::pair<std::string, Enum>> words, std::string help) {
     std::vector<std::string> names;
@@ -92,13 +92,13 @@ class OptionSet {
 
   const std::vector<Option>& options() const { return options_; }
 
-  /// The option of that name, or null.
+  /// Returns the option of that name, or null.
   const Option* find(const std::string& name) const;
 
-  /// The same options but those of these names, which a tool has no use for.
+  /// Returns a copy without the options of these names.
   OptionSet without(const std::vector<std::string>& names) const;
 
-  /// Every setting by name, for <stage>.json.
+  /// Returns every setting by name, for <stage>.json.
   Json to_json() const;
 
  private:

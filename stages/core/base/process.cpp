@@ -20,10 +20,10 @@ namespace kiln {
 
 namespace {
 
-// How often a waiting parent looks whether it was asked to stop.
+// Interval at which a waiting parent checks whether it was asked to stop.
 constexpr int poll_milliseconds = 10;
 
-/// The reading end of one of the child's streams, cut into lines.
+/// Reading end of one of the child's streams, split into lines.
 class LineReader {
  public:
   LineReader(int stream, const std::function<void(const std::string&)>& on_line, posix_spawn_file_actions_t& actions)
@@ -39,7 +39,7 @@ class LineReader {
   LineReader(const LineReader&) = delete;
   LineReader& operator=(const LineReader&) = delete;
 
-  /// To be called once the child has its own copy of the writing end.
+  /// Starts reading, once the child has its own copy of the writing end.
   void start() {
     if (ends_[1] >= 0) close(ends_[1]);
     ends_[1] = -1;
@@ -93,10 +93,11 @@ std::vector<char*> pointers(std::vector<std::string>& texts) {
   return result;
 }
 
-/// Passes our own interruption on, once.
+/// Passes our own interruption on to the child, once.
 void pass_on_signal(pid_t child, bool& passed_on) {
   if (passed_on || noted_signal() == 0) return;
-  // Not SIGINT: a terminal has sent that to the child already, and make hands only SIGTERM on to its children.
+  // Send SIGTERM, not SIGINT: a terminal has sent SIGINT to the child already, and make passes only SIGTERM on to its
+  // children.
   kill(child, SIGTERM);
   passed_on = true;
 }

@@ -9,13 +9,13 @@
 namespace kiln {
 
 struct ProcessSettings {
-  std::filesystem::path folder;                                  ///< to run in; empty: where this process runs
-  std::vector<std::pair<std::string, std::string>> environment;  ///< to set; an empty value removes the variable
-  std::function<void(const std::string& line)> on_output_line;   ///< gets stdout; empty: the child shares ours
-  std::function<void(const std::string& line)> on_error_line;    ///< gets stderr; empty: the child shares ours
+  std::filesystem::path folder;                                  ///< folder to run in; empty: that of this process
+  std::vector<std::pair<std::string, std::string>> environment;  ///< variables to set; an empty value removes one
+  std::function<void(const std::string& line)> on_output_line;   ///< receives stdout; empty: the child shares ours
+  std::function<void(const std::string& line)> on_error_line;    ///< receives stderr; empty: the child shares ours
 };
 
-/// How a process ended: by an exit status, or by a signal.
+/// End of a process: an exit status, or a signal.
 struct ProcessEnd {
   int exit_status = 0;
   int signal = 0;  ///< 0: it exited by itself
@@ -23,12 +23,12 @@ struct ProcessEnd {
   bool succeeded() const { return exit_status == 0 && signal == 0; }
 };
 
-/// Runs a program without a shell (arguments[0] is a path, or a name looked up in PATH) and waits for its end. Asked to
-/// stop (see stop_on_signals), it passes that on and still waits, so that nothing is left running. Throws MachineLacks
-/// where the program cannot be started.
+/// Runs a program without a shell (arguments[0] is a path, or a name looked up in PATH) and waits for its end. If this
+/// process is asked to stop (see stop_on_signals), passes that on and still waits, so that nothing is left running.
+/// Throws MachineLacks where the program cannot be started.
 ProcessEnd run_process(const std::vector<std::string>& arguments, const ProcessSettings& settings = {});
 
-/// The folder that this process' executable lies in, where its siblings are.
+/// Returns the folder of this process's executable, which also holds the other programs.
 std::filesystem::path program_folder();
 
 }  // namespace kiln

@@ -12,7 +12,7 @@ namespace kiln {
 
 namespace {
 
-// The one mutable global of the house: a signal handler can reach nothing else.
+// The one mutable global of the tree: a signal handler can reach nothing else.
 volatile std::sig_atomic_t g_noted_signal = 0;
 
 }  // namespace

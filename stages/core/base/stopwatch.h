@@ -4,7 +4,7 @@
 
 namespace kiln {
 
-/// Wall-clock seconds since construction.
+/// Timer of wall-clock seconds since construction.
 class Stopwatch {
  public:
   double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
@@ -13,7 +13,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Peak resident memory of this process.
+/// Returns the peak resident memory of this process.
 long long peak_memory_bytes();
 
 }  // namespace kiln

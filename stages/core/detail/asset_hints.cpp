@@ -19,7 +19,7 @@ Json read_result(const std::filesystem::path& file) {
   return result;
 }
 
-/// The number under `key`, of the metrics or else of the settings; 0 where there is none above 0.
+/// Returns the number under `key` of the metrics, else of the settings; 0 where there is none above 0.
 double positive_number(const Json& result, const char* key) {
   for (const Json& place : {result, result.value("settings", Json::object())})
     if (place.is_object() && place.contains(key) && place[key].is_number() && place[key].get<double>() > 0)
@@ -33,7 +33,7 @@ AssetHints read_asset_hints(const std::filesystem::path& folder) {
   AssetHints hints;
   const std::filesystem::path atlas_file = folder / "atlas.json";
   const Json atlas = read_result(atlas_file);
-  const double size = positive_number(atlas, "size");  // of a square atlas: older records have nothing else
+  const double size = positive_number(atlas, "size");  // older records, of square atlases, have nothing else
   const double width = positive_number(atlas, "width"), height = positive_number(atlas, "height");
   if (std::max({size, width, height}) > 16384)
     throw BadInput(atlas_file.string(), "a size of more than 16384 texels", "1 to 16384", "run kiln-atlas again");

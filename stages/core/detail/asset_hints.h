@@ -8,13 +8,13 @@
 
 namespace kiln {
 
-/// What earlier stages noted beside the atlas; 0 where they did not.
+/// Facts that earlier stages recorded beside the atlas; 0 where they did not.
 struct AssetHints {
-  int width = 0;  ///< atlas.json: texels that the atlas was packed for
+  int width = 0;  ///< atlas.json: size that the atlas was packed for, texels
   int height = 0;
-  double hausdorff_distance = 0;           ///< simplify.json: from the high to the low mesh, object units
-  ImportSettings import = {};              ///< simplify.json: how the high mesh was read, which later stages do alike
-  std::vector<std::string> warnings = {};  ///< simplify.json: what was said of the high mesh
+  double hausdorff_distance = 0;  ///< simplify.json: from the high to the low mesh, object units
+  ImportSettings import = {};     ///< simplify.json: import settings of the high mesh, which later stages reuse
+  std::vector<std::string> warnings = {};  ///< simplify.json: warnings about the high mesh
 };
 
 /// Reads atlas.json and simplify.json of `folder`, where there are any. Throws BadInput for a file that is no JSON

@@ -23,7 +23,8 @@ using Pixel = Eigen::Map<Eigen::Vector3f>;
 
 Pixel pixel(Image<float>& image, int i, int j) { return Pixel(image.pixel(i, j).data()); }
 
-/// Means of unit vectors are shorter than one; opposite ones may cancel, for which there is `substitute`.
+/// Normalises vectors: means of unit vectors are shorter than one. Means of opposite ones may vanish and become
+/// `substitute`.
 void normalise(Image<float>& image, const Eigen::Vector3f& substitute) {
   for (int j = 0; j < image.height(); ++j)
     for (int i = 0; i < image.width(); ++i) {
@@ -75,7 +76,8 @@ std::string size_text(const Image<T>& image) {
          std::to_string(image.channels()) + (image.channels() == 1 ? " channel" : " channels");
 }
 
-/// The map, or the constant that stands in the record: three linear values. A record of an older kiln-normals has
+/// Reads the albedo map, or the constant in the record: three linear values. Records of older versions of kiln-normals
+/// have neither; the surface is white then.
 /// neither, and then the surface is white.
 void read_albedo(const std::filesystem::path& folder, const Json& record, DetailMaps& maps) {
   const Json albedo = record.value("albedo", Json::object());
@@ -147,7 +149,7 @@ Image<float> decode_normals(const Image<std::uint16_t>& encoded, NormalSpace spa
   Image<float> map = dequantise_normals(encoded);
   if (space == NormalSpace::tangent) {
     convert_covered(map, atlas, raster, to_object_space);
-    // Outside the charts there is no frame to convert by.
+    // Outside the charts there is no frame to convert with.
     fill_gutters(map, coverage_of(raster));
     normalise(map, NormalSpace::object);
   }
@@ -167,7 +169,7 @@ DetailMaps load_detail_maps(const std::filesystem::path& folder, const TriangleM
   maps.width = coverage.width();
   maps.height = coverage.height();
 
-  // One size for all.
+  // Check that all maps have one size.
   if (coverage.channels() != 1) refuse(folder / "coverage.png", size_text(coverage), "a grey picture");
   const std::string expected = std::to_string(maps.width) + " x " + std::to_string(maps.height) +
                                " texels of 3 channels, as coverage.png has texels";
@@ -179,7 +181,7 @@ DetailMaps load_detail_maps(const std::filesystem::path& folder, const TriangleM
   maps.normal_space = space;
   read_albedo(folder, record, maps);
 
-  // Made from this very atlas.
+  // Check that the maps were made from this very atlas.
   if (atlas.normals.size() != atlas.positions.size() || atlas.uvs.size() != atlas.positions.size())
     throw std::invalid_argument("load_detail_maps: the atlas mesh needs normals and uvs");
   const UvRaster raster = rasterise_uvs(atlas, maps.width, maps.height);

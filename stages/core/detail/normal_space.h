@@ -2,8 +2,7 @@
 
 namespace kiln {
 
-/// The space of a normal map's vectors: the object's, or that of the low mesh's MikkTSpace frames, whose green points
-/// along +v.
+/// Space of a normal map's vectors: object space, or the low mesh's MikkTSpace frames (green points along +v).
 enum class NormalSpace { object, tangent };
 
 }  // namespace kiln

@@ -2,8 +2,7 @@
 
 namespace kiln {
 
-/// What is done about the two sides of an atlas' seams: texels near them are changed so that bilinear lookups agree, or
-/// left as they are.
+/// Treatment of the two sides of an atlas's seams: change texels near them until bilinear lookups agree, or keep them.
 enum class SeamChoice { equalise, keep };
 
 }  // namespace kiln

@@ -12,23 +12,23 @@ namespace kiln {
 
 namespace {
 
-/// Less than 2 and a lookup between two samples could see a texel that no sample sees; with 2, lookups between them
-/// still are up to twice as far apart as with 3, and 4 change nothing more.
+/// Sampling density along seams. Below 2, a lookup between two samples could see a texel that no sample sees; with 2,
+/// such lookups still differ up to twice as much as with 3; with 4 nothing more changes.
 constexpr double samples_per_texel = 3;
 
-/// Points with more than so many times the mean mismatch are weighed more.
+/// Threshold for reweighting: points with more than this multiple of the mean mismatch get more weight.
 constexpr double times_usual = 3;
 
-/// A bound on factors that keeps the normal equations well conditioned.
+/// Upper bound of the factors, which keeps the normal equations well conditioned.
 constexpr double largest_factor = 1e4;
 
 using Sparse = Eigen::SparseMatrix<double>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
-/// What a seam's side turns values by before they are compared.
+/// Rotation applied to the values of a seam's side before they are compared.
 using Frame = Eigen::Matrix3d;
 
-/// One equation: the sum over both sides of frame * weight * value is 0.
+/// Equation: the sum over both sides of frame * weight * value is 0.
 struct Equation {
   struct Term {
     std::uint32_t texel;
@@ -41,7 +41,7 @@ struct Equation {
   double weight = 0;
 };
 
-/// Where a texel of the gutter lies across its nearest seam.
+/// Place of a gutter texel across its nearest seam.
 struct Across {
   float distance_texels = std::numeric_limits<float>::infinity();
   std::uint32_t edge = 0;
@@ -50,10 +50,10 @@ struct Across {
 
 constexpr std::uint32_t none = ~0u;
 
-/// A seam's edge in one chart, in texels.
+/// Edge of a seam in one chart, in texels.
 struct Segment {
   Eigen::Vector2f from, along;
-  Eigen::Vector2f outwards;  ///< perpendicular to it, as long, away from its triangle
+  Eigen::Vector2f outwards;  ///< perpendicular to `along`, as long, away from its triangle
 
   Segment(const Seams& seams, const Seams::Edge& edge, int side) {
     const TriangleMesh& mesh = seams.atlas();
@@ -69,7 +69,8 @@ struct Segment {
     if (outwards.dot(corner(3 - corners[0] - corners[1]) - from) > 0) outwards = -outwards;
   }
 
-  /// Of a point in texels: how far along (0 to 1) and outwards, in lengths of the edge.
+  /// Returns coordinates of a point (texels) relative to the edge, in lengths of the edge: along it (0 to 1) and
+  /// outwards.
   Eigen::Vector2f coordinates(const Eigen::Vector2f& point) const {
     const float squared = along.squaredNorm();
     if (!(squared > 0)) return {0, std::numeric_limits<float>::infinity()};
@@ -89,28 +90,28 @@ struct SeamSolver::System {
   int width = 0, height = 0;
   int block = 1;                        ///< unknowns per texel
   std::vector<std::uint32_t> unknowns;  ///< texels
-  std::vector<std::uint32_t> pinned;    ///< texels that equations see and that stay
-  std::vector<double> keep;             ///< weight of its own value, per unknown
-  std::vector<SeamPoint> points;        ///< the first equations are theirs
-  std::vector<double> factors;          ///< of the points' weights
+  std::vector<std::uint32_t> pinned;    ///< texels that equations see but must not change
+  std::vector<double> keep;             ///< weight of keeping its value, per unknown
+  std::vector<SeamPoint> points;        ///< points of the first equations
+  std::vector<double> factors;          ///< factors of the points' weights
   std::vector<Equation> equations;
   Sparse normal;                        ///< the normal equations, lower half
   Sparse symmetric;                     ///< both halves
   Sparse from_pinned;                   ///< rows: unknowns, columns: pinned
-  std::vector<int> own_at, foreign_at;  ///< where products stand in those two, in for_each_product's order
+  std::vector<int> own_at, foreign_at;  ///< places of products in those two, in for_each_product's order
   Eigen::SimplicialLDLT<Sparse> factor;
 
   void number_places(std::span<const std::uint32_t> number);
   void lay_out();
   void factorise();
-  /// Calls visit(equation's number, row's term, column's term).
+  /// Calls visit(index of the equation, row's term, column's term).
   template <class Visit>
   void for_each_product(const Visit& visit) const;
 };
 
 namespace {
 
-/// Equality at points along the seams.
+/// Makes the equations of equality at points along the seams.
 std::vector<Equation> seam_equations(const Seams& seams, std::span<const SeamPoint> points, NormalSpace space) {
   const TriangleMesh& mesh = seams.atlas();
   const std::vector<TangentFrame> frames =
@@ -138,8 +139,8 @@ std::vector<Equation> seam_equations(const Seams& seams, std::span<const SeamPoi
   return equations;
 }
 
-/// The least squares of `normal` x = `right` with every x of `lowest` to `highest`, from the free ones: each in turn
-/// gets its best value in these bounds, given the others.
+/// Solves the bounded least squares of `normal` x = `right` with every x in `lowest` to `highest`, starting from the
+/// free solution: each unknown in turn gets its best value within the bounds, given the others.
 void keep_within(const Sparse& normal, const Eigen::VectorXd& right, double lowest, double highest,
                  Eigen::VectorXd& values) {
   constexpr int most_sweeps = 50;
@@ -161,14 +162,14 @@ void keep_within(const Sparse& normal, const Eigen::VectorXd& right, double lowe
   }
 }
 
-/// For every texel among `number`ed ones that is not covered, the seam that is nearest.
+/// Finds the nearest seam of every texel among the `number`ed ones that is not covered.
 std::vector<Across> nearest_seams(const Seams& seams, std::span<const std::uint8_t> covered,
                                   std::span<const std::uint32_t> number, std::size_t count) {
   std::vector<Across> nearest(count);
   for (std::uint32_t e = 0; e < seams.edges().size(); ++e)
     for (int side = 0; side < 2; ++side) {
       const Segment segment(seams, seams.edges()[e], side);
-      // The texels about the edge, walked along its longer direction.
+      // Walk over the texels about the edge along its longer direction.
       const int steps = std::max(1, static_cast<int>(std::ceil(segment.along.norm())));
       for (int k = 0; k <= steps; ++k) {
         const Eigen::Vector2f at = segment.from + static_cast<float>(k) / static_cast<float>(steps) * segment.along;
@@ -232,7 +233,7 @@ void SeamSolver::System::lay_out() {
   from_pinned.resize(size, static_cast<Eigen::Index>(block) * static_cast<Eigen::Index>(pinned.size()));
   from_pinned.setFromTriplets(foreign.begin(), foreign.end());
 
-  // Where each product goes, so that other weights are put in without searching.
+  // Record where each product goes, so that new weights need no search.
   const auto find = [](const Sparse& matrix, int i, int j) {
     const int* column = matrix.innerIndexPtr() + matrix.outerIndexPtr()[j];
     return static_cast<int>(std::lower_bound(column, matrix.innerIndexPtr() + matrix.outerIndexPtr()[j + 1], i) -
@@ -286,7 +287,7 @@ SeamSolver::SeamSolver(const Seams& seams, std::span<const std::uint8_t> covered
   std::vector<Equation>& equations = own.equations;
   equations = seam_equations(seams, own.points, space);
 
-  // Unknown is what lookups on seams see.
+  // Unknowns are the texels that lookups on seams see.
   std::vector<std::uint32_t> number(covered.size(), none);
   for (const Equation& equation : equations)
     for (const Equation::Term& term : equation.terms) number[term.texel] = 0;
@@ -296,7 +297,7 @@ SeamSolver::SeamSolver(const Seams& seams, std::span<const std::uint8_t> covered
       own.unknowns.push_back(texel);
     }
 
-  // Gutter texels continue what lies across.
+  // Gutter texels continue what lies across the seam.
   const std::vector<Across> nearest = nearest_seams(seams, covered, number, own.unknowns.size());
   const std::vector<TangentFrame> frames =
       space == NormalSpace::tangent ? tangent_frames(seams.atlas()) : std::vector<TangentFrame>{};
@@ -318,7 +319,7 @@ SeamSolver::SeamSolver(const Seams& seams, std::span<const std::uint8_t> covered
     equation.terms.push_back({own.unknowns[k], 1, 0});
     for (std::size_t n = 0; n < 4; ++n)
       if (footprint.weights[n] > 0) equation.terms.push_back({footprint.texels[n], -footprint.weights[n], 1});
-    // Both frames at the edge: beyond it there are none.
+    // Take both frames at the edge: beyond it there are none.
     for (int s = 0; s < 2; ++s) {
       Frame& frame = equation.frames[static_cast<std::size_t>(s)];
       frame.setIdentity();

@@ -13,7 +13,7 @@ namespace kiln {
 
 namespace {
 
-/// A triangle's side, from the vertex with the smaller position number to that with the larger.
+/// Side of a triangle, from the vertex with the smaller position number to that with the larger.
 struct HalfEdge {
   std::uint32_t low = 0, high = 0;
   std::uint32_t triangle = 0;
@@ -23,7 +23,7 @@ struct HalfEdge {
   auto operator<=>(const HalfEdge&) const = default;
 };
 
-/// One number per position, the same for the same bits.
+/// Numbers the positions: equal bits get the same number.
 std::vector<std::uint32_t> number_positions(const std::vector<Eigen::Vector3f>& positions) {
   std::vector<std::uint32_t> order(positions.size()), number(positions.size());
   for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -64,7 +64,7 @@ bool is_seam(const TriangleMesh& mesh, const HalfEdge& a, const HalfEdge& b) {
   return false;
 }
 
-/// Whether the normals of the two sides differ at either end, by more than a file's rounding.
+/// Tells whether the normals of the two sides differ at either end, by more than a file's rounding.
 bool is_hard(const TriangleMesh& mesh, const HalfEdge& a, const HalfEdge& b) {
   constexpr float least_cosine = 0.9994f;  // 2 degrees
   if (mesh.normals.empty()) return false;
@@ -73,7 +73,7 @@ bool is_hard(const TriangleMesh& mesh, const HalfEdge& a, const HalfEdge& b) {
   return false;
 }
 
-/// How well the normals of both at the edge's ends agree.
+/// Scores how well the normals of both sides agree at the edge's ends.
 float agreement(const TriangleMesh& mesh, const HalfEdge& a, const HalfEdge& b) {
   if (mesh.normals.empty()) return 0;
   float sum = 0;
@@ -127,7 +127,8 @@ Seams::Seams(const TriangleMesh& atlas, int width, int height) : atlas_(&atlas),
       add(halves[begin], halves[begin + 1]);
       continue;
     }
-    // Sheets that touch in an edge: those continue one another that run against each other with the same normals.
+    // Where sheets touch in one edge, pair the sides that run against each other with the same normals: these continue
+    // one another.
     for (std::size_t a = begin; a < end; ++a) {
       if (!halves[a].forwards) continue;
       const HalfEdge* best = nullptr;

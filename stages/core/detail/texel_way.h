@@ -5,7 +5,8 @@
 
 namespace kiln {
 
-/// How a texel's point of the high mesh was found, as match.png shows it; or that no one can see that point.
+/// Way in which a texel's point of the high mesh was found, as match.png shows it; `buried`: nothing can see that
+/// point.
 enum class TexelWay : std::uint8_t { uncovered, ray_outwards, ray_inwards, nearest_point, disagreeing, buried };
 
 struct TexelWayColour {
@@ -13,7 +14,7 @@ struct TexelWayColour {
   std::array<std::uint8_t, 3> colour;  ///< sRGB
 };
 
-/// By TexelWay.
+/// Legend of match.png, by TexelWay.
 inline constexpr std::array<TexelWayColour, 6> texel_way_colours = {{{"not covered", {24, 22, 20}},
                                                                      {"ray outwards", {214, 164, 88}},
                                                                      {"ray inwards", {74, 132, 150}},

@@ -33,7 +33,7 @@ struct Candidate {
   bool software = false;
 };
 
-/// The displays to try for `device`, best first.
+/// Lists the displays to try for `device`, best first.
 std::vector<Candidate> candidates(const std::string& device) {
   std::vector<Candidate> found;
   const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
@@ -64,7 +64,7 @@ std::vector<Candidate> candidates(const std::string& device) {
       throw MachineLacks("there is no GL device " + device + ", only " + std::to_string(count) +
                          " of them, counted from 0");
   }
-  // Mesa's surfaceless platform: where a GPU answers here it is one that Mesa drives.
+  // Mesa's surfaceless platform: a GPU that answers here is one that Mesa drives.
   if (!number && has_word(client, "EGL_MESA_platform_surfaceless"))
     found.push_back({get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr), true});
   return found;

@@ -5,7 +5,7 @@
 
 namespace kiln {
 
-/// An OpenGL 4.5 core context without a window, current on the thread that made it for as long as it lives.
+/// OpenGL 4.5 core context without a window, current on the thread that made it for as long as it lives.
 class EglContext {
  public:
   /// `device` is "auto" (the first hardware device that gives a context, else the software renderer), "software", or
@@ -16,10 +16,10 @@ class EglContext {
   EglContext(const EglContext&) = delete;
   EglContext& operator=(const EglContext&) = delete;
 
-  /// GL_RENDERER, such as "llvmpipe (LLVM 15.0.6, 256 bits)".
+  /// Returns GL_RENDERER, such as "llvmpipe (LLVM 15.0.6, 256 bits)".
   const std::string& renderer() const { return renderer_; }
 
-  /// Whether a CPU does the work.
+  /// Tells whether a CPU does the work.
   bool is_software() const;
 
  private:
@@ -28,7 +28,7 @@ class EglContext {
   std::string renderer_;
 };
 
-/// Whether EglContext(device, ...) would be a GPU's.
+/// Tells whether EglContext(device, ...) would be a GPU's.
 bool has_hardware_egl(const std::string& device);
 
 }  // namespace kiln

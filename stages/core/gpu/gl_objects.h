@@ -7,7 +7,7 @@
 
 namespace kiln {
 
-/// Owns one GL name; the context that made it must be current when it goes.
+/// Owner of one GL name; the context that made it must be current at destruction.
 template <void (*destroy)(GLuint)>
 class GlObject {
  public:
@@ -42,7 +42,7 @@ using GlVertexArray = GlObject<destroy_vertex_array>;
 using GlProgram = GlObject<destroy_program>;
 using GlSampler = GlObject<destroy_sampler>;
 
-/// A buffer of fixed size with that content.
+/// Makes a buffer of fixed size with this content.
 template <class Value>
 GlBuffer make_buffer(std::span<const Value> values, GLbitfield flags = 0) {
   GLuint name = 0;
@@ -51,7 +51,7 @@ GlBuffer make_buffer(std::span<const Value> values, GLbitfield flags = 0) {
   return GlBuffer(name);
 }
 
-/// A zeroed buffer of `bytes`.
+/// Makes a zeroed buffer of `bytes`.
 inline GlBuffer make_zero_buffer(GLsizeiptr bytes, GLbitfield flags = 0) {
   GLuint name = 0;
   glCreateBuffers(1, &name);
@@ -60,7 +60,7 @@ inline GlBuffer make_zero_buffer(GLsizeiptr bytes, GLbitfield flags = 0) {
   return GlBuffer(name);
 }
 
-/// A buffer of `bytes` whose content is replaced again and again.
+/// Makes a buffer of `bytes` whose content is replaced again and again.
 inline GlBuffer make_refilled_buffer(std::size_t bytes) {
   GLuint name = 0;
   glCreateBuffers(1, &name);

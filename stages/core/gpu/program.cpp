@@ -9,7 +9,7 @@ namespace kiln {
 
 namespace {
 
-/// The text of a shader with its includes put in.
+/// Returns the text of a shader with its includes inserted.
 std::string expand(std::string_view file, int depth = 0) {
   const std::string_view text = shader_text(file);
   if (text.empty() || depth > 8) throw std::runtime_error("no shader " + std::string(file));

@@ -10,7 +10,7 @@
 
 namespace kiln {
 
-/// `#define NAME VALUE` lines put before a shader's text.
+/// Lines `#define NAME VALUE` put before a shader's text.
 using ShaderDefines = std::vector<std::pair<std::string, std::string>>;
 
 /// Compiles and links the shaders of shaders/ with these file names; the suffix (.vert, .frag, .comp) tells the GPU
@@ -18,11 +18,10 @@ using ShaderDefines = std::vector<std::pair<std::string, std::string>>;
 /// std::runtime_error with the driver's log.
 GlProgram load_program(std::initializer_list<std::string_view> files, const ShaderDefines& defines = {});
 
-/// Where `program` has that uniform; -1, which glUniform ignores, where it has none.
+/// Returns the location of a uniform of `program`; -1, which glUniform ignores, where it has none.
 GLint uniform_location(const GlProgram& program, const char* name);
 
-/// Throws std::runtime_error that names `doing` if GL has noted an error; MachineLacks where that is the lack of
-/// memory.
+/// Throws std::runtime_error that names `doing` if GL reports an error; MachineLacks if that error is lack of memory.
 void check_gl(const char* doing);
 
 }  // namespace kiln

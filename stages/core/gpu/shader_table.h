@@ -4,7 +4,7 @@
 
 namespace kiln {
 
-/// The text of the file `name` of shaders/, compiled into the program; empty where there is none of that name.
+/// Returns the text of the file `name` of shaders/, compiled into the program; empty for unknown names.
 std::string_view shader_text(std::string_view name);
 
 }  // namespace kiln

@@ -18,7 +18,7 @@ ImageDifference compare_images(const Image<float>& a, const Image<float>& b) {
     const double error = a.values()[k] - reference;
     squared_error += error * error;
     squared_reference += reference * reference;
-    // A NaN, once met, stays: nothing compares greater than it.
+    // Keep a NaN once met: nothing compares greater than it.
     if (std::isnan(error) || std::abs(error) > difference.largest) difference.largest = std::abs(error);
   }
   difference.root_mean_square = std::sqrt(squared_error / static_cast<double>(b.values().size()));

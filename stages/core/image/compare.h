@@ -11,7 +11,7 @@ struct ImageDifference {
   double relative_l2 = 0;  ///< ||a - b|| / ||b||
 };
 
-/// `b` is the reference. Throws std::invalid_argument where the sizes differ.
+/// Compares `a` with the reference `b`. Throws std::invalid_argument where the sizes differ.
 ImageDifference compare_images(const Image<float>& a, const Image<float>& b);
 
 }  // namespace kiln

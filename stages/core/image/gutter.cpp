@@ -10,7 +10,7 @@ namespace kiln {
 
 namespace {
 
-/// One level of the pyramid: values, and which of them are known.
+/// Level of the pyramid: values, and which of them are known.
 struct Level {
   Image<float> values;
   std::vector<std::uint8_t> known;
@@ -23,7 +23,7 @@ void for_each_row(int height, const Body& body) {
   });
 }
 
-/// Push: every coarse texel is the mean of the known ones of its (up to) four.
+/// Pushes: makes every coarse texel the mean of the known ones among its (up to) four.
 Level coarser(const Image<float>& fine, const std::vector<std::uint8_t>& known) {
   const int width = (fine.width() + 1) / 2, height = (fine.height() + 1) / 2;
   Level coarse{Image<float>(width, height, fine.channels()),
@@ -47,7 +47,7 @@ Level coarser(const Image<float>& fine, const std::vector<std::uint8_t>& known) 
   return coarse;
 }
 
-/// Pull: unknown texels are interpolated bilinearly from the coarser level, where every texel has a value by now.
+/// Pulls: interpolates unknown texels bilinearly from the coarser level, where every texel has a value by now.
 void fill_from_coarser(Image<float>& fine, const std::vector<std::uint8_t>& known, const Image<float>& coarse) {
   for_each_row(fine.height(), [&](int j) {
     // The centre of an even texel lies a quarter of a coarse texel below the coarse centre, that of an odd one above.
@@ -64,7 +64,7 @@ void fill_from_coarser(Image<float>& fine, const std::vector<std::uint8_t>& know
   });
 }
 
-/// The texels next to covered ones get the mean of their covered neighbours, and nothing from farther away.
+/// Sets texels next to covered ones to the mean of their covered neighbours, without values from farther away.
 void fill_ring(Image<float>& image, const std::vector<std::uint8_t>& covered) {
   const int width = image.width(), height = image.height();
   for_each_row(height, [&](int j) {
@@ -93,7 +93,7 @@ void fill_gutters(Image<float>& image, const std::vector<std::uint8_t>& covered)
     throw std::invalid_argument("fill_gutters: one coverage value per texel is needed");
   if (std::none_of(covered.begin(), covered.end(), [](std::uint8_t c) { return c != 0; })) return;
 
-  // Push: coarser levels until one has no holes, at the latest the single texel.
+  // Push: make coarser levels until one has no holes, at the latest the single texel.
   std::vector<Level> levels;
   const auto has_holes = [](const std::vector<std::uint8_t>& known) {
     return std::find(known.begin(), known.end(), 0) != known.end();

@@ -6,7 +6,7 @@
 
 namespace kiln {
 
-/// A pixel buffer, channels interleaved, row 0 at the BOTTOM (as uv has it; files are flipped on their way in and out).
+/// Pixel buffer, channels interleaved, row 0 at the BOTTOM (as uv has it; files are flipped when read and written).
 template <class T>
 class Image {
  public:
@@ -24,7 +24,7 @@ class Image {
   T& at(int i, int j, int channel = 0) { return values_[offset(i, j) + channel]; }
   const T& at(int i, int j, int channel = 0) const { return values_[offset(i, j) + channel]; }
 
-  /// All channels of one pixel.
+  /// Returns all channels of one pixel.
   std::span<T> pixel(int i, int j) { return {values_.data() + offset(i, j), static_cast<std::size_t>(channels_)}; }
   std::span<const T> pixel(int i, int j) const {
     return {values_.data() + offset(i, j), static_cast<std::size_t>(channels_)};

@@ -20,7 +20,7 @@ namespace kiln {
 
 namespace {
 
-/// The stages' threads are TBB's, limited by --threads; OpenImageIO and OpenEXR shall not add their own.
+/// Keeps OpenImageIO and OpenEXR from adding threads to the stages' own, which are TBB's and limited by --threads.
 void keep_to_one_thread() {
   [[maybe_unused]] static const bool done = [] {
     OIIO::attribute("threads", 1);
@@ -42,7 +42,7 @@ void write_image(const std::filesystem::path& file, const Image<T>& image, const
   const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
   if (!output) throw std::runtime_error("OpenImageIO cannot write " + std::string(format) + ": " + OIIO::geterror());
   if (!output->open(file.string(), spec)) fail(output->geterror());
-  // Files are top row first.
+  // Files start with the top row.
   const auto row_bytes = static_cast<OIIO::stride_t>(sizeof(T)) * image.width() * image.channels();
   const auto* bytes = reinterpret_cast<const char*>(image.values().data());
   if (!output->write_image(type_of<T>(), bytes + row_bytes * (image.height() - 1), OIIO::AutoStride, -row_bytes))
@@ -81,7 +81,7 @@ std::string lower_extension(const std::filesystem::path& file) {
   return extension;
 }
 
-/// The checksum of PNG (Portable Network Graphics specification, second edition, annex D).
+/// Computes the checksum of PNG (Portable Network Graphics specification, second edition, annex D).
 std::uint32_t crc32(std::string_view bytes) {
   static constexpr auto table = [] {
     std::array<std::uint32_t, 256> rows{};
@@ -99,8 +99,8 @@ std::uint32_t crc32(std::string_view bytes) {
 
 constexpr std::string_view png_signature("\x89PNG\r\n\x1a\n");
 
-/// Walks the chunks of a PNG: a whole one starts with IHDR and ends with IEND, and every checksum is right. Left to
-/// itself libpng complains about such things on stderr. `name` is for messages.
+/// Checks the chunks of a PNG: a whole one starts with IHDR and ends with IEND, and every checksum is right. libpng
+/// alone would complain about such faults on stderr. `name` appears in messages.
 PngHeader check_png(const std::string& bytes, const std::string& name) {
   const std::string expected = "a whole PNG";
   const auto number = [&](std::size_t at) {
@@ -129,8 +129,8 @@ PngHeader check_png(const std::string& bytes, const std::string& name) {
 
 constexpr std::string_view jpeg_signature("\xff\xd8");
 
-/// Walks the segments of a JPEG (ITU-T T.81, annex B) to its coded data, behind which an end-of-image marker must
-/// stand. libjpeg fills what is missing with grey. Any number of fill bytes, 0xff, may stand before a marker.
+/// Checks the segments of a JPEG (ITU-T T.81, annex B) up to its coded data, which must end with an end-of-image
+/// marker: libjpeg fills what is missing with grey. Any number of fill bytes, 0xff, may stand before a marker.
 void check_jpeg(const std::string& bytes, const std::string& name) {
   const std::string expected = "a whole JPEG";
   const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(bytes[at]); };
@@ -152,7 +152,7 @@ void check_jpeg(const std::string& bytes, const std::string& name) {
   fail_reading(name, "a truncated JPEG", expected);
 }
 
-/// `name` is for messages; OpenImageIO reads `memory`, which is of that format, or, without it, the file of that name.
+/// Opens an image: `memory`, whose format is known, or, without it, the file `name`. `name` appears in messages.
 std::unique_ptr<OIIO::ImageInput> open_image(const std::string& name, const std::string& expected,
                                              const std::string& format, OIIO::Filesystem::IOProxy* memory) {
   keep_to_one_thread();
@@ -177,7 +177,8 @@ std::unique_ptr<OIIO::ImageInput> open_image(const std::string& name, const std:
   return open_image(name, expected, "", nullptr);
 }
 
-/// OpenImageIO's name of the format that the first bytes tell, whatever the file is called; empty: they tell none.
+/// Returns OpenImageIO's name of the format that the first bytes indicate, whatever the file's name; empty for unknown
+/// ones.
 std::string format_of(std::string_view bytes) {
   const std::pair<std::string_view, const char*> signatures[] = {
       {png_signature, "png"}, {jpeg_signature, "jpeg"}, {"\x76\x2f\x31\x01", "openexr"},
@@ -188,7 +189,7 @@ std::string format_of(std::string_view bytes) {
   return "";
 }
 
-/// All pixels as T, bottom row first.
+/// Reads all pixels as T, bottom row first.
 template <class T>
 Image<T> read_pixels(const std::string& name, OIIO::ImageInput& input, const std::string& expected) {
   const OIIO::ImageSpec& spec = input.spec();
@@ -206,7 +207,7 @@ Image<T> read_image(const std::filesystem::path& file, const std::string& expect
   return read_pixels<T>(file.string(), *open_image(file.string(), expected), expected);
 }
 
-/// Of grey, grey and alpha, RGB or RGBA.
+/// Makes three channels of grey, grey and alpha, RGB or RGBA.
 template <class T>
 Image<T> three_channels(const Image<T>& image) {
   if (image.channels() == 3) return image;
@@ -239,7 +240,7 @@ void write_png(const std::filesystem::path& file, const Image<std::uint16_t>& im
 void write_exr(const std::filesystem::path& file, const Image<float>& image) {
   OIIO::ImageSpec spec(image.width(), image.height(), image.channels(), OIIO::TypeDesc::FLOAT);
   spec.attribute("compression", "zip");
-  spec.attribute("DateTime", "");  // else OpenImageIO notes the time of writing
+  spec.attribute("DateTime", "");  // otherwise OpenImageIO notes the time of writing
   if (image.channels() > 4) {
     // OpenEXR sorts channels by name.
     spec.channelnames.clear();
@@ -281,7 +282,7 @@ ColorPicture color_picture_of(const std::string& name, OIIO::ImageInput& input) 
   return picture;
 }
 
-/// Nothing where the bytes do not tell their format.
+/// Reads a picture from its bytes; nothing where they do not tell their format.
 std::optional<ColorPicture> color_picture_of_bytes(const std::string& bytes, const std::string& name) {
   const std::string format = format_of(bytes);
   if (format.empty()) return std::nullopt;

@@ -18,25 +18,25 @@ void write_png(const std::filesystem::path& file, const Image<std::uint16_t>& im
 /// Writes a 32-bit float OpenEXR of any number of channels, losslessly compressed.
 void write_exr(const std::filesystem::path& file, const Image<float>& image);
 
-/// Reads a PNG of 8 or 16 bits per channel without any conversion of values. Throws BadInput where it is no whole PNG
-/// or has another depth.
+/// Reads a PNG of 8 or 16 bits per channel without converting values. Throws BadInput where it is not a whole PNG or
+/// has another depth.
 Image<std::uint8_t> read_png8(const std::filesystem::path& file);
 Image<std::uint16_t> read_png16(const std::filesystem::path& file);
 
 /// Reads EXR or HDR (Radiance) as floats. Throws BadInput.
 Image<float> read_float_image(const std::filesystem::path& file);
 
-/// A picture of three channels, red, green and blue.
+/// Picture of three channels, red, green and blue.
 struct ColorPicture {
   std::variant<Image<std::uint8_t>, Image<float>> pixels;  ///< bytes of 0 to 255; floats as in the file
-  bool is_float = false;  ///< the file has floating-point values; of 16-bit integers the floats are 0 to 1
+  bool is_float = false;  ///< the file has floating-point values; 16-bit integers become floats of 0 to 1
 };
 
-/// Reads a PNG, JPEG, EXR or HDR, or whatever else OpenImageIO reads, without any conversion of values. Grey becomes
-/// three equal channels; alpha is left out. The first bytes tell the format, not the name. Throws BadInput.
+/// Reads a PNG, JPEG, EXR, HDR or any other format that OpenImageIO reads, without converting values. Grey becomes
+/// three equal channels; alpha is dropped. The format is told by the first bytes, not by the name. Throws BadInput.
 ColorPicture read_color_picture(const std::filesystem::path& file);
 
-/// The same of a picture in memory; `name` is for messages.
+/// Reads such a picture from memory; `name` appears in messages.
 ColorPicture read_color_picture(const std::vector<std::uint8_t>& bytes, const std::string& name);
 
 }  // namespace kiln

@@ -6,16 +6,16 @@
 
 namespace kiln {
 
-/// The sRGB value (IEC 61966-2-1), 0 to 1, of a linear one, which is clamped to that.
+/// Encodes a linear value, clamped to 0 .. 1, as sRGB (IEC 61966-2-1).
 float srgb_from_linear(float linear);
 
-/// The linear value of an sRGB one (IEC 61966-2-1), 0 to 1, which is clamped to that.
+/// Decodes an sRGB value, clamped to 0 .. 1, to a linear one (IEC 61966-2-1).
 float linear_from_srgb(float srgb);
 
-/// round(255 * value), of a value clamped to 0 .. 1.
+/// Returns round(255 * value), with the value clamped to 0 .. 1.
 std::uint8_t byte_from_unit(float value);
 
-/// A picture of linear values as sRGB bytes, and back.
+/// Encodes a picture of linear values as sRGB bytes, and decodes one.
 Image<std::uint8_t> srgb_bytes(const Image<float>& linear);
 Image<float> linear_from_srgb_bytes(const Image<std::uint8_t>& bytes);
 

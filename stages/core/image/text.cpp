@@ -22,7 +22,7 @@ int text_width(const std::string& text, int size) {
 
 void draw_text(Image<std::uint8_t>& image, int left, int baseline, const std::string& text, int size,
                float brightness) {
-  // OpenImageIO counts rows from the top: a picture of its own, as high as the text can be, flipped on its way.
+  // OpenImageIO counts rows from the top: draw into a picture of its own, as high as the text can be, and flip it.
   const int above = size + size / 4, below = size / 2;
   const int width = std::min(image.width() - left, text_width(text, size) + size);
   if (width <= 0) return;

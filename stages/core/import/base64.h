@@ -7,7 +7,7 @@
 
 namespace kiln {
 
-/// The bytes that base64 stands for (RFC 4648, either alphabet, padded or not); nothing for other texts.
+/// Decodes base64 (RFC 4648, either alphabet, padded or not); nothing for other texts.
 std::optional<std::vector<std::uint8_t>> base64_decoded(std::string_view text);
 
 }  // namespace kiln

@@ -30,14 +30,14 @@ CornerAttributes::Weights CornerAttributes::weights(std::size_t triangle, std::s
   const Eigen::Vector3f& position = mesh_.positions[mesh_.triangles[triangle][corner]];
   std::array<Eigen::Vector3d, 3> at;
   for (std::size_t i = 0; i < 3; ++i) {
-    // Turned triangles have their corners in another order; most others in the same.
+    // Turned triangles have their corners in another order; most others keep it.
     const std::size_t k = (corner + i) % 3;
     const Eigen::Vector3f place = mesh_.frame.from_file(source_.places[source_corner(triangle, k).place]).cast<float>();
     if (place == position) return corner_weights[k];
     at[k] = place.cast<double>();
   }
   const Eigen::Vector2d weight = closest_weights(position.cast<double>(), at[0], at[1], at[2]);
-  if (!weight.allFinite()) return corner_weights[0];  // of a triangle without area
+  if (!weight.allFinite()) return corner_weights[0];  // the source triangle has no area
   const auto u = static_cast<float>(weight.x()), v = static_cast<float>(weight.y());
   return {1 - u - v, u, v};
 }

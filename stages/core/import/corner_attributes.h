@@ -10,27 +10,28 @@
 
 namespace kiln {
 
-/// What the corners of a repaired mesh had in its file. A corner at the place of one of the triangle that it comes from
-/// has what that one had; others (where a flat triangle was taken out or a hole closed) have what lies at the nearest
-/// point of that triangle.
+/// Attributes that the corners of a repaired mesh had in its file. A corner at the place of a corner of its source
+/// triangle has that corner's attributes. Others (where a flat triangle was removed or a hole closed) have those at the
+/// nearest point of the source triangle.
 class CornerAttributes {
  public:
-  /// Keeps references to all but `origins`, which tells the entry of `triangles` that each of the mesh's comes from.
+  /// Keeps references to all arguments except `origins`, which gives the entry of `triangles` that each of the mesh's
+  /// comes from.
   CornerAttributes(const SourceMesh& source, const std::vector<CutTriangle>& triangles, const TriangleMesh& mesh,
                    const TriangleOrigins& origins);
 
-  /// Materials and texture coordinates.
+  /// Returns materials and texture coordinates.
   ImportedSurface surface() const;
 
   bool has_normals() const { return !source_.normals.empty(); }
-  /// As the file has them at each corner, interpolated, of any length; NaN where it has none.
+  /// Returns normals as the file has them at each corner, interpolated, of any length; NaN where it has none.
   std::vector<std::array<Eigen::Vector3f, 3>> normals() const;
 
   bool has_smoothing_groups() const;
   std::vector<std::uint32_t> smoothing_groups() const;
 
  private:
-  /// What a corner is made of: weights of the corners of the triangle that it comes from.
+  /// Weights of the corners of the source triangle in a corner.
   using Weights = std::array<float, 3>;
 
   const SourceMesh::Face& face_of(std::size_t triangle) const;

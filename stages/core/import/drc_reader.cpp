@@ -6,7 +6,7 @@
 #include "import/readers.h"
 #include "mesh/draco_decode.h"
 
-// Draco joins its attributes to points, so that a vertex stands once for every set of them, and is given so.
+// Draco joins its attributes to points, so a vertex appears once for every set of attributes, and is returned so.
 
 namespace kiln {
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr char remedy[] = "encode the mesh again, or run the stage that writes it";
 
-/// `take` is called with the numbers of every point in turn: `components` of them, 0 where the attribute has fewer.
+/// Calls `take` with the numbers of every point in turn: `components` of them, 0 where the attribute has fewer.
 template <int components, class Take>
 void for_each_value(const draco::Mesh& source, const draco::PointAttribute& attribute, const Take& take) {
   for (std::uint32_t i = 0; i < source.num_points(); ++i) {
@@ -24,7 +24,7 @@ void for_each_value(const draco::Mesh& source, const draco::PointAttribute& attr
   }
 }
 
-/// What stored numbers of colours are divided by: whole numbers that the file does not call normalised are so as well.
+/// Returns the divisor of stored colours: whole numbers are normalised even where the file does not say so.
 double color_range(const draco::PointAttribute& attribute) {
   if (attribute.normalized()) return 1;
   switch (attribute.data_type()) {
@@ -90,7 +90,7 @@ SourceMesh read_drc(const std::filesystem::path& file) {
     }
   }
   require_finite(mesh, name);
-  // Files of our own may tell where their coordinates count from.
+  // Kiln's own files may name the origin of their coordinates.
   const Eigen::Vector3d origin = draco_origin(*source);
   double largest = 0;
   for (const SourceMesh::Corner& corner : mesh.corners)

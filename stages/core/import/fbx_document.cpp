@@ -11,9 +11,9 @@
 #include "import/fbx_text.h"
 #include "import/text_lines.h"
 
-// The binary form is as the Blender Foundation described it ("FBX binary file format specification", 2013): a tree of
-// records with their end, values and name. Assimp 5.2 was tried in its place: it rounds coordinates and transforms to
-// floats, lets children inherit their parents' geometric transforms, and frees memory twice on damaged files.
+// The binary form follows [Blender 2013]: a tree of records with their end, values and name. Assimp 5.2, tried instead,
+// rounds coordinates and transforms to floats, lets children inherit their parents' geometric transforms, and frees
+// memory twice on damaged files.
 
 namespace kiln {
 
@@ -62,7 +62,7 @@ class BinaryParser {
 
   std::size_t take_offset() { return wide_ ? take<std::uint64_t>() : take<std::uint32_t>(); }
 
-  /// False at the empty record that ends a list.
+  /// Reads a record; false at the empty record that ends a list.
   bool parse_record(FbxRecord& parent, std::size_t parent_end, int depth) {
     const std::size_t begin = at_;
     const std::size_t end = take_offset();
@@ -258,7 +258,7 @@ std::string FbxDocument::unpacked(const FbxRecord& record) const {
     if (array.bytes.size() != size) broken();
     return std::string(array.bytes);
   }
-  // No deflated byte stands for more than 1032.
+  // Deflate expands a byte to 1032 at most.
   if (size / 1032 > array.bytes.size()) broken();
   std::string result(size, '\0');
   uLongf written = size;

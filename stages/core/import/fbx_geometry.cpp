@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-// Attributes are "layer elements": values that are mapped to corners, vertices, polygons or all, directly or by indices
+// Attributes are "layer elements": values mapped to corners, vertices, polygons or everything, directly or by indices
 // (FBX SDK 2020, FbxLayerElement).
 
 namespace kiln {
@@ -44,7 +44,7 @@ class GeometryReader {
       result_.vertices.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
   }
 
-  /// The last corner of a polygon is stored as -1 - vertex.
+  /// Reads polygons, whose last corner is stored as -1 - vertex.
   void read_polygons() {
     const FbxRecord* record = record_.child("PolygonVertexIndex");
     if (record == nullptr) fail("has no PolygonVertexIndex", "one");
@@ -86,8 +86,8 @@ class GeometryReader {
     return record != nullptr && (record->text(0) == "IndexToDirect" || record->text(0) == "Index");
   }
 
-  /// Sets `member` of all corners to the number of their value in a layer of `count` values. Those that say -1 have
-  /// none.
+  /// Sets `member` of all corners to the index of their value in a layer of `count` values; a stored index of -1 means
+  /// no value.
   void map(const FbxRecord& layer, const char* indices_name, std::size_t count,
            std::uint32_t FbxGeometry::Corner::*member) {
     const Mapping mapping = mapping_of(layer);
@@ -113,7 +113,7 @@ class GeometryReader {
     }
   }
 
-  /// The numbers of a layer's values, `components` each; nothing where it has none.
+  /// Returns the numbers of a layer's values, `components` each; nothing where it has none.
   std::vector<double> values(const FbxRecord& layer, const char* name, std::size_t components) const {
     const FbxRecord* record = layer.child(name);
     if (record == nullptr) return {};
@@ -205,7 +205,7 @@ class GeometryReader {
   const FbxDocument& document_;
   const FbxRecord& record_;
   std::string place_;
-  std::vector<std::uint32_t> polygon_of_;  // of every corner
+  std::vector<std::uint32_t> polygon_of_;  // per corner
   FbxGeometry result_;
 };
 

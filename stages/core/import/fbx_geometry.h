@@ -9,7 +9,7 @@
 
 namespace kiln {
 
-/// The polygons of one FBX geometry, in its own space.
+/// Polygons of one FBX geometry, in its own space.
 struct FbxGeometry {
   static constexpr std::uint32_t none = ~0u;
 
@@ -23,15 +23,15 @@ struct FbxGeometry {
   std::vector<Eigen::Vector2f> uvs;
   std::vector<Eigen::Vector3f> colors;
   std::vector<Corner> corners;
-  std::vector<std::uint32_t> first_corner;  ///< of every polygon, and the number of corners behind the last
-  std::vector<std::int64_t> materials;      ///< of every polygon: which of its model's
+  std::vector<std::uint32_t> first_corner;  ///< first corner of every polygon, then the number of all corners
+  std::vector<std::int64_t> materials;      ///< per polygon: index among its model's materials
   bool is_float = true;                     ///< the coordinates were once floats
-  double largest = 0;                       ///< of the coordinates, without their signs
+  double largest = 0;                       ///< largest absolute coordinate
   std::size_t uv_sets = 0;
-  std::size_t lines = 0;  ///< polygons of fewer than three corners, which are left out
+  std::size_t lines = 0;  ///< number of polygons of fewer than three corners, which are left out
 };
 
-/// Throws BadInput that names the geometry, and the element.
+/// Reads a geometry. Throws BadInput that names the geometry and the element.
 FbxGeometry read_fbx_geometry(const FbxDocument& document, const FbxObjects::Object& object);
 
 }  // namespace kiln

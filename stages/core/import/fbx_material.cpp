@@ -7,7 +7,7 @@
 #include "import/base64.h"
 
 // Colours and pictures are connected to properties of materials. Those of the classic Lambert and Phong materials are
-// the FBX SDK's (FbxSurfaceLambert); the others are what 3ds Max and Maya write of their physical materials.
+// the FBX SDK's (FbxSurfaceLambert); the others are what 3ds Max and Maya write for their physical materials.
 
 namespace kiln {
 
@@ -24,8 +24,8 @@ constexpr std::array picture_properties = {"DiffuseColor",
                                            "Maya|baseColor",
                                            "Maya|base_color"};
 
-/// The file of a path that another machine may have written: as given, from `folder`, or by its bare name there. Where
-/// none exists the second, or the third of a path with a drive.
+/// Finds the file of a path that may come from another machine: as given, from `folder`, or by its bare name there. If
+/// none exists, returns the path from `folder`, or the bare name there where the path has a drive.
 fs::path find_file(const fs::path& folder, std::string given, std::string relative) {
   for (std::string* path : {&given, &relative}) std::replace(path->begin(), path->end(), '\\', '/');
   if (relative.empty()) relative = given;
@@ -39,13 +39,13 @@ fs::path find_file(const fs::path& folder, std::string given, std::string relati
   return relative.find(':') == std::string::npos ? folder / relative : bare(relative);
 }
 
-/// The bytes that a video holds; of text files they are strings of base64.
+/// Returns the bytes that a video holds; in text files they are strings of base64.
 std::vector<std::uint8_t> embedded_bytes(const FbxRecord& video) {
   const FbxRecord* content = video.child("Content");
   if (content == nullptr) return {};
   std::vector<std::uint8_t> bytes;
   std::string text;
-  // A string may go on with the one before, unless that one is padded.
+  // A string may continue the one before, unless that one is padded.
   const auto decode = [&]() {
     const auto part = base64_decoded(text).value_or(std::vector<std::uint8_t>());
     bytes.insert(bytes.end(), part.begin(), part.end());
@@ -94,7 +94,7 @@ SourceMaterial FbxMaterials::read(const FbxObjects::Object& object) {
   const FbxProperties properties = objects_.properties(object);
   const double factor = std::clamp(properties.number("DiffuseFactor").value_or(1), 0.0, 1.0);
   if (const FbxObjects::Object* texture = diffuse_texture(object)) {
-    // A picture stands in place of the colour, and the factor, which is proportional to light, remains.
+    // A picture replaces the colour; the factor, which is proportional to light, remains.
     read_texture(*texture, material);
     material.has_diffuse = factor != 1;
     material.linear_diffuse = true;
@@ -103,7 +103,7 @@ SourceMaterial FbxMaterials::read(const FbxObjects::Object& object) {
     for (const char* property : color_properties) {
       const auto color = properties.vector(property);
       if (!color) continue;
-      // "Diffuse" is the product already.
+      // The property "Diffuse" is the product of colour and factor already.
       const double scale = std::string_view(property) == "DiffuseColor" ? factor : 1;
       material.diffuse = (scale * *color).cast<float>().cwiseMax(0).cwiseMin(1);
       material.has_diffuse = true;

@@ -9,17 +9,17 @@
 
 namespace kiln {
 
-/// Reads the materials of an FBX file as models ask for them.
+/// Reads the materials of an FBX file when models ask for them.
 class FbxMaterials {
  public:
   FbxMaterials(const FbxDocument& document, const FbxObjects& objects) : document_(document), objects_(objects) {}
 
-  /// The number of a material in all(). Throws BadInput.
+  /// Returns the index of a material in all(). Throws BadInput.
   std::int32_t number_of(const FbxObjects::Object& material);
 
   std::vector<SourceMaterial> all() && { return std::move(materials_); }
 
-  /// What was passed by.
+  /// Adds warnings about what was ignored.
   void add_warnings(std::vector<std::string>& warnings) const;
 
  private:

@@ -4,7 +4,7 @@ namespace kiln {
 
 namespace {
 
-constexpr std::size_t first_property_value = 4;  // behind the name, the type twice and flags
+constexpr std::size_t first_property_value = 4;  // after the name, two types and flags
 
 const FbxRecord* child_of(const FbxRecord* record, std::string_view name) {
   return record == nullptr ? nullptr : record->child(name);

@@ -13,7 +13,7 @@
 
 namespace kiln {
 
-/// The properties of an object ("Properties70"), and what the file's template of its kind says of those it lacks.
+/// Properties of an object ("Properties70"), with the file's template for its kind as defaults.
 class FbxProperties {
  public:
   FbxProperties(const FbxRecord* object, const FbxRecord* defaults);
@@ -29,7 +29,7 @@ class FbxProperties {
   const FbxRecord* defaults_ = nullptr;
 };
 
-/// The objects of an FBX file by their numbers, and what is connected to what.
+/// Objects of an FBX file by their numbers, and the connections between them.
 class FbxObjects {
  public:
   struct Object {
@@ -38,18 +38,18 @@ class FbxObjects {
 
     std::string_view kind() const { return record->name; }            ///< "Model", "Geometry" and so on
     std::string_view kind_within() const { return record->text(2); }  ///< "Mesh", "Null" and so on
-    std::string name() const;                                         ///< without its kind, which binary files add
+    std::string name() const;                                         ///< without its kind, which binary files append
   };
   struct Link {
     std::int64_t other = 0;
-    std::string_view property;  ///< of the parent; empty where the object as a whole is meant
+    std::string_view property;  ///< property of the parent; empty where the whole object is connected
   };
 
   explicit FbxObjects(const FbxDocument& document);
 
   const std::vector<Object>& all() const { return objects_; }
 
-  /// Null where there is none.
+  /// Returns the object of that number; null where there is none.
   const Object* find(std::int64_t id) const;
 
   std::span<const Link> children(std::int64_t id) const;

@@ -13,8 +13,8 @@
 #include "import/mesh_transform.h"
 #include "import/readers.h"
 
-// The transform of a model is that of the FBX SDK's reference, "Computing transformation matrices":
-// T Roff Rp Rpre R Rpost^-1 Rp^-1 Soff Sp S Sp^-1, and that of its geometry beneath it, which no other model inherits.
+// The transform of a model follows the FBX SDK's reference, "Computing transformation matrices": T Roff Rp Rpre R
+// Rpost^-1 Rp^-1 Soff Sp S Sp^-1. Beneath it is the transform of its geometry, which no other model inherits.
 
 namespace kiln {
 
@@ -25,8 +25,8 @@ using Vector = Eigen::Vector3d;
 
 Eigen::Affine3d moved(const Vector& by) { return Eigen::Affine3d(Eigen::Translation3d(by)); }
 
-/// The rotation by angles in degrees about x, y and z, in one of the SDK's orders: 0 turns about x first, then y, then
-/// z.
+/// Returns the rotation by angles in degrees about x, y and z, in one of the SDK's orders: order 0 turns about x first,
+/// then y, then z.
 Eigen::Affine3d turned(const Vector& degrees, int order) {
   constexpr std::array<std::array<int, 3>, 7> orders = {
       {{0, 1, 2}, {0, 2, 1}, {1, 2, 0}, {1, 0, 2}, {2, 0, 1}, {2, 1, 0}, {0, 1, 2}}};
@@ -39,7 +39,7 @@ Eigen::Affine3d turned(const Vector& degrees, int order) {
 Eigen::Matrix4d local_transform(const FbxProperties& properties) {
   const auto get = [&](const char* name) { return properties.vector(name).value_or(Vector::Zero()); };
   const Vector rotation_pivot = get("RotationPivot"), scaling_pivot = get("ScalingPivot");
-  // The order and the rotations before and behind hold where the file says so alone.
+  // Apply the order and the pre- and post-rotation only where the file says so.
   const bool is_active = properties.number("RotationActive").value_or(0) != 0;
   const double order = is_active ? properties.number("RotationOrder").value_or(0) : 0;
   Eigen::Affine3d rotation = turned(get("Lcl Rotation"), order >= 0 && order <= 6 ? static_cast<int>(order) : 0);
@@ -81,8 +81,8 @@ class FbxReader {
   }
 
  private:
-  /// The file's axes as rows: coordinate, up and front. The last is taken for what the others leave of a right-handed
-  /// frame, since exporters differ in its sign.
+  /// Reads the file's axes as rows: coordinate, up and front. The front axis is derived from the other two for a
+  /// right-handed frame, since exporters differ in its sign.
   void read_axes() {
     const FbxProperties settings(document_.root().child("GlobalSettings"), nullptr);
     const auto axis = [&](const std::string& name, int absent) {
@@ -122,7 +122,7 @@ class FbxReader {
     curved_ += object.kind() == "Geometry" && object.kind_within() != "Mesh" && object.kind_within() != "Shape";
   }
 
-  /// The model that a model hangs from; null beneath the root.
+  /// Returns the parent model; null beneath the root.
   const Object* parent_of(const Object& model) const {
     for (const FbxObjects::Link& link : objects_.parents(model.id)) {
       const Object* parent = link.property.empty() ? objects_.find(link.other) : nullptr;
@@ -144,7 +144,7 @@ class FbxReader {
       const Eigen::Matrix4d above = parent == nullptr ? axes_ : worlds_.at(parent->id);
       worlds_[(*link)->id] = above * local_transform(properties);
       if (parent == nullptr) continue;
-      // Other models than RSrs (1) leave out a part of their parents' scaling.
+      // Models of other types than RSrs (1) ignore a part of their parents' scaling.
       const Vector scaling = objects_.properties(*parent).vector("Lcl Scaling").value_or(Vector::Ones());
       uninherited_ += properties.number("InheritType").value_or(1) != 1 && !scaling.isOnes();
     }
@@ -176,7 +176,7 @@ class FbxReader {
 
   void add(const FbxGeometry& geometry, const std::vector<std::int32_t>& materials, const MeshTransform& transform,
            const Object& model) {
-    // Copies of a geometry are few, except in files that ask for all the memory there is.
+    // Real files have few copies of a geometry; files with many are made to take all memory.
     const std::size_t most = 12'000'000 + 24 * document_.file_size() + geometry.corners.size();
     if (geometry.corners.size() + mesh_.corners.size() > most || geometry.vertices.size() + mesh_.places.size() > most)
       document_.fail("places copies of its geometries out of all proportion to its size",
@@ -211,13 +211,13 @@ class FbxReader {
     }
   }
 
-  /// Colours are those of corners, and SourceMesh has them of places: where the corners of a vertex differ in colour,
-  /// it is given once for each. To be called before corners are turned.
+  /// Adds colours. FBX has colours per corner, and SourceMesh per place: where the corners of a vertex differ in
+  /// colour, the vertex is added once for each colour. Must be called before corners are turned.
   void add_colors(const FbxGeometry& geometry, std::uint32_t first_place, std::uint32_t first_corner) {
     if (geometry.colors.empty() && mesh_.colors.empty()) return;
     mesh_.colors.resize(mesh_.places.size(), Eigen::Vector3f::Ones());
     if (geometry.colors.empty()) return;
-    std::unordered_map<std::uint64_t, std::uint32_t> place_of;  // by vertex and colour
+    std::unordered_map<std::uint64_t, std::uint32_t> place_of;  // key: vertex and colour
     std::vector<bool> is_taken(geometry.vertices.size(), false);
     for (std::size_t i = 0; i < geometry.corners.size(); ++i) {
       const FbxGeometry::Corner& corner = geometry.corners[i];
@@ -260,7 +260,7 @@ class FbxReader {
   std::map<std::int64_t, FbxGeometry> geometries_;
   std::size_t lines_ = 0, curved_ = 0, further_uv_sets_ = 0, skins_ = 0, blend_shapes_ = 0, animations_ = 0,
               uninherited_ = 0;
-  bool has_curves_ = false;  // of animations
+  bool has_curves_ = false;  // animation curves
 };
 
 }  // namespace

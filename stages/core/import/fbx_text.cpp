@@ -37,7 +37,7 @@ class TextParser {
   char here() const { return text_[at_]; }
   void step() { line_ += text_[at_++] == '\n'; }
 
-  /// Passes by blanks and comments; also the ends of lines where `across_lines`.
+  /// Skips blanks and comments; also ends of lines where `across_lines`.
   void skip_blanks(bool across_lines) {
     while (!is_end()) {
       if (here() == ';') {
@@ -77,7 +77,8 @@ class TextParser {
     parent.children.push_back(std::move(record));
   }
 
-  /// Values between commas, up to the end of the line or a brace; a comma goes on in the next line.
+  /// Reads values between commas, up to the end of the line or a brace; after a comma the list continues on the next
+  /// line.
   void parse_values(FbxRecord& record) {
     bool goes_on = false;
     while (true) {
@@ -131,7 +132,7 @@ class TextParser {
     return value;
   }
 
-  /// The numbers of an array as they stand, up to its brace. False where the record is none.
+  /// Reads the numbers of an array, up to its brace. False where the record is not an array.
   bool parse_array(FbxRecord& record) {
     if (record.values.empty() || record.values.front().type != 'a') return false;
     skip_blanks(true);

@@ -6,7 +6,7 @@
 
 namespace kiln {
 
-/// Reads the records of an FBX file as text beneath `root`. They refer to `text`. Throws BadInput with the line.
+/// Reads the records of an FBX text file into `root`. They refer to `text`. Throws BadInput with the line.
 void parse_fbx_text(const FbxDocument& document, std::string_view text, FbxRecord& root);
 
 }  // namespace kiln

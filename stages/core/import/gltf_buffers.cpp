@@ -9,8 +9,8 @@
 #include "base/outputs.h"
 #include "import/base64.h"
 
-// Buffers, views and accessors are those of chapter 3.6 of glTF 2.0. Packed views are those of the extension
-// EXT_meshopt_compression, whose codecs are meshoptimizer's.
+// Buffers, views and accessors: [Khronos 2021], chapter 3.6. Packed views: EXT_meshopt_compression, whose codecs are
+// meshoptimizer's.
 
 namespace kiln {
 
@@ -60,7 +60,7 @@ double plain_number(GltfAccessor::Type type, const std::uint8_t* bytes) {
   return 0;
 }
 
-/// A number of a normalised integer, by the equations of chapter 3.6.2.2 and of KHR_mesh_quantization.
+/// Returns the number of a normalised integer, by the equations of chapter 3.6.2.2 and of KHR_mesh_quantization.
 double normalized_number(GltfAccessor::Type type, double stored) {
   switch (type) {
     case GltfAccessor::Type::int8:
@@ -76,15 +76,15 @@ double normalized_number(GltfAccessor::Type type, double stored) {
   }
 }
 
-/// What EXT_meshopt_compression says of one view.
+/// Description of one view by EXT_meshopt_compression.
 struct PackedView {
   std::string mode, filter;
   std::size_t stride = 0, count = 0;
 };
 
-/// What is wrong with the numbers of a packed view of `bytes` bytes; empty where nothing is. Codecs take them on
-/// trust, and memory before they look. The least that elements take is said by the codecs' formats: a vertex two bits
-/// for sixteen bytes, a triangle or an index of a sequence a byte.
+/// Returns what is wrong with the numbers of a packed view of `bytes` bytes; empty where nothing is. The codecs trust
+/// these numbers, and reserve memory before they check them. The least size of elements follows from the codecs'
+/// formats: two bits per sixteen bytes of a vertex, one byte per triangle or index of a sequence.
 std::string fault_of(const PackedView& packed, std::size_t bytes) {
   const bool is_vertices = packed.mode == "ATTRIBUTES";
   if (!is_vertices && packed.mode != "TRIANGLES" && packed.mode != "INDICES")
@@ -106,7 +106,7 @@ std::string fault_of(const PackedView& packed, std::size_t bytes) {
   return {};
 }
 
-/// Whether the codec took the bytes.
+/// Unpacks a view; tells whether the codec accepted the bytes.
 bool unpack(const PackedView& packed, std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>& unpacked) {
   unpacked.resize(packed.stride * packed.count);
   if (packed.count == 0) return true;

@@ -19,9 +19,9 @@ class GltfAccessor {
  public:
   enum class Type { int8 = 5120, uint8 = 5121, int16 = 5122, uint16 = 5123, uint32 = 5125, float32 = 5126 };
 
-  /// Elements that stand in place of those of the bytes (sparse).
+  /// Elements that replace some of those in the bytes (sparse accessors).
   struct Replacements {
-    std::vector<std::uint32_t> elements;  ///< rising
+    std::vector<std::uint32_t> elements;  ///< ascending
     std::span<const std::uint8_t> values;
   };
 
@@ -35,50 +35,51 @@ class GltfAccessor {
   std::shared_ptr<const std::vector<double>>
       decoded;  ///< count * components numbers of a Draco mesh, in place of bytes
 
-  /// A number as glTF means it: integers that are normalised are 0 to 1 or -1 to 1.
+  /// Returns a number as glTF means it: normalised integers are 0 to 1 or -1 to 1.
   double value(std::size_t element, int component) const;
 
-  /// An integer as it is stored.
+  /// Returns an integer as it is stored.
   std::uint32_t integer(std::size_t element) const;
 
  private:
   const std::uint8_t* find(std::size_t element) const;
 };
 
-/// Bytes of one component.
+/// Returns the number of bytes of one component.
 std::size_t size_of(GltfAccessor::Type type);
 
-/// The text of a URI without its percent signs: "my%20scan.bin" is "my scan.bin".
+/// Decodes the percent signs of a URI: "my%20scan.bin" becomes "my scan.bin".
 std::string percent_decoded(std::string_view text);
 
-/// The bytes of a "data:" URI. Nothing where it is none, or is none of base64.
+/// Returns the bytes of a "data:" URI; nothing for other URIs, and for data that is not base64.
 std::optional<std::vector<std::uint8_t>> data_uri_bytes(std::string_view uri);
 
-/// The buffers of a glTF file, read when they are needed: the binary chunk, data URIs, files beside it and what
-/// EXT_meshopt_compression packed. Spans and accessors stay good as long as this lives.
+/// Buffers of a glTF file, read on demand: the binary chunk, data URIs, files beside it, and data packed by
+/// EXT_meshopt_compression. Spans and accessors stay valid as long as this object lives.
 class GltfBuffers {
  public:
   explicit GltfBuffers(const GltfDocument& document) : document_(document) {}
   GltfBuffers(const GltfBuffers&) = delete;
   GltfBuffers& operator=(const GltfBuffers&) = delete;
 
-  /// Throws BadInput where there is no such view or its bytes are not all there. `user` names what asks for it.
+  /// Returns the bytes of a view. Throws BadInput where there is no such view or its bytes are incomplete. `user` names
+  /// who asks.
   std::span<const std::uint8_t> view(std::size_t index, const std::string& user);
 
-  /// Throws BadInput where there is no such accessor or it reaches beyond its view.
+  /// Returns an accessor. Throws BadInput where there is no such accessor or it reaches beyond its view.
   GltfAccessor accessor(std::size_t index, const std::string& user);
 
-  /// What an accessor says of itself, without its bytes.
+  /// Returns the description of an accessor, without its bytes.
   GltfAccessor description(std::size_t index, const std::string& user) const;
 
-  /// The files that were read.
+  /// Returns the files that were read.
   const std::vector<std::filesystem::path>& files() const { return files_; }
 
-  /// Bytes of the file and of those read so far.
+  /// Returns the number of bytes of the file and of those read so far.
   std::size_t total_bytes() const { return document_.file_size() + read_bytes_; }
 
-  /// How many triangles they can mean in earnest, copies counted: a file that names one mesh again and again, to no end
-  /// but to take all the memory, has more.
+  /// Returns the largest plausible number of triangles, copies included: a file that repeats one mesh beyond that is
+  /// made to take all memory.
   std::size_t most_triangles() const { return std::min<std::size_t>(4'000'000 + 8 * total_bytes(), 100'000'000); }
 
  private:

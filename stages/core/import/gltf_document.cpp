@@ -9,9 +9,9 @@
 #include "base/errors.h"
 #include "base/outputs.h"
 
-// The format is glTF 2.0, Khronos Group, 2021 (ISO/IEC 12113:2022), with the binary form of its chapter 4. The JSON is
-// looked at here rather than by tinygltf 2.7, which refuses the buffers without bytes of EXT_meshopt_compression and
-// leaves to its caller what indices and sizes must be checked for.
+// The format is glTF 2.0 [Khronos 2021], with the binary form of its chapter 4. The JSON is checked here rather than by
+// tinygltf 2.7, which refuses the buffers without bytes of EXT_meshopt_compression, and leaves the checks of indices
+// and sizes to its caller.
 
 namespace kiln {
 
@@ -21,7 +21,7 @@ constexpr std::string_view magic = "glTF";
 constexpr std::uint32_t json_chunk = 0x4E4F534A, binary_chunk_type = 0x004E4942;
 constexpr int deepest_json = 100;  // levels; glTF itself needs about ten
 
-/// Extensions that are read, or that say nothing of shape and colour beyond what the plain file says.
+/// Extensions that are read, or that do not affect shape and colour beyond what the plain file says.
 constexpr std::array known_extensions = {
     "KHR_draco_mesh_compression",
     "EXT_meshopt_compression",
@@ -88,8 +88,8 @@ void GltfDocument::split_chunks() {
 }
 
 void GltfDocument::parse(std::string_view text) {
-  while (!text.empty() && text.back() == '\0') text.remove_suffix(1);  // wrong padding that exporters write
-  // Levels beyond need take memory out of proportion, so they end the parse.
+  while (!text.empty() && text.back() == '\0') text.remove_suffix(1);  // wrong padding by exporters
+  // Excessive nesting takes memory out of proportion: end the parse.
   const auto limit_depth = [this](int depth, Json::parse_event_t, Json&) {
     if (depth > deepest_json) fail("is nested deeper than " + std::to_string(deepest_json) + " levels", "glTF's JSON");
     return true;

@@ -10,35 +10,36 @@
 
 namespace kiln {
 
-/// The JSON of a glTF 2.0 file, looked at with care: whatever is asked of it is there and of its type, or BadInput
-/// names the place, such as "accessor 3" or "mesh 2, primitive 0", which callers give.
+/// Checked JSON of a glTF 2.0 file: every requested member exists and has its type, or BadInput names the place that
+/// the caller gives, such as "accessor 3" or "mesh 2, primitive 0".
 class GltfDocument {
  public:
   using Json = nlohmann::json;
 
-  /// Reads a .gltf or .glb file, told apart by its first bytes. Throws BadInput for other files and versions, and where
-  /// the file requires an extension that is not known.
+  /// Reads a .gltf or .glb file, distinguished by its first bytes. Throws BadInput for other files and versions, and
+  /// where the file requires an unknown extension.
   explicit GltfDocument(const std::filesystem::path& file);
 
   const std::filesystem::path& file() const { return file_; }
   std::size_t file_size() const { return bytes_.size(); }
 
-  /// The binary chunk of a .glb; empty where there is none.
+  /// Returns the binary chunk of a .glb; empty where there is none.
   std::span<const std::uint8_t> binary_chunk() const { return binary_; }
 
   [[noreturn]] void fail(const std::string& found, const std::string& expected,
                          const std::string& remedy = "export it again") const;
 
-  /// How many elements an array of the root, such as "meshes", has.
+  /// Counts the elements of an array of the root, such as "meshes".
   std::size_t count(const char* array) const;
 
-  /// An element of such an array, which is an object. `user` names what refers to it, for messages.
+  /// Returns an element of such an array, an object. `user` names in messages what refers to it.
   const Json& element(const char* array, std::size_t index, const std::string& user) const;
 
-  /// The root itself.
+  /// Returns the root object.
   const Json& root_object() const { return json_; }
 
-  // Members of `object`, which `place` names for messages. Absent ones are null, nothing or empty.
+  // The functions below return members of `object`, which messages call `place`. Absent ones are null, nothing or
+  // empty.
   const Json* object(const Json& object, const char* key, const std::string& place) const;
   const Json& array(const Json& object, const char* key, const std::string& place) const;
   const Json* extension(const Json& object, const char* name, const std::string& place) const;
@@ -48,13 +49,13 @@ class GltfDocument {
   double number(const Json& object, const char* key, double absent, const std::string& place) const;
   std::string text(const Json& object, const char* key, const std::string& place) const;
 
-  /// Finite numbers; as many as `count` where that is not 0.
+  /// Returns finite numbers; exactly `count` of them where that is not 0.
   std::vector<double> numbers(const Json& object, const char* key, std::size_t count, const std::string& place) const;
 
-  /// The whole numbers of an array.
+  /// Returns the whole numbers of an array.
   std::vector<std::size_t> indices(const Json& object, const char* key, const std::string& place) const;
 
-  /// The extensions that the file uses and that say nothing to Kiln, in the file's order.
+  /// Returns the extensions that the file uses and Kiln ignores, in the file's order.
   const std::vector<std::string>& unused_extensions() const { return unused_extensions_; }
 
  private:

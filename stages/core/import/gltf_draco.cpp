@@ -4,8 +4,7 @@
 
 #include "mesh/draco_decode.h"
 
-// The extension is KHR_draco_mesh_compression: attributes are known by Draco's unique ids, and mean what their
-// accessors say.
+// KHR_draco_mesh_compression: attributes are known by Draco's unique ids, and interpreted as their accessors say.
 
 namespace kiln {
 

@@ -9,14 +9,15 @@
 
 namespace kiln {
 
-/// What KHR_draco_mesh_compression packed of one primitive.
+/// One primitive packed by KHR_draco_mesh_compression.
 class GltfDraco {
  public:
-  /// The numbers of an attribute, as `description` (its accessor's) means them. Nothing where it is not packed.
+  /// Returns the numbers of an attribute, interpreted as `description` (its accessor) says; nothing where it is not
+  /// packed.
   std::optional<GltfAccessor> attribute(const std::string& name, const GltfAccessor& description) const;
 
   std::size_t vertex_count() const { return vertex_count_; }
-  const std::vector<std::uint32_t>& indices() const { return indices_; }  ///< three for each triangle
+  const std::vector<std::uint32_t>& indices() const { return indices_; }  ///< three per triangle
 
  private:
   friend std::optional<GltfDraco> decode_gltf_draco(const GltfDocument& document, GltfBuffers& buffers,
@@ -24,7 +25,7 @@ class GltfDraco {
   struct Attribute {
     std::string name;
     int components = 0;
-    bool is_normalized = false;  ///< `values` are already
+    bool is_normalized = false;  ///< `values` are normalised already
     std::shared_ptr<const std::vector<double>> values;
   };
 
@@ -33,7 +34,7 @@ class GltfDraco {
   std::vector<Attribute> attributes_;
 };
 
-/// Nothing where the primitive is not packed. Throws BadInput.
+/// Decodes a packed primitive; nothing where it is not packed. Throws BadInput.
 std::optional<GltfDraco> decode_gltf_draco(const GltfDocument& document, GltfBuffers& buffers,
                                            const GltfDocument::Json& primitive, const std::string& place);
 

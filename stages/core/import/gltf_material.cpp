@@ -6,9 +6,9 @@
 #include <map>
 #include <memory>
 
-// Materials are those of chapter 3.9 of glTF 2.0, textures of chapter 3.8. The rotation of KHR_texture_transform is the
-// one that its words and its sample model have, counter-clockwise where v points down; the listing in its text turns
-// the other way (https://github.com/KhronosGroup/glTF/issues/1563).
+// Materials: [Khronos 2021], chapter 3.9; textures: chapter 3.8. The rotation of KHR_texture_transform follows its
+// words and its sample model, counter-clockwise where v points down; the listing in its text turns the other way
+// (https://github.com/KhronosGroup/glTF/issues/1563).
 
 namespace kiln {
 
@@ -17,7 +17,7 @@ namespace {
 using Json = GltfDocument::Json;
 using Wrap = SourceMaterial::Wrap;
 
-/// Extensions by which a texture has its picture in another format as well.
+/// Extensions that give a texture's picture in another format as well.
 constexpr std::array<std::pair<const char*, const char*>, 3> other_formats = {
     {{"KHR_texture_basisu", "KTX2"}, {"EXT_texture_webp", "WebP"}, {"MSFT_texture_dds", "DDS"}}};
 
@@ -121,7 +121,7 @@ class MaterialReader {
     return picture;
   }
 
-  /// Materials that share a picture share its bytes.
+  /// Embeds a picture; materials with the same picture share its bytes.
   SourcePicture embed(std::vector<std::uint8_t> bytes, std::size_t index, SourcePicture picture) {
     auto& known = embedded_[index];
     if (known == nullptr) known = std::make_shared<const std::vector<std::uint8_t>>(std::move(bytes));
@@ -148,7 +148,7 @@ class MaterialReader {
     material.wrap_v = wrap("wrapT");
   }
 
-  /// The transform of glTF's coordinates, whose v points down, as one of coordinates whose v points up.
+  /// Converts a transform of glTF's coordinates, whose v points down, to one of coordinates whose v points up.
   Eigen::Matrix<float, 2, 3> read_transform(const Json& transform) const {
     std::vector<double> offset = document_.numbers(transform, "offset", 2, place_);
     std::vector<double> scale = document_.numbers(transform, "scale", 2, place_);

@@ -10,11 +10,11 @@ namespace kiln {
 
 struct GltfMaterial {
   SourceMaterial material;
-  std::size_t uv_set = 0;  ///< the picture is looked up with TEXCOORD_<uv_set>
+  std::size_t uv_set = 0;  ///< set of texture coordinates for the picture: TEXCOORD_<uv_set>
 };
 
-/// All materials of a file, in its order: the base colour of metal and roughness, or the diffuse one of
-/// KHR_materials_pbrSpecularGlossiness. What is passed by is added to `warnings`. Throws BadInput.
+/// Reads all materials of a file, in its order: the base colour of metal-roughness materials, or the diffuse one of
+/// KHR_materials_pbrSpecularGlossiness. Adds what is ignored to `warnings`. Throws BadInput.
 std::vector<GltfMaterial> read_gltf_materials(const GltfDocument& document, GltfBuffers& buffers,
                                               std::vector<std::string>& warnings);
 

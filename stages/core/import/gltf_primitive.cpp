@@ -6,8 +6,8 @@
 
 #include "import/gltf_draco.h"
 
-// Primitives are those of chapter 3.7.2 of glTF 2.0: section 3.7.2.1 has the order of the vertices of strips and fans,
-// section 3.7.2.2 morph targets.
+// Primitives: [Khronos 2021], chapter 3.7.2; section 3.7.2.1 has the order of the vertices of strips and fans, section
+// 3.7.2.2 morph targets.
 
 namespace kiln {
 
@@ -17,7 +17,7 @@ using Json = GltfDocument::Json;
 
 enum class Mode { points, lines, line_loop, line_strip, triangles, strip, fan };
 
-/// One primitive on its way from the file.
+/// Reader of one primitive.
 class PrimitiveReader {
  public:
   PrimitiveReader(const GltfDocument& document, GltfBuffers& buffers, const Json& primitive, std::string place,
@@ -26,7 +26,7 @@ class PrimitiveReader {
     result_.place = std::move(place);
   }
 
-  /// Nothing where there are no triangles.
+  /// Reads the primitive; nothing where there are no triangles.
   std::optional<GltfPrimitive> read(const std::vector<double>& morph_weights, std::size_t triangles_so_far,
                                     GltfPassedBy& passed_by) {
     const Json* attributes = document_.object(primitive_, "attributes", result_.place);
@@ -65,7 +65,7 @@ class PrimitiveReader {
     result_.material = static_cast<std::int32_t>(*material);
   }
 
-  /// The set of texture coordinates that the material's picture is looked up with.
+  /// Returns the name of the set of texture coordinates for the material's picture.
   std::string uv_name() const {
     const std::size_t set = result_.material < 0 ? 0 : materials_[static_cast<std::size_t>(result_.material)].uv_set;
     return "TEXCOORD_" + std::to_string(set);
@@ -98,7 +98,7 @@ class PrimitiveReader {
                      std::to_string(least) + (least == most ? "" : " or " + std::to_string(most)));
   }
 
-  /// An attribute that the primitive may lack; null then.
+  /// Returns an attribute that the primitive may lack; null then.
   const GltfAccessor* optional_attribute(const std::string& name, int least, int most) const {
     const auto found = accessors_.find(name);
     if (found == accessors_.end()) return nullptr;
@@ -146,12 +146,12 @@ class PrimitiveReader {
            type == GltfAccessor::Type::uint32;
   }
 
-  /// Triangles that name a vertex twice join the parts of a strip, and are no surface.
+  /// Adds a triangle unless it names a vertex twice: such triangles join the parts of a strip, and are no surface.
   void add_joining(const std::array<std::uint32_t, 3>& t) {
     if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) result_.triangles.push_back(t);
   }
 
-  /// Primitives may share accessors of which each uses a part, so the used vertices alone are taken.
+  /// Drops unused vertices: primitives may share accessors of which each uses a part.
   void keep_used_vertices() {
     number_used_vertices();
     const auto& used = result_.numbers;
@@ -169,8 +169,8 @@ class PrimitiveReader {
     read_joints();
   }
 
-  /// Lists the vertices that triangles use in `numbers`, rising, and has triangles refer to that list. Takes a table of
-  /// all vertices where they are not many times as many as those of the triangles.
+  /// Lists in `numbers` the vertices that triangles use, ascending, and makes triangles refer to that list. Uses a
+  /// table of all vertices unless there are many times more of them than of the triangles' corners.
   void number_used_vertices() {
     auto& used = result_.numbers;
     const std::size_t corners = 3 * result_.triangles.size();

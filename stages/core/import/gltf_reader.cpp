@@ -12,7 +12,7 @@
 #include "import/mesh_transform.h"
 #include "import/readers.h"
 
-// Everything is put where the scene has it, in double. Coordinates are metres, +Y up, as glTF has them.
+// All meshes are placed as in the scene, in double. Coordinates are metres, +Y up, as in glTF.
 
 namespace kiln {
 
@@ -26,11 +26,11 @@ class SceneAssembler {
     mesh_.linear_colors = true;
   }
 
-  /// To be called before copies of a mesh are added. Throws BadInput where they are more than the file can mean.
+  /// Announces copies of a mesh before they are added. Throws BadInput where there are more than plausible.
   void expect(const std::vector<GltfPrimitive>& primitives, std::size_t copies) {
     std::size_t triangles = 0;
     for (const GltfPrimitive& primitive : primitives) triangles += primitive.triangles.size();
-    const std::size_t most = buffers_.most_triangles();  // never fewer than before
+    const std::size_t most = buffers_.most_triangles();  // never decreases
     if (triangles > 0 && copies > (most - expected_triangles_) / triangles)
       document_.fail("places " + std::to_string(copies) + " copies of a mesh of " + std::to_string(triangles) +
                          " triangles, out of all proportion to the file's size",
@@ -70,7 +70,7 @@ class SceneAssembler {
   }
 
  private:
-  /// What the joints of a skin make of a vertex together.
+  /// Blends the transforms of a vertex's joints in a skin.
   Eigen::Matrix4d blend(const GltfPrimitive& primitive, const GltfPlacement& placement, std::size_t vertex) const {
     Eigen::Matrix4d sum = Eigen::Matrix4d::Zero();
     double total = 0;
@@ -98,7 +98,7 @@ class SceneAssembler {
     if (!primitive.normals.empty()) mesh_.normals.push_back(transform.normal(primitive.normals[i]));
   }
 
-  /// Colours are of all places or of none; where other primitives have them a primitive without is white.
+  /// Adds colours, which all places must have or none: where other primitives have them, a primitive without is white.
   void add_colors(const GltfPrimitive& primitive) {
     if (primitive.colors.empty() && mesh_.colors.empty()) return;
     mesh_.colors.resize(first_place_, Eigen::Vector3f::Ones());
@@ -143,7 +143,7 @@ SourceMesh read_gltf(const std::filesystem::path& file) {
   for (const GltfMaterial& material : materials) mesh.materials.push_back(material.material);
   const std::vector<GltfPlacement> placements = place_gltf_meshes(document, buffers, mesh.warnings);
 
-  // A mesh is read once for all nodes of the same morph weights, and kept until the last of them.
+  // Read a mesh once for all nodes of the same morph weights, and keep it until the last of them.
   using Key = std::pair<std::size_t, std::vector<double>>;
   std::map<Key, std::size_t> uses;
   for (const GltfPlacement& placement : placements) ++uses[{placement.mesh, placement.morph_weights}];

@@ -5,8 +5,8 @@
 #include <map>
 #include <optional>
 
-// Scenes and nodes are those of chapter 3.5 of glTF 2.0, skins of chapter 3.7.3: a skinned mesh is put in place by its
-// joints alone, and not by its node. Instances are those of EXT_mesh_gpu_instancing.
+// Scenes and nodes: [Khronos 2021], chapter 3.5; skins: chapter 3.7.3 (a skinned mesh is placed by its joints alone,
+// not by its node). Instances: EXT_mesh_gpu_instancing.
 
 namespace kiln {
 
@@ -17,7 +17,7 @@ using Json = GltfDocument::Json;
 constexpr std::size_t none = ~std::size_t{0};
 constexpr std::size_t most_weights = 4096;  // every node may have its own
 
-/// The transform of translation, rotation (a quaternion x, y, z, w of any length) and scale; absent ones are empty.
+/// Composes translation, rotation (a quaternion x, y, z, w of any length) and scale; absent ones are empty.
 Eigen::Matrix4d composed(const std::vector<double>& translation, const std::vector<double>& rotation,
                          const std::vector<double>& scale) {
   Eigen::Affine3d result = Eigen::Affine3d::Identity();
@@ -116,7 +116,7 @@ class SceneReader {
     return roots;
   }
 
-  /// Calls `visit` for nodes beneath `roots`, parents before children. Needs no stack of calls, however deep they are.
+  /// Calls `visit` for nodes beneath `roots`, parents before children. Works without recursion, for any depth.
   template <class Visit>
   void for_each(const std::vector<std::size_t>& roots, const Visit& visit) const {
     std::vector<std::size_t> left(roots.rbegin(), roots.rend());
@@ -135,7 +135,7 @@ class SceneReader {
       is_reached[i] = true;
       node.world = node.parent == none ? node.local : Eigen::Matrix4d(nodes_[node.parent].world * node.local);
     });
-    // Every node has one parent, so those that no root reaches stand in a ring.
+    // Every node has one parent, so nodes that no root reaches form a ring.
     const auto ring = std::find(is_reached.begin(), is_reached.end(), false);
     if (ring != is_reached.end())
       document_.fail(name_of(static_cast<std::size_t>(ring - is_reached.begin())) + " is beneath itself",

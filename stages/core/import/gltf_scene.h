@@ -9,17 +9,17 @@
 
 namespace kiln {
 
-/// A mesh where a node of the scene puts it.
+/// Mesh with the transform that a node of the scene gives it.
 struct GltfPlacement {
   std::size_t mesh = 0;
   Eigen::Matrix4d world = Eigen::Matrix4d::Identity();
   std::vector<double> morph_weights;
-  /// The transform of each joint of a skinned mesh: from the mesh's space to the world's, at rest. Else null.
+  /// Transforms of a skinned mesh's joints, from the mesh's space to the world's, at rest; null for other meshes.
   std::shared_ptr<const std::vector<Eigen::Matrix4d>> joints;
 };
 
-/// The meshes of the default scene (else of all nodes; else all meshes as they are), in the order of the nodes' tree.
-/// What is passed by is added to `warnings`. Throws BadInput for node graphs that are no trees.
+/// Lists the meshes of the default scene (else of all nodes; else all meshes, untransformed), in the order of the
+/// nodes' tree. Adds what is ignored to `warnings`. Throws BadInput for node graphs that are not trees.
 std::vector<GltfPlacement> place_gltf_meshes(const GltfDocument& document, GltfBuffers& buffers,
                                              std::vector<std::string>& warnings);
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr char remedy_export[] = "export the mesh again";
 
-/// The vertices that triangles use, in the order in which they do.
+/// Makes a mesh of the vertices that triangles use, in the order of first use.
 TriangleMesh to_mesh(const std::string& name, const SourceMesh& source, const std::vector<CutTriangle>& triangles,
                      const MeshFrame& frame) {
   TriangleMesh mesh;
@@ -42,7 +42,7 @@ TriangleMesh to_mesh(const std::string& name, const SourceMesh& source, const st
   return mesh;
 }
 
-/// Says where the file's numbers are too coarse for the shape that they describe.
+/// Warns where the file's numbers are too coarse for the shape that they describe.
 void warn_of_precision(const SourceMesh& source, const Eigen::AlignedBox3d& box, std::vector<std::string>& warnings) {
   const double size = box.diagonal().norm();
   const double largest = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
@@ -70,7 +70,7 @@ void warn_of_repairs(const MeshRepairs& repairs, std::vector<std::string>& warni
   add(repairs.unorientable_edges, "edge", "cut, as the surface has one side alone, like a Moebius strip");
 }
 
-/// Brings colours to 0 to 1; returns how many lay outside.
+/// Clamps colours to 0 .. 1; returns how many lay outside.
 int clamp_colors(const std::string& name, std::vector<Eigen::Vector3f>& colors) {
   int clamped = 0;
   for (Eigen::Vector3f& color : colors) {
@@ -87,13 +87,13 @@ int clamp_colors(const std::string& name, std::vector<Eigen::Vector3f>& colors) 
 }  // namespace
 
 MeshFrame frame_of(const Eigen::Vector3d& lowest, const Eigen::Vector3d& highest) {
-  constexpr double farthest_sides = 8;  // floats resolve a millionth of the side there
+  constexpr double farthest_sides = 8;  // at that distance float32 resolves a millionth of the side
   MeshFrame frame;
   const double side = (highest - lowest).maxCoeff();
   if (!(side > 0) || !std::isfinite(side)) return frame;
   const double farthest = std::max(lowest.cwiseAbs().maxCoeff(), highest.cwiseAbs().maxCoeff());
   if (farthest > farthest_sides * side) {
-    // Round numbers, so that they read well.
+    // Use round numbers, for legible origins.
     const double step = std::ldexp(1.0, std::ilogb(side));
     for (int k = 0; k < 3; ++k) frame.origin[k] = std::round((lowest[k] + highest[k]) / 2 / step) * step;
   }
@@ -103,7 +103,7 @@ MeshFrame frame_of(const Eigen::Vector3d& lowest, const Eigen::Vector3d& highest
 
 ImportedMesh import_mesh(const std::filesystem::path& file, const ImportSettings& settings,
                          const std::optional<MeshFrame>& frame) {
-  // Step 1: the file as it stands, in our axes and units, as triangles.
+  // Step 1: read the file, in our axes and units, as triangles.
   const std::string name = file.string();
   SourceMesh source = read_source_mesh(file);
   turn_and_scale(source, settings);
@@ -117,7 +117,7 @@ ImportedMesh import_mesh(const std::filesystem::path& file, const ImportSettings
   const Eigen::AlignedBox3d box = box_of(source, triangles);
   warn_of_precision(source, box, result.warnings);
 
-  // Step 2: one clean mesh.
+  // Step 2: make one clean mesh.
   result.mesh = to_mesh(name, source, triangles, frame ? *frame : frame_of(box.min(), box.max()));
   TriangleMesh& mesh = result.mesh;
   const auto used_vertices = static_cast<int>(mesh.positions.size());
@@ -129,18 +129,18 @@ ImportedMesh import_mesh(const std::filesystem::path& file, const ImportSettings
                          .keeps_orientation = settings.keeps_orientation,
                          .keeps_backs = settings.keeps_backs},
                         &origins);
-  constexpr double least_area = 1e-16;  // of the squared diagonal: less is a line, drawn with triangles
+  constexpr double least_area = 1e-16;  // relative to the squared diagonal; less is a line drawn with triangles
   const double diagonal = bounding_box(mesh).diagonal();
   if (mesh.triangles.empty() || !(surface_area(mesh) > least_area * diagonal * diagonal))
     throw BadInput(name, "has no triangle with an area", "a mesh of triangles or polygons", remedy_export);
   repairs.clamped_colors = clamped_colors;
   repairs.triangulated_polygons = polygons;
   repairs.unused_vertices += static_cast<int>(source.places.size()) - used_vertices;
-  if (source.is_unwelded) repairs.merged_vertices = 0;  // the format has each vertex once for every face
+  if (source.is_unwelded) repairs.merged_vertices = 0;  // the format repeats each vertex for every face
   repairs.welded_vertices = welded;
   warn_of_repairs(repairs, result.warnings);
 
-  // Step 3: what corners have besides.
+  // Step 3: carry over the corners' attributes.
   const CornerAttributes attributes(source, triangles, mesh, origins);
   result.surface = attributes.surface();
   set_normals(mesh, attributes, settings.normals, name, result.warnings);

@@ -14,48 +14,48 @@
 
 namespace kiln {
 
-/// What a mesh file says of the surface of the triangles that were made of it.
+/// Surface attributes from a mesh file, for the triangles made of it.
 struct ImportedSurface {
-  /// A face without texture coordinates.
+  /// Face without texture coordinates.
   struct FaceWithoutUvs {
     bool found = false;
-    std::uint32_t line = 0;  ///< of a text file, from 1; else 0
+    std::uint32_t line = 0;  ///< line in a text file, from 1; else 0
     std::uint32_t face = 0;  ///< from 1
   };
 
   std::vector<SourceMaterial> materials;
-  std::vector<std::int32_t> material_of;            ///< of each triangle, -1 for none; empty where no face has one
-  std::vector<std::array<Eigen::Vector2f, 3>> uvs;  ///< of each triangle's corners; empty where the file has none
-  std::vector<FaceWithoutUvs> without_uvs;          ///< of each material; the last entry is of faces without one
-  std::optional<BadInput> materials_fault;          ///< why the file's materials cannot be used
+  std::vector<std::int32_t> material_of;            ///< per triangle, -1 for none; empty where no face has one
+  std::vector<std::array<Eigen::Vector2f, 3>> uvs;  ///< per triangle's corners; empty where the file has none
+  std::vector<FaceWithoutUvs> without_uvs;          ///< per material; the last entry is for faces without one
+  std::optional<BadInput> materials_fault;          ///< reason why the file's materials cannot be used
   bool linear_colors = false;                       ///< the mesh's colours are proportional to light
 };
 
-/// A mesh file as all stages see it.
+/// Mesh file as all stages see it.
 struct ImportedMesh {
   std::filesystem::path file;
   TriangleMesh mesh;  ///< repaired, with normals, in its frame
   ImportedSurface surface;
   MeshRepairs repairs;
-  std::vector<std::filesystem::path> further_files;  ///< that were read besides
-  std::vector<std::string> warnings;                 ///< what is in the file and not used, and what was mended unasked
+  std::vector<std::filesystem::path> further_files;  ///< files that were read besides
+  std::vector<std::string> warnings;                 ///< parts of the file that are not used, and unrequested repairs
 };
 
-/// Reads a high mesh of any format that read_source_mesh knows. Coordinates are turned and scaled as `settings` say;
-/// polygons are triangulated, borders welded and the mesh repaired (repair_mesh), so that every stage sees the same
-/// oriented manifold; normals are the file's, or computed from the faces. Materials, uvs and normals follow triangles
-/// through repair. The mesh is moved and scaled into `frame`, or into one of its own where floats would not hold it
-/// otherwise. Throws BadInput for what cannot be read, for a mesh without area, and where `settings` ask for normals of
-/// the file and it has none.
+/// Reads a high mesh of any format that read_source_mesh knows. Coordinates are turned and scaled as `settings` say,
+/// polygons triangulated, borders welded, and the mesh repaired (repair_mesh), so that every stage sees the same
+/// oriented manifold. Normals are the file's, or computed from the faces; materials, uvs and normals follow triangles
+/// through repair. The mesh is moved and scaled into `frame`, or into a frame of its own if float32 could not hold it
+/// otherwise. Throws BadInput for what cannot be read, for a mesh without area, and where `settings` ask for the file's
+/// normals and it has none.
 ImportedMesh import_mesh(const std::filesystem::path& file, const ImportSettings& settings = {},
                          const std::optional<MeshFrame>& frame = std::nullopt);
 
-/// The mesh of import_mesh alone.
+/// Returns the mesh of import_mesh alone.
 TriangleMesh load_mesh(const std::filesystem::path& file, MeshRepairs* repairs = nullptr,
                        const ImportSettings& settings = {});
 
-/// The frame of a mesh that fills this box of a file: none where floats hold its positions to a few millionths of its
-/// size.
+/// Returns the frame of a mesh that fills this box of a file: the identity where float32 holds its positions to a few
+/// millionths of its size.
 MeshFrame frame_of(const Eigen::Vector3d& lowest, const Eigen::Vector3d& highest);
 
 }  // namespace kiln

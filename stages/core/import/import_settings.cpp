@@ -44,7 +44,7 @@ std::string text_of(const WeldChoice& choice) {
 }  // namespace
 
 double ImportSettings::factor() const {
-  constexpr double metres[] = {1, 1e-3, 1e-2, 1, 0.0254};  // in the order of LengthUnit
+  constexpr double metres[] = {1, 1e-3, 1e-2, 1, 0.0254};  // metres per unit, in the order of LengthUnit
   return scale * metres[static_cast<int>(unit)];
 }
 

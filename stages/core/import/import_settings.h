@@ -8,13 +8,13 @@
 
 namespace kiln {
 
-/// The axis of a file that points up.
+/// Axis of a file that points up.
 enum class UpAxis { plus_x, minus_x, plus_y, minus_y, plus_z, minus_z };
 
-/// What a file counts in. `none`: its numbers are taken as they are.
+/// Length unit of a file. `none`: its numbers are taken unchanged.
 enum class LengthUnit { none, millimetres, centimetres, metres, inches };
 
-/// Where the normals of a mesh come from.
+/// Source of a mesh's normals.
 struct NormalChoice {
   enum class Kind {
     automatic,  ///< the file's where it has them, else its smoothing groups, else smooth
@@ -26,47 +26,48 @@ struct NormalChoice {
   double degrees = 0;
 };
 
-/// Which vertices become one besides those at the very same place.
+/// Vertices that are welded besides those at the very same position.
 struct WeldChoice {
   enum class Kind {
-    automatic,  ///< those on borders that differ in the last digits of the file alone
+    automatic,  ///< border vertices that differ only in the last digits of the file
     off,        ///< none
-    distance    ///< those on borders that are at most `distance` apart, in units of the result
+    distance    ///< border vertices at most `distance` apart, in units of the result
   };
   Kind kind = Kind::automatic;
   double distance = 0;
 };
 
-/// How a mesh file becomes a mesh: the same for all stages of an asset.
+/// Conversion of a mesh file to a mesh: the same for all stages of an asset.
 struct ImportSettings {
   UpAxis up = UpAxis::plus_y;
   LengthUnit unit = LengthUnit::none;
   double scale = 1;
   NormalChoice normals = {};
   WeldChoice weld = {};
-  bool keeps_orientation = false;  ///< closed components that are inside out stay so
-  bool keeps_backs = false;        ///< the back of a two-sided sheet stays
-  int fill_hole_edges = 0;         ///< holes of at most so many edges are closed; 0 leaves all open
+  bool keeps_orientation = false;  ///< closed components that are inside out are left so
+  bool keeps_backs = false;        ///< the back of a two-sided sheet is kept
+  int fill_hole_edges = 0;         ///< holes of at most this many edges are closed; 0 leaves all open
 
-  /// What a file's coordinates are multiplied with: to metres where the unit is given, times `scale`.
+  /// Returns the factor of a file's coordinates: to metres where the unit is given, times `scale`.
   double factor() const;
 
-  /// Turns a file's coordinates, or directions, such that `up` becomes +Y, without a mirror.
+  /// Turns a file's coordinates, or directions, such that `up` becomes +Y, without mirroring.
   Eigen::Vector3d turned(const Eigen::Vector3d& place) const;
 };
 
 /// Adds `up`, `unit`, `scale`, `normals`, `weld`, `orientation`, `backs` and `fill-holes` to a stage's options.
 void add_import_options(OptionSet& options, ImportSettings& settings);
 
-/// Reads NormalChoice from "auto", "file", "smooth" or "angle:DEGREES", WeldChoice from "auto", "off" or a distance.
-/// Throw WrongUsage for other text.
+/// Parse NormalChoice from "auto", "file", "smooth" or "angle:DEGREES", and WeldChoice from "auto", "off" or a
+/// distance. Throw WrongUsage for other text.
 NormalChoice parse_normal_choice(const std::string& text);
 WeldChoice parse_weld_choice(const std::string& text);
 
-/// `own`, but for options at their default that `earlier`, those of the stage that made the asset, has otherwise.
+/// Returns `own` with the options that are at their default replaced by those of `earlier`, the stage that made the
+/// asset.
 ImportSettings inherit(const ImportSettings& own, const ImportSettings& earlier);
 
-/// The settings that the record of an earlier stage holds under "settings"; what is not there has its default.
+/// Reads the settings that the record of an earlier stage holds under "settings"; absent ones have their defaults.
 ImportSettings import_settings_of(const Json& recorded);
 
 }  // namespace kiln

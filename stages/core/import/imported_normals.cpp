@@ -16,7 +16,7 @@ namespace {
 
 using CornerNormals = std::vector<std::array<Eigen::Vector3f, 3>>;
 
-/// Components without a border.
+/// Tells which components have no border.
 std::vector<bool> closed_components(const TriangleMesh& mesh, const Components& components) {
   std::vector<std::pair<EdgeKey, std::uint32_t>> edges;
   edges.reserve(3 * mesh.triangles.size());
@@ -32,8 +32,8 @@ std::vector<bool> closed_components(const TriangleMesh& mesh, const Components& 
   return closed;
 }
 
-/// Makes the winding of each component and the normals of its corners agree. Returns how many triangles were turned and
-/// how many have turned normals.
+/// Makes the winding of each component and the normals of its corners agree. Returns how many triangles were turned,
+/// and how many have turned normals.
 struct Turned {
   int triangles = 0, normals = 0;
 };
@@ -65,7 +65,7 @@ Turned agree(TriangleMesh& mesh, CornerNormals& normals) {
   return turned;
 }
 
-/// Gives corners without a believable normal that of the faces around. Returns how many there were.
+/// Replaces corner normals that are not believable by the normal of the faces around. Returns how many there were.
 int replace_unbelievable(const TriangleMesh& smooth, CornerNormals& normals) {
   int replaced = 0;
   for (std::uint32_t t = 0; t < normals.size(); ++t) {
@@ -85,8 +85,8 @@ int replace_unbelievable(const TriangleMesh& smooth, CornerNormals& normals) {
   return replaced;
 }
 
-/// Whether all corners have the normals of their faces, and these differ little from one to the next: what programs
-/// write that know of no smooth surface.
+/// Tells whether all corners have the normals of their faces, and these differ little from one to the next: the output
+/// of programs that do not know smooth surfaces.
 bool is_facetted(const TriangleMesh& mesh) {
   if (mesh.corner_normals.empty()) return false;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)

@@ -1,5 +1,5 @@
 // The format: Alias|Wavefront, "Advanced Visualizer Manual", appendix B2, "Object material files (.MTL)", version 4.2,
-// "Options for texture map statements". Options stand before the name there; exporters write them behind it, too.
+// "Options for texture map statements". Options precede the name there; exporters also write them after it.
 #include "import/map_statement.h"
 
 #include <algorithm>
@@ -15,10 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Bounds the work on a statement that no exporter writes; a path has at most as many.
+/// Limit of the work on a statement that no exporter writes; a path has at most as many characters.
 constexpr std::size_t most_characters = 4096;
 
-/// How many words follow an option that says nothing of the colour that is looked up.
+/// Option that does not affect the colour, and the number of words that follow it.
 struct PlainOption {
   std::string_view name;
   enum class Kind { on_or_off, number, word } kind;
@@ -35,7 +35,7 @@ std::optional<double> finite(std::string_view word) {
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-/// The statement read so far, and what stands behind it.
+/// Statement as read so far, and the rest of the text.
 struct State {
   MapStatement map;
   std::string_view rest;
@@ -45,8 +45,8 @@ class OptionReader {
  public:
   explicit OptionReader(const State& start) : state_(start) {}
 
-  /// Reads options while they stand at the front. `endings` are the states in which a name may begin: behind the last
-  /// option, and where that has numbers that can be left out, before each of these.
+  /// Reads options at the front of the text. `endings` are the states in which a name may begin: after the last option
+  /// and, if its trailing numbers are optional, before each of these.
   std::vector<State> read() {
     endings_ = {state_};
     while (read_option()) {
@@ -72,7 +72,7 @@ class OptionReader {
     return false;
   }
 
-  /// False for an option that is not known, or whose words are not what it takes.
+  /// Reads one option; false if it is unknown, or its words are not what it takes.
   bool read_known(std::string_view option) {
     if (is_keyword(option, "-s")) return read_numbers(state_.map.scale);
     if (is_keyword(option, "-o")) return read_numbers(state_.map.offset);
@@ -98,7 +98,7 @@ class OptionReader {
     return value || is_keyword(word, "off");
   }
 
-  /// One to three numbers, of which two are for u and v.
+  /// Reads one to three numbers, of which the first two are for u and v.
   bool read_numbers(double* values) {
     for (int k = 0; k < 3; ++k) {
       std::string_view rest = state_.rest;
@@ -136,7 +136,7 @@ class OptionReader {
   std::vector<State> endings_;
 };
 
-/// Reads `rest` as options and nothing else but a comment.
+/// Reads `rest` as options and a comment, and nothing else.
 bool read_all_as_options(State& state) {
   state.rest = name_without_comment(state.rest);
   state = OptionReader(state).read().front();
@@ -149,7 +149,7 @@ bool find_file(MapStatement& map, std::string_view name, const fs::path& folder)
   return map.file.has_value();
 }
 
-/// A name in quotes, and options behind it.
+/// Reads a name in quotes, and options after it.
 MapStatement read_quoted(State state, std::size_t closing, const fs::path& folder) {
   const std::string_view text = trimmed(state.rest);
   state.rest = text.substr(closing + 1);
@@ -160,7 +160,7 @@ MapStatement read_quoted(State state, std::size_t closing, const fs::path& folde
   return state.map;
 }
 
-/// A name that goes to the end, or to where options begin that go to the end.
+/// Reads a name that extends to the end, or to where options begin that extend to the end.
 MapStatement read_unquoted(State state, const fs::path& folder) {
   const std::string_view text = trimmed(state.rest), bare = trimmed(name_without_comment(text));
   if (find_file(state.map, text, folder) || find_file(state.map, bare, folder)) return state.map;
@@ -216,7 +216,7 @@ MapStatement read_map_statement(std::string_view text, const fs::path& folder) {
   }
   MapStatement map = std::move(*first);
   if (map.name.empty() && !map.fault) map.fault = MapFault{"map_Kd without a file", "the name of a picture"};
-  // An option that is not known stands at the front of what is no file's name then.
+  // If the name is no file, it may begin with an unknown option: say so.
   if (std::string_view rest = map.name; !map.fault && rest.starts_with('-'))
     map.fault =
         MapFault{"map_Kd with " + shown(map.name),

@@ -9,14 +9,14 @@
 
 namespace kiln {
 
-/// What is wrong with a statement, for a message.
+/// Fault of a statement, for a message.
 struct MapFault {
   std::string found, expected;
 };
 
-/// A `map_Kd` statement of an MTL file: what a picture is called, and how it is looked up.
+/// Statement `map_Kd` of an MTL file: the name of a picture, and how it is looked up.
 struct MapStatement {
-  std::string name;                           ///< as it stands, without quotes
+  std::string name;                           ///< as written, without quotes
   std::optional<std::filesystem::path> file;  ///< nothing where there is no such file
   double scale[2] = {1, 1}, offset[2] = {0, 0};
   double base = 0, gain = 1;
@@ -26,8 +26,8 @@ struct MapStatement {
   void apply_to(SourceMaterial& material) const;
 };
 
-/// Reads what follows `map_Kd`: options, a name that may hold blanks or stand in quotes, options. Where numbers of an
-/// option may as well begin the name, that which names a file in `folder` is taken.
+/// Reads the text after `map_Kd`: options, a name that may hold blanks or stand in quotes, more options. Where the
+/// numbers of an option might also begin the name, the reading that names a file in `folder` is taken.
 MapStatement read_map_statement(std::string_view text, const std::filesystem::path& folder);
 
 }  // namespace kiln

@@ -7,13 +7,13 @@
 
 namespace kiln {
 
-/// What a node of a scene does to the places and normals of a mesh.
+/// Transform of a scene's node, for positions and normals of a mesh.
 class MeshTransform {
  public:
   explicit MeshTransform(const Eigen::Matrix4d& world)
       : linear_(world.topLeftCorner<3, 3>()), offset_(world.topRightCorner<3, 1>()) {
-    // Normals follow the inverse transpose. But for a factor, those are the cofactors with the determinant's sign,
-    // which flat transforms have as well.
+    // Normals follow the inverse transpose. Up to a factor that is the cofactor matrix with the determinant's sign,
+    // which exists for flat transforms as well.
     const Eigen::Vector3d x = linear_.col(0), y = linear_.col(1), z = linear_.col(2);
     cofactors_.col(0) = y.cross(z);
     cofactors_.col(1) = z.cross(x);
@@ -22,18 +22,18 @@ class MeshTransform {
     if (is_mirror_) cofactors_ = -cofactors_;
   }
 
-  /// Infinite where the transform or the place is too large.
+  /// Transforms a position; infinite where the transform or the position is too large.
   Eigen::Vector3d place(const Eigen::Vector3d& local) const { return linear_ * local + offset_; }
 
-  /// A unit vector; zero where there is no direction.
+  /// Transforms a normal to a unit vector; zero where there is no direction.
   Eigen::Vector3f normal(const Eigen::Vector3d& local) const {
     return unit_or_zero(cofactors_ * unit_or_zero(local)).cast<float>();
   }
 
-  /// Whether it turns the order of corners around.
+  /// Tells whether the transform reverses the order of corners.
   bool is_mirror() const { return is_mirror_; }
 
-  /// The most that one unit along an axis becomes.
+  /// Returns the largest length that one unit along an axis becomes.
   double largest_scale() const { return linear_.colwise().norm().maxCoeff(); }
 
  private:

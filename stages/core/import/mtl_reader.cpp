@@ -65,7 +65,7 @@ class LibraryReader {
 
   std::string place() const { return file_.string() + ":" + std::to_string(lines_.line()); }
 
-  /// Keeps the first fault of a material.
+  /// Records the first fault of a material.
   void fault(const std::string& found, const std::string& expected,
              const std::string& remedy = "change the material, or give --albedo a number") {
     std::optional<BadInput>& kept = materials_.back().fault;
@@ -89,7 +89,7 @@ class LibraryReader {
     material.is_clamped = color.minCoeff() < 0 || color.maxCoeff() > 1;
   }
 
-  /// All words as finite numbers, at most four; nothing where one is none.
+  /// Reads all words as finite numbers, at most four; nothing where one is not a number.
   static std::optional<std::vector<double>> numbers(std::string_view text) {
     std::vector<double> values;
     for (std::string_view word = next_word(text); !word.empty() && values.size() < 4; word = next_word(text)) {
@@ -111,7 +111,7 @@ class LibraryReader {
     map.apply_to(material);
   }
 
-  /// How opaque a material is: 1 is wholly so. -halo says that the middle of a shape is more so than its rim.
+  /// Reads `d`, opacity: 1 is fully opaque. -halo makes the middle of a shape more opaque than its rim.
   void read_dissolve(std::string_view rest) {
     std::string_view word = next_word(rest);
     if (is_keyword(word, "-halo")) word = next_word(rest);
@@ -121,7 +121,7 @@ class LibraryReader {
     has_dissolve_ = true;
   }
 
-  /// 1 - d, or d, as exporters differ: neither 0 nor 1 says that a material can be seen through.
+  /// Reads `Tr`, which exporters write as 1 - d or as d: only values other than 0 and 1 mean transparency.
   void read_transparency(std::string_view rest) {
     const std::optional<double> value = parse_number(next_word(rest));
     if (value && !has_dissolve_ && *value > 0 && *value < 1) materials_.back().is_transparent = true;

@@ -1,7 +1,6 @@
-// ZBrush's comments are described by ZBrush itself in the files that it writes: "The following MRGB block contains
-// ZBrush Vertex Color (Polypaint) and masking output as 4 hexadecimal values per vertex. The vertex color format is
-// MMRRGGBB with up to 64 entries per MRGB line." Colours behind coordinates: Paul Bourke, "Vertex colour in OBJ files",
-// 2020.
+// ZBrush describes its comments in the files that it writes: "The following MRGB block contains ZBrush Vertex Color
+// (Polypaint) and masking output as 4 hexadecimal values per vertex. The vertex color format is MMRRGGBB with up to 64
+// entries per MRGB line." Colours after coordinates: [Bourke 2020].
 #include "import/obj_colors.h"
 
 #include <algorithm>
@@ -61,7 +60,7 @@ void ObjColors::take_polypaint(std::size_t vertex_count, std::vector<std::string
   const bool in_order = count == vertex_count || polypaint_.front().vertex_count == 0;
   std::size_t next = 0, dropped = 0;
   for (const Polypaint& block : polypaint_) {
-    // A block that leaves vertices out belongs to the last object before it.
+    // A block for fewer vertices belongs to the last object before it.
     if (!in_order) next = std::max(next, block.vertex_count - std::min(block.vertex_count, block.colors.size()));
     const std::size_t end = in_order ? vertex_count : block.vertex_count;
     for (const std::uint32_t color : block.colors) {
@@ -78,7 +77,7 @@ void ObjColors::take_polypaint(std::size_t vertex_count, std::vector<std::string
                        " it has other than 8 hexadecimal digits for a vertex");
 }
 
-/// Brings what stands on `v` lines to 0 to 1.
+/// Scales the colours of `v` lines to 0 .. 1.
 void ObjColors::scale(std::vector<std::string>& warnings) {
   const auto outside = [](const Eigen::Vector3f& color) {
     return color.allFinite() && (color.minCoeff() < 0 || color.maxCoeff() > 1);

@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Cuts names of libraries apart: those in quotes, and words, of which one that does not end in .mtl goes on in the
-/// next that does.
+/// Splits names of libraries: those in quotes, and words; a word that does not end in .mtl continues up to the next
+/// that does.
 std::vector<std::string> split_names(std::string_view text) {
   std::vector<std::string> names;
   std::string begun;
@@ -33,7 +33,7 @@ std::vector<std::string> split_names(std::string_view text) {
   return names;
 }
 
-/// The materials of all libraries by their names. Of two with one name the first counts.
+/// Materials of all libraries by their names; the first of a name counts.
 class Libraries {
  public:
   Libraries(const fs::path& obj_file, SourceMesh& mesh) : obj_file_(obj_file), mesh_(mesh) {}
@@ -53,8 +53,8 @@ class Libraries {
     }
   }
 
-  /// Finds the material that a name, which may have a comment behind it, stands for; null: there is none. Names are
-  /// sought as they stand first, since they may hold a #.
+  /// Finds the material of a name that a comment may follow; null where there is none. Names are first sought as
+  /// written, since they may hold a #.
   const LibraryMaterial* find(std::string_view name) const {
     for (const std::string_view sought : {unquoted(name), unquoted(name_without_comment(name))})
       for (const auto* known : {&whole_, &without_comment_})
@@ -87,7 +87,7 @@ class Libraries {
   std::size_t repeated_ = 0;
 };
 
-/// What is said of materials that faces use.
+/// Collects warnings about materials that faces use.
 class MaterialWarnings {
  public:
   void add(const LibraryMaterial& material) {

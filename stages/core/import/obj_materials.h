@@ -11,18 +11,18 @@
 
 namespace kiln {
 
-/// What an OBJ file says of materials: names that faces use, and libraries that have them.
+/// Materials of an OBJ file: names that faces use, and libraries that define them.
 class ObjMaterials {
  public:
-  /// What follows `usemtl`. Returns the number of that name, or -1 where there is none.
+  /// Reads the text after `usemtl`. Returns the number of that name, or -1 where there is none.
   std::int32_t use(std::string_view name);
 
-  /// What follows `mtllib` in that line.
+  /// Reads the text after `mtllib` in that line.
   void add_library(std::string_view names, std::uint32_t line);
 
-  /// Turns the faces' numbers of names into those of `mesh.materials`, which it reads from the libraries if there are
-  /// any and a face uses a material; without a library no face has one. Keeps in `mesh.materials_fault` what stands in
-  /// the way of using them, such as a file that is missing.
+  /// Replaces the faces' numbers of names by indices into `mesh.materials`, which it reads from the libraries if there
+  /// are any and a face uses a material; without a library no face has a material. Stores in `mesh.materials_fault` why
+  /// they cannot be used, for example a missing file.
   void finish(const std::filesystem::path& file, SourceMesh& mesh) const;
 
  private:

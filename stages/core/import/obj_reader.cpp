@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr char remedy[] = "export the mesh again";
 
-/// The three kinds of elements that corners name.
+/// Kind of elements that corners refer to.
 struct Kind {
   const char* name;
   const char* keyword;
@@ -50,7 +50,8 @@ class ObjReader {
   }
 
  private:
-  /// Makes room by what lines begin with. No more than the file needs: a line of a vertex has six characters or more.
+  /// Reserves memory by the words that lines begin with, but no more than the file can need: a vertex's line has six
+  /// characters or more.
   void reserve() {
     std::size_t places = 0, uvs = 0, normals = 0, faces = 0;
     for (std::string_view rest = text_; rest.size() > 6;) {
@@ -123,7 +124,7 @@ class ObjReader {
     mesh_.normals.push_back(direction(Eigen::Vector3d(numbers[0], numbers[1], numbers[2])));
   }
 
-  /// A normal as floats; one too long for them is scaled, as its length says nothing.
+  /// Returns a normal as floats; one too long for them is scaled, since its length does not matter.
   static Eigen::Vector3f direction(const Eigen::Vector3d& normal) {
     const double longest = normal.cwiseAbs().maxCoeff();
     const bool fits = !(longest > 1e18) && !(longest < 1e-18);
@@ -140,7 +141,7 @@ class ObjReader {
       smoothing_group_ = is_keyword(word, "on") ? 1 : 0;
   }
 
-  /// Reads numbers up to a comment or the end. Returns how many there are, of which the first are in `numbers`.
+  /// Reads numbers up to a comment or the end. Returns their count; the first ones are in `numbers`.
   template <std::size_t Size>
   std::size_t read_numbers(std::string_view rest, std::array<double, Size>& numbers, const char* what,
                            void (ObjVertices::*see)(std::string_view) = nullptr) {
@@ -173,7 +174,7 @@ class ObjReader {
     mesh_.faces.push_back(face);
   }
 
-  /// VERTEX, VERTEX/UV, VERTEX//NORMAL or VERTEX/UV/NORMAL.
+  /// Reads VERTEX, VERTEX/UV, VERTEX//NORMAL or VERTEX/UV/NORMAL.
   SourceMesh::Corner read_corner(std::string_view word) {
     SourceMesh::Corner corner;
     std::string_view rest = word;
@@ -193,7 +194,7 @@ class ObjReader {
     return true;
   }
 
-  /// Reads a number that counts from 1, or from -1 backwards from what stands before, and cuts it off.
+  /// Reads and removes an index, which counts from 1, or from -1 backwards from the last element so far.
   std::uint32_t read_index(std::string_view& rest, std::string_view word, const Kind& kind, std::size_t count) const {
     constexpr std::int64_t too_large = std::int64_t{1} << 40;
     std::size_t k = !rest.empty() && (rest.front() == '-' || rest.front() == '+');
@@ -216,9 +217,9 @@ class ObjReader {
     return static_cast<std::uint32_t>(index);
   }
 
-  // Checks when all is read.
+  // Checks after the whole file is read.
 
-  /// Whether each vertex is used by a face. Corners whose uv or normal is no finite number lose it.
+  /// Tells of each vertex whether a face uses it. Corners whose uv or normal is not finite lose it.
   std::vector<bool> check_corners() {
     std::vector<bool> is_used(mesh_.places.size(), false);
     std::size_t lost_uvs = 0, lost_normals = 0;
@@ -309,7 +310,7 @@ class ObjReader {
                   "finite coordinates, and a weight other than 0 where there is one");
   }
 
-  /// Reads the file once more for the vertex's line, which nothing else needs.
+  /// Refuses a vertex; reads the file once more for its line, which nothing else needs.
   [[noreturn]] void refuse_vertex(std::size_t index, const std::string& found, const std::string& expected) const {
     WavefrontLines lines(text_);
     for (std::string_view statement; lines.next(statement);) {

@@ -24,7 +24,7 @@ void ObjVertices::see_digits(std::string_view word) {
 
 void ObjVertices::add(std::span<const double> numbers, SourceMesh& mesh) {
   const std::size_t index = mesh.places.size();
-  // A sum with 0 has no negative zero, which would be another place.
+  // Adding 0 removes negative zeros, which would be other positions.
   mesh.places.emplace_back(numbers[0] + 0., numbers[1] + 0., numbers[2] + 0.);
   if (numbers.size() == 3) return;
   if (numbers.size() == 4)
@@ -37,7 +37,7 @@ void ObjVertices::add(std::span<const double> numbers, SourceMesh& mesh) {
     ++odd_;
 }
 
-/// Homogeneous coordinates; what a weight of 0 gives is finite nowhere.
+/// Applies a homogeneous weight; a weight of 0 gives a position that is not finite.
 void ObjVertices::weigh(double weight, Eigen::Vector3d& place) {
   if (weight == 1) return;
   ++weighed_;
@@ -45,8 +45,8 @@ void ObjVertices::weigh(double weight, Eigen::Vector3d& place) {
                       : Eigen::Vector3d(place / weight + Eigen::Vector3d::Zero());
 }
 
-/// Exporters write x y z r g b a more often than x y z w r g b. A colour has alpha behind it where its first number
-/// varies within the range of colours, or alpha is opaque all over.
+/// Tells whether seven numbers end in alpha: exporters write x y z r g b a more often than x y z w r g b. They do where
+/// the first number after the coordinates varies within the range of colours, or the last is opaque everywhere.
 bool ObjVertices::sevens_end_in_alpha() const {
   double most = 0;
   for (const Seven& seven : sevens_) most = std::max(most, seven.rest.maxCoeff());
@@ -84,7 +84,7 @@ double ObjVertices::precision(const std::vector<Eigen::Vector3d>& places, const 
   for (std::size_t k = 0; k < places.size(); ++k)
     if (is_used[k]) largest = std::max(largest, places[k].cwiseAbs().maxCoeff());
   if (largest == 0 || !has_fractions_) return 0;
-  constexpr int fewest_digits = 4;  // numbers of fewer are chosen, not rounded
+  constexpr int fewest_digits = 4;  // shorter numbers are chosen, not rounded
   return std::pow(10., std::floor(std::log10(largest)) + 1 - std::max(most_digits_, fewest_digits));
 }
 

@@ -11,29 +11,29 @@
 
 namespace kiln {
 
-/// What a word of an OBJ file says as a number: as parse_number has it, and what Windows writes for no numbers, such as
-/// "1.#QNAN".
+/// Parses a word of an OBJ file as a number: as parse_number does, and what Windows writes for NaN and infinities, such
+/// as "1.#QNAN".
 std::optional<double> parse_obj_number(std::string_view word);
 
-/// Collects the places of an OBJ file's `v` statements, and what stands behind their three coordinates: a weight w, a
+/// Collects the positions of an OBJ file's `v` statements, and what follows their three coordinates: a weight w, a
 /// colour, or both.
 class ObjVertices {
  public:
-  static constexpr std::size_t most_numbers = 8;  ///< that are told apart
+  static constexpr std::size_t most_numbers = 8;  ///< counts of numbers that are distinguished
 
-  /// Adds a place to `mesh` by the numbers of a statement, three or more: x y z, x y z w, x y z r g b or seven, which
-  /// finish() tells apart. Of other counts the first three are taken.
+  /// Adds a position to `mesh` by the numbers of a statement, three or more: x y z, x y z w, x y z r g b, or seven,
+  /// which finish() interprets. With other counts the first three are taken.
   void add(std::span<const double> numbers, SourceMesh& mesh);
 
   /// Counts the digits of a coordinate.
   void see_digits(std::string_view word);
 
-  /// Takes statements of seven numbers for x y z w r g b or x y z r g b a, whichever they look like, all alike.
+  /// Interprets all statements of seven numbers alike, as x y z w r g b or as x y z r g b a, whichever fits.
   void finish(SourceMesh& mesh);
 
   ObjColors& colors() { return colors_; }
 
-  /// As SourceMesh has it, of the places that are used. 0 for whole numbers, which nothing rounded.
+  /// Returns SourceMesh::precision for the positions that are used; 0 for whole numbers, which are not rounded.
   double precision(const std::vector<Eigen::Vector3d>& places, const std::vector<bool>& is_used) const;
 
  private:
@@ -47,7 +47,7 @@ class ObjVertices {
 
   ObjColors colors_;
   std::vector<Seven> sevens_;
-  std::size_t weighed_ = 0;  ///< places with a weight other than 1
+  std::size_t weighed_ = 0;  ///< positions with a weight other than 1
   std::size_t odd_ = 0;      ///< statements of 5, 8 or more numbers
   int most_digits_ = 0;
   bool has_fractions_ = false;

@@ -21,7 +21,7 @@ void OffColorScale::add(bool is_whole, const Eigen::Vector3d& color, double alph
 
 double OffColorScale::full_value(bool is_whole) const {
   if (is_whole) return whole_.largest > 1 ? 255 : 1;
-  // Floats of 0 to 1 may overshoot a little.
+  // Floats of 0 to 1 may overshoot slightly.
   return decimal_.largest <= 1 || (decimal_.largest <= 2 && !decimal_.all_integers) ? 1 : 255;
 }
 
@@ -57,7 +57,7 @@ void OffColors::add_floats(std::size_t index, std::span<const double> numbers, O
   add(index, false, numbers, scale);
 }
 
-/// Gives the vertices or faces below `size` that have none no colour.
+/// Gives the vertices or faces below `size` without a colour the value for "none".
 void OffColors::fill(std::size_t size) {
   colors_.resize(size, Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN()));
   is_whole_.resize(size, false);

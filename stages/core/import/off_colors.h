@@ -10,10 +10,10 @@
 
 namespace kiln {
 
-/// What the colours of an OFF file, of vertices and faces together, mean.
+/// Interpretation of an OFF file's colours, of vertices and faces together.
 ///
-/// By the format, whole numbers are 0 to 255 and numbers with a decimal point are 0 to 1. Writers keep to it badly, so
-/// that the largest of each kind decides: whole numbers none of which is above 1 are 0 to 1, numbers with a decimal
+/// By the format, whole numbers are 0 to 255 and numbers with a decimal point 0 to 1. Writers often break that rule, so
+/// the largest of each kind decides: whole numbers none of which is above 1 are 0 to 1, and numbers with a decimal
 /// point some of which are above 1 are 0 to 255.
 class OffColorScale {
  public:
@@ -21,7 +21,7 @@ class OffColorScale {
 
   double full_value(bool is_whole) const;
 
-  /// Says what was not plain.
+  /// Warns where the interpretation was a guess.
   void add_warnings(std::vector<std::string>& warnings) const;
 
  private:
@@ -32,21 +32,21 @@ class OffColorScale {
   Kind whole_, decimal_;
 };
 
-/// The colours of vertices or of faces as an OFF file gives them.
+/// Colours of vertices or of faces as an OFF file gives them.
 class OffColors {
  public:
-  /// Adds the colour of vertex or face `index` of `words`, three or four, that stand for `numbers`.
+  /// Adds the colour of vertex or face `index` by `words`, three or four, whose values are `numbers`.
   void add_text(std::size_t index, std::span<const std::string_view> words, std::span<const double> numbers,
                 OffColorScale& scale);
 
-  /// Adds the colour of vertex or face `index` of three or four floats of a binary file.
+  /// Adds the colour of vertex or face `index` by three or four floats of a binary file.
   void add_floats(std::size_t index, std::span<const double> numbers, OffColorScale& scale);
 
-  /// How many vertices or faces have a colour.
+  /// Counts the vertices or faces that have a colour.
   std::size_t count() const { return count_; }
   bool any_negative() const { return any_negative_; }
 
-  /// The colours of all `size` vertices or faces, 0 to 1 where the file is sound; NaN where there is none.
+  /// Returns the colours of all `size` vertices or faces, 0 to 1 where the file is sound; NaN where there is none.
   std::vector<Eigen::Vector3f> take(std::size_t size, const OffColorScale& scale);
 
  private:

@@ -39,7 +39,7 @@ class HeaderReader {
     return text.starts_with(byte_order_mark) ? text.substr(byte_order_mark.size()) : text;
   }
 
-  /// Reads the keyword; returns the word behind it, on the same line, or the number that is stuck to it.
+  /// Reads the keyword; returns the word after it on the same line, or the number attached to it.
   std::string_view read_keyword(std::string_view word) {
     const auto end = std::ranges::search(word, std::string_view("OFF"), [](char a, char b) {
       return same_word({&a, 1}, {&b, 1});
@@ -79,7 +79,7 @@ class HeaderReader {
     return true;
   }
 
-  /// Moves behind the end of the line that says BINARY.
+  /// Moves past the end of the line that says BINARY.
   void skip_line_end() {
     words_.skip_line();
     const std::string_view rest = words_.rest();
@@ -112,7 +112,7 @@ class HeaderReader {
       throw BadInput(words_.where(), "more than three numbers", "the numbers of vertices, faces and edges", remedy);
   }
 
-  /// Passes by a line of one number, that of edges.
+  /// Skips a line of one number, the number of edges.
   void skip_edges_line() {
     TextWords ahead = words_;
     if (ahead.next().empty() || !ahead.next_on_line().empty()) return;

@@ -11,35 +11,36 @@
 
 namespace kiln {
 
-/// The mesh of an OFF file as it grows, vertex by vertex and face by face.
+/// Mesh of an OFF file as it grows, vertex by vertex and face by face.
 class OffMesh {
  public:
-  /// The rest of the file, behind the header, has `byte_count` bytes. Counts in `header` are what the file says.
+  /// Begins a mesh. The rest of the file, after the header, has `byte_count` bytes. Counts in `header` are what the
+  /// file claims.
   OffMesh(const std::filesystem::path& file, const OffHeader& header, std::size_t byte_count);
 
-  /// How many numbers a vertex has at least: its place, its weight and its normal.
+  /// Returns the least number of numbers of a vertex: its position, its weight and its normal.
   std::size_t place_size() const;
 
-  /// Adds a vertex of so many numbers.
+  /// Adds a vertex of these numbers.
   void add_vertex(std::span<const double> numbers);
   void add_uv(double u, double v);
 
-  /// Begins a face; `line` is 0 in binary files, `room` is how many corners the rest of the file has room for. Throws
-  /// BadInput for fewer than three corners and for more than there is room for.
+  /// Begins a face; `line` is 0 in binary files, `room` the largest number of corners that fits into the rest of the
+  /// file. Throws BadInput for fewer than three corners and for more than `room`.
   void begin_face(double corner_count, std::size_t room, std::uint32_t line);
   void add_corner(double index);
 
-  /// "vertex 5 of 8", the next to come; "face 5 of 8", the last that was begun.
+  /// Returns "vertex 5 of 8" for the next one; the function below "face 5 of 8" for the last one begun.
   std::string next_vertex_name() const;
   std::string face_name(std::size_t face) const;
   std::size_t vertex_count() const { return mesh_.places.size(); }
   std::size_t face_count() const { return mesh_.faces.size(); }
   [[noreturn]] void throw_truncated(const std::string& name) const;
 
-  /// Adds a face's colour of one number, an index into a map of colours that is not in the file.
+  /// Counts a face colour of one number, an index into a colour map that is not in the file.
   void add_mapped_color() { ++mapped_colors_; }
 
-  /// The whole mesh, checked, with its colours at their places.
+  /// Returns the whole mesh, checked, with its colours.
   SourceMesh take();
 
   OffColors vertex_colors, face_colors;

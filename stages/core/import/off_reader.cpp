@@ -1,4 +1,4 @@
-// OFF files, text and binary, after the Geomview manual, "OFF Files" (geomview.org/docs/html/OFF.html); colours behind
+// OFF files, text and binary, after the Geomview manual, "OFF Files" (geomview.org/docs/html/OFF.html); colours after
 // the coordinates of vertices without the keyword COFF after MeshLab (vcglib, wrap/io_trimesh/import_off.h).
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr char remedy[] = "export the mesh again";
 
-/// The words of a line, or of several, and the numbers they stand for.
+/// Words of a line, or of several, and their numbers.
 struct Words {
   std::vector<std::string_view> words;
   std::vector<double> numbers;
@@ -57,7 +57,8 @@ class OffText {
  private:
   std::size_t uv_size() const { return header_.has_uvs ? 2 : 0; }
 
-  /// Finds out whether vertices stand one a line, or are spread over lines: where the first line has too few words.
+  /// Finds out whether each vertex has a line, or vertices run across lines: they do where the first line has too few
+  /// words.
   void find_layout() {
     TextWords ahead = words_;
     std::size_t count = 0;
@@ -136,7 +137,7 @@ class OffText {
   std::uint64_t other_numbers_ = 0;
 };
 
-/// The 32-bit numbers of a binary file.
+/// Reader of a binary file's 32-bit numbers.
 class OffBinary {
  public:
   OffBinary(const fs::path& path, const std::string& file, OffHeader header, std::string_view data)
@@ -173,8 +174,8 @@ class OffBinary {
   double next_integer() { return static_cast<std::int32_t>(next_bits()); }
   double next_float() { return std::bit_cast<float>(next_bits()); }
 
-  /// Reads the numbers of vertices, faces and edges. A file that has not room for so many is little-endian if it has
-  /// for what it says then.
+  /// Reads the numbers of vertices, faces and edges. A file too short for them is little-endian if it is long enough
+  /// for the counts read that way.
   OffHeader read_counts(OffHeader header) {
     if (data_.size() < 12)
       throw BadInput(file_, "is truncated: it ends within the numbers of vertices, faces and edges", "a whole OFF file",

@@ -1,5 +1,5 @@
-// Colours of PLY files: Greg Turk's format names properties red, green and blue of type uchar; others write floats of 0
-// to 1 (VTK, Blender), doubles of 0 to 1 (Open3D), unsigned shorts, or 0 to 255 in any type.
+// Colours of PLY files: the format [Turk 1994] has properties red, green and blue of type uchar. Others write floats of
+// 0 to 1 (VTK, Blender), doubles of 0 to 1 (Open3D), unsigned shorts, or 0 to 255 in any type.
 
 #include "import/ply_colors.h"
 
@@ -10,7 +10,7 @@ namespace kiln {
 
 namespace {
 
-/// A byte or short that was written as a signed one.
+/// Returns the unsigned value of a byte or short that was written as a signed one.
 double without_sign(PlyType type, double value) {
   if (value >= 0) return value;
   if (type == PlyType::int8) return value + 256;
@@ -62,7 +62,7 @@ double PlyColors::full_value(std::vector<std::string>& warnings) const {
 }
 
 double PlyColors::full_float(std::vector<std::string>& warnings) const {
-  // Floats of 0 to 1 may overshoot a little.
+  // Floats of 0 to 1 may overshoot slightly.
   if (largest_ <= 1 || (largest_ <= 2 && !all_whole_)) return 1;
   if (largest_ <= 255) {
     warnings.push_back(taken_as("0 to 255: they are floats, and some are above 1"));

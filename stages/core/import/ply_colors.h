@@ -9,21 +9,21 @@
 
 namespace kiln {
 
-/// The colours of vertices or of faces as a PLY file stores them, and how they are to be understood.
+/// Colours of vertices or of faces as a PLY file stores them, and their interpretation.
 class PlyColors {
  public:
-  /// `owner` is for messages: "vertices". Colours are of the type `type`.
+  /// Begins with no colours. `owner` appears in messages: "vertices". Colours are of the type `type`.
   PlyColors(std::string owner, PlyType type) : owner_(std::move(owner)), type_(type) {}
 
   void add(double red, double green, double blue);
   void add_alpha(double alpha);
 
-  /// Adds a face or vertex that has no colour.
+  /// Adds a face or vertex without a colour.
   void add_none();
 
   std::size_t size() const { return colors_.size(); }
 
-  /// The colours, 0 to 1 where the file is sound; says in `warnings` where it was not plain what they mean.
+  /// Returns the colours, 0 to 1 where the file is sound; warns where their meaning was a guess.
   std::vector<Eigen::Vector3f> take(std::vector<std::string>& warnings);
 
  private:

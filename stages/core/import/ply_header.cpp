@@ -1,5 +1,5 @@
-// The header of PLY files after Greg Turk, "The PLY Polygon File Format" (1994), paulbourke.net/dataformats/ply;
-// comments "TextureFile" after MeshLab (vcglib, wrap/io_trimesh/import_ply.h).
+// The header of PLY files after [Turk 1994]; comments "TextureFile" after MeshLab (vcglib,
+// wrap/io_trimesh/import_ply.h).
 
 #include "import/ply_header.h"
 

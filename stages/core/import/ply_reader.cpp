@@ -1,6 +1,6 @@
-// PLY files: what elements and properties mean. Greg Turk, "The PLY Polygon File Format" (1994),
-// paulbourke.net/dataformats/ply; strips of triangles after the Stanford 3D Scanning Repository's files; texture
-// coordinates of corners and numbers of textures after MeshLab (vcglib, wrap/io_trimesh/import_ply.h).
+// PLY files, the meaning of elements and properties: [Turk 1994]; strips of triangles after the Stanford 3D Scanning
+// Repository's files; texture coordinates of corners and numbers of textures after MeshLab (vcglib,
+// wrap/io_trimesh/import_ply.h).
 
 #include <algorithm>
 #include <array>
@@ -52,7 +52,7 @@ Eigen::Vector3d three(const PlyRow& row, const Indices& indices) {
   return {row.scalars[indices[0]], row.scalars[indices[1]], row.scalars[indices[2]]};
 }
 
-/// What is read of a face, by the indices of properties.
+/// Properties of a face that are read, by their indices.
 struct FaceProperties {
   std::size_t corners = 0;
   Indices color, alpha;
@@ -251,7 +251,7 @@ class PlyReader {
     }
   }
 
-  /// Adds the triangles of a strip, every second turned around; -1 begins another strip.
+  /// Adds the triangles of a strip, every second one reversed; -1 begins another strip.
   template <class Name>
   void add_strip(const std::vector<double>& strip, std::uint32_t line, const Name& name) {
     std::vector<double> triangle(3);
@@ -372,7 +372,7 @@ class PlyReader {
   std::uint64_t vertex_count_ = 0;
   bool has_face_uvs_ = false, has_floats_ = false, names_textures_ = false;
   std::optional<PlyColors> vertex_colors_, face_colors_;
-  std::vector<double> textures_of_faces_;  ///< their numbers, by faces; those at the end may be left out
+  std::vector<double> textures_of_faces_;  ///< texture number of each face; trailing ones may be left out
   std::uint64_t faces_of_other_uvs_ = 0;
 };
 

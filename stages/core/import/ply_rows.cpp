@@ -1,4 +1,4 @@
-// The data of PLY files after Greg Turk, "The PLY Polygon File Format" (1994), paulbourke.net/dataformats/ply.
+// The data of PLY files after [Turk 1994].
 
 #include "import/ply_rows.h"
 
@@ -126,7 +126,7 @@ std::uint16_t swapped(std::uint16_t bits) { return __builtin_bswap16(bits); }
 std::uint32_t swapped(std::uint32_t bits) { return __builtin_bswap32(bits); }
 std::uint64_t swapped(std::uint64_t bits) { return __builtin_bswap64(bits); }
 
-/// The value of type `Value` that stands at `at`, of the machine's order of bytes or the other.
+/// Loads the value of type `Value` at `at`, in the machine's byte order or swapped.
 template <class Value, bool swap>
 double load(const char* at) {
   typename Bits<sizeof(Value)>::Type bits;
@@ -216,7 +216,7 @@ class BinaryRows : public PlyRows {
     rest_.remove_prefix(element_->count * row_size);
   }
 
-  /// Reads values that follow one another; passes them by where `values` is null.
+  /// Reads consecutive values; skips them where `values` is null.
   void read_values(PlyType type, std::size_t count, double* values) {
     const std::size_t size = count * size_of(type);
     if (rest_.size() < size) throw_truncated();

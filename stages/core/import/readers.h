@@ -7,9 +7,9 @@
 
 namespace kiln {
 
-// One reader for each format, for all stages. Each throws BadInput that names the file, the line or the element, what
-// was found, what was expected and what to do; "truncated" is said of files that end too early alone. What a reader
-// passes by it says in `warnings`. Positions are read in double.
+// One reader per format, for all stages. Each throws BadInput that names the file, the line or element, what was found,
+// what was expected and what to do; "truncated" appears only for files that end too early. What a reader ignores is in
+// `warnings`. Positions are read in double.
 
 SourceMesh read_obj(const std::filesystem::path& file);
 SourceMesh read_ply(const std::filesystem::path& file);
@@ -22,7 +22,7 @@ SourceMesh read_fbx(const std::filesystem::path& file);
 /// Reads a mesh by its extension: obj, ply, stl, off, drc, gltf, glb or fbx, in any case of letters.
 SourceMesh read_source_mesh(const std::filesystem::path& file);
 
-/// Brings coordinates and normals into our axes and units, as `settings` say.
+/// Converts coordinates and normals to our axes and units, as `settings` say.
 void turn_and_scale(SourceMesh& source, const ImportSettings& settings);
 
 }  // namespace kiln

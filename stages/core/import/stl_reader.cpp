@@ -1,6 +1,6 @@
-// STL files, ASCII and binary, after 3D Systems' StereoLithography Interface Specification (1989) and its summary at
-// fabbers.com/tech/STL_Format; colours in the attribute bytes after Materialise Magics and VisCAM/SolidView
-// (en.wikipedia.org/wiki/STL_(file_format)#Color_in_binary). Facets' normals only repeat the winding and are passed by.
+// STL files, ASCII and binary, after [3D Systems 1989]; colours in the attribute bytes after Materialise Magics and
+// VisCAM/SolidView (en.wikipedia.org/wiki/STL_(file_format)#Color_in_binary). Normals of facets only repeat the winding
+// and are ignored.
 
 #include <algorithm>
 #include <array>
@@ -27,7 +27,7 @@ constexpr char remedy[] = "export the mesh again";
 constexpr std::size_t header_size = 84, record_size = 50;
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
-/// Whether the beginning of a text has a word, in any case of letters.
+/// Tells whether a text begins with a word, in any case of letters.
 bool has_word(std::string_view text, std::string_view word) {
   const auto found = std::ranges::search(text, word, [](char a, char b) { return same_word({&a, 1}, {&b, 1}); });
   return !found.empty();
@@ -51,7 +51,7 @@ class StlText {
   }
 
  private:
-  /// Passes by the lines before the first that begins with 'solid' or 'facet'.
+  /// Skips the lines before the first that begins with 'solid' or 'facet'.
   void pass_comments() {
     while (words_.to_word()) {
       TextWords ahead = words_;
@@ -79,7 +79,7 @@ class StlText {
                    "solid, facet normal, outer loop, vertex, endloop, endfacet or endsolid", remedy);
   }
 
-  /// Passes by a solid's name, which ends with its line, or before a facet on that line.
+  /// Skips a solid's name, which ends with its line, or before a facet on that line.
   void read_solid(bool begins) {
     if (in_facet_) throw odd("'solid' or 'endsolid' within a facet");
     in_solid_ = begins;
@@ -107,7 +107,7 @@ class StlText {
     facet_line_ = words_.line();
     TextWords ahead = words_;
     if (!same_word(ahead.next_on_line(), "normal")) return;
-    for (int i = 0; i < 4; ++i) {  // the word and three numbers, of any look
+    for (int i = 0; i < 4; ++i) {  // the word and three numbers, in any form
       words_ = ahead;
       const std::string_view word = ahead.next_on_line();
       if (word.empty() || same_word(word, "outer")) return;
@@ -182,7 +182,7 @@ Value little_endian(const char* at) {
   return std::bit_cast<Value>(bytes);
 }
 
-/// Red, green and blue of 5 bits each, the first in the lowest bits.
+/// Returns red, green and blue of 5 bits each, the first in the lowest bits.
 Eigen::Vector3f from_15_bits(std::uint16_t bits) {
   return Eigen::Vector3f(static_cast<float>(bits & 31), static_cast<float>(bits >> 5 & 31),
                          static_cast<float>(bits >> 10 & 31)) /
@@ -201,7 +201,7 @@ class StlBinary {
     for (std::size_t i = 0; i < count_; ++i) {
       const char* const record = text_.data() + header_size + i * record_size;
       for (std::size_t k = 0; k < 3; ++k) {
-        const char* const vertex = record + 12 * (k + 1);  // behind the normal
+        const char* const vertex = record + 12 * (k + 1);  // after the normal
         mesh_.places[3 * i + k] = Eigen::Vector3f(little_endian<float>(vertex), little_endian<float>(vertex + 4),
                                                   little_endian<float>(vertex + 8))
                                       .cast<double>();
@@ -219,7 +219,7 @@ class StlBinary {
   }
 
  private:
-  /// What the header counts, or what the file holds where it counts otherwise.
+  /// Returns the number of triangles by the header, or by the file's size where the two differ.
   std::size_t number_of_triangles() {
     if (text_.size() < header_size)
       throw BadInput(
@@ -251,8 +251,9 @@ class StlBinary {
     return little_endian<std::uint16_t>(text_.data() + header_size + triangle * record_size + 48);
   }
 
-  /// Reads the colours that the attribute bytes may be: Materialise's, which the header announces, red in the lowest
-  /// bits, bit 15 for the solid's own colour; or VisCAM's, blue in the lowest bits, bit 15 for a colour that is there.
+  /// Reads colours from the attribute bytes. Materialise's, which the header announces, have red in the lowest bits,
+  /// and bit 15 means the solid's own colour. VisCAM's have blue in the lowest bits, and bit 15 means that there is a
+  /// colour.
   void read_colors() {
     bool any = false, all_valid = true;
     for (std::size_t i = 0; i < count_; ++i) {

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t most_materials = 65536;
 constexpr float coarse_steps = 31;
 
-/// The bits of a colour, for finding equal ones.
+/// Bits of a colour, for finding equal ones.
 struct ColorKey {
   std::array<std::uint32_t, 3> bits;
   bool operator==(const ColorKey&) const = default;
@@ -31,7 +31,7 @@ struct ColorHash {
 };
 
 ColorKey key_of(const Eigen::Vector3f& color) {
-  const Eigen::Vector3f positive = color.array() + 0.f;  // no negative zero
+  const Eigen::Vector3f positive = color.array() + 0.f;  // removes negative zeros
   ColorKey key{};
   std::memcpy(key.bits.data(), positive.data(), sizeof key.bits);
   return key;
@@ -53,7 +53,7 @@ SourceMaterial material_of(const Eigen::Vector3f& color, const std::string& plac
   return material;
 }
 
-/// Gives faces their materials; false where there are too many.
+/// Assigns materials to faces; false where there are too many.
 bool assign_materials(SourceMesh& mesh, const std::vector<Eigen::Vector3f>& colors, const std::string& place,
                       bool coarse) {
   const std::size_t before = mesh.materials.size();

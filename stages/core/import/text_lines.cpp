@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
-/// A word without the plus sign before its number, which from_chars does not know.
+/// Returns a word without the plus sign before its number, which from_chars does not accept.
 std::string_view without_plus(std::string_view word) {
   const bool has_plus = word.size() > 1 && word[0] == '+' && word[1] != '-' && word[1] != '+';
   return has_plus ? word.substr(1) : word;
@@ -31,7 +31,7 @@ void TextLines::find_feed() {
 
 bool TextLines::next(std::string_view& line) {
   if (rest_.empty()) return false;
-  // A line feed is sought once, though carriage returns may end many lines before it.
+  // Search for a line feed only once, though carriage returns may end many lines before it.
   const std::string_view before_feed(rest_.data(), static_cast<std::size_t>(feed_ - rest_.data()));
   line = before_feed.substr(0, before_feed.find('\r'));
   rest_.remove_prefix(line.size());

@@ -13,12 +13,12 @@ namespace kiln {
 
 namespace {
 
-/// A carriage return is no gap here, but ends a line.
+/// Tells whether a character is a blank; a carriage return is not, since it ends a line.
 bool is_gap(char c) { return c == ' ' || c == '\t' || c == '\f' || c == '\v'; }
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-/// NaN and infinities as old C libraries of Windows write them: "-1.#IND", "1.#QNAN", "1.#INF000".
+/// Parses NaN and infinities as old C libraries of Windows write them: "-1.#IND", "1.#QNAN", "1.#INF000".
 std::optional<double> parse_old_nan(std::string_view word) {
   const bool negative = word.starts_with('-');
   if (negative || word.starts_with('+')) word.remove_prefix(1);

@@ -36,16 +36,17 @@ class Cutter {
     for (std::size_t i = 1; i + 1 < corners.size(); ++i) add(corner(0), corner(i), corner(i + 1));
   }
 
-  /// The corner that a quad's diagonal starts at.
+  /// Returns the corner that a quad's diagonal starts at.
   std::size_t first_of_quad(const Corners& corners) const {
     const auto place = [&](std::size_t i) -> const Eigen::Vector3d& { return at(corners[i % 4]); };
-    const auto folds = [&](std::size_t i) {  // at the diagonal from corner i
+    const auto folds = [&](std::size_t i) {  // fold at the diagonal from corner i
       const Eigen::Vector3d diagonal = place(i + 2) - place(i);
       return (place(i + 1) - place(i)).cross(diagonal).dot(diagonal.cross(place(i + 3) - place(i))) < 0;
     };
     if (folds(0) != folds(1)) return folds(0);
     const double first = (place(0) - place(2)).norm(), second = (place(1) - place(3)).norm();
-    // Equal ones: from the least corner, whatever the quad begins with, so that a quad and its back are cut alike.
+    // Equal diagonals: take the least corner, whatever corner the quad begins with, so that a quad and its back are cut
+    // alike.
     if (std::abs(first - second) <= 1e-6 * first) return least_of(corners) % 2;
     return second < first;
   }
@@ -59,7 +60,7 @@ class Cutter {
 
   bool cut_polygon(const Corners& corners) {
     using Face = CGAL::Triple<int, int, int>;
-    // Near the origin, so that no digits are lost far away.
+    // Work near the origin, so that no digits are lost far from it.
     const Eigen::Vector3d origin = at(corners[0]);
     std::vector<CgalPoint> points;
     for (const std::uint32_t corner : corners) {

@@ -9,19 +9,19 @@
 
 namespace kiln {
 
-/// A triangle cut from a face: the face, and the three of its corners (indices of SourceMesh::corners).
+/// Triangle cut from a face: the face, and three of its corners (indices of SourceMesh::corners).
 struct CutTriangle {
   std::uint32_t face = 0;
   std::array<std::uint32_t, 3> corners{};
 };
 
-/// Cuts faces into triangles, in their order, each wound as its face. Quads are cut along the shorter diagonal of those
-/// that keep both halves on the same side; polygons of more corners by CGAL's triangulate_hole_polyline, in their plane
-/// or else with least area, so that concave ones are cut inside themselves; where it finds no way, as a fan.
+/// Cuts faces into triangles, in their order, each wound as its face. Quads are cut along the shorter of the diagonals
+/// that keep both halves on the same side. Polygons of more corners are cut by CGAL's triangulate_hole_polyline, in
+/// their plane or else with least area, so that concave ones are cut within themselves; where that fails, as a fan.
 /// `polygons`, if given, counts the faces of more than three corners.
 std::vector<CutTriangle> triangulate(const SourceMesh& source, int* polygons = nullptr);
 
-/// The box of the places that triangles use.
+/// Returns the box of the positions that triangles use.
 Eigen::AlignedBox3d box_of(const SourceMesh& source, const std::vector<CutTriangle>& triangles);
 
 }  // namespace kiln

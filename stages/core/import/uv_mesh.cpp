@@ -32,7 +32,7 @@ void require_uvs(const std::string& name, const SourceMesh& source) {
   }
 }
 
-/// Vertices without a normal in the file get that of compute_vertex_normals, as if vertices at one place were one.
+/// Computes missing normals by compute_vertex_normals, as if vertices at one position were one.
 void complete_normals(TriangleMesh& mesh, const std::vector<bool>& has_normal) {
   if (std::find(has_normal.begin(), has_normal.end(), false) == has_normal.end()) return;
   TriangleMesh whole = join_at_places(mesh);

@@ -9,12 +9,12 @@
 
 namespace kiln {
 
-/// Reads a mesh with the texture coordinates that it has, of any format that read_source_mesh knows and that can hold
-/// them. Corners of the same place, uv and normal become one vertex; polygons are triangulated (triangulate); normals
-/// are the file's, else computed from the faces, the same on both sides of a seam. Nothing is repaired or dropped:
-/// triangles are those of the file, in its order, in the frame of import_mesh. `warnings`, if given, get what the file
-/// has and is not used. Throws BadInput for faces without texture coordinates and for what cannot be read. Uvs may lie
-/// outside the unit square.
+/// Reads a mesh with its texture coordinates, from any format that read_source_mesh knows and that can hold them.
+/// Corners of the same position, uv and normal become one vertex; polygons are triangulated (triangulate); normals are
+/// the file's, or computed from the faces, the same on both sides of a seam. Nothing is repaired or dropped: triangles
+/// are those of the file, in its order, in the frame of import_mesh. `warnings`, if given, receive what the file has
+/// and Kiln does not use. Throws BadInput for faces without texture coordinates and for what cannot be read. Uvs may
+/// lie outside the unit square.
 TriangleMesh load_uv_mesh(const std::filesystem::path& file, const ImportSettings& settings = {},
                           std::vector<std::string>* warnings = nullptr);
 

@@ -8,14 +8,14 @@ namespace {
 
 constexpr char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-/// Whether the # at `position` belongs to "1.#INF", "1.#IND", "1.#QNAN" or "1.#SNAN".
+/// Tells whether the # at `position` belongs to "1.#INF", "1.#IND", "1.#QNAN" or "1.#SNAN".
 bool is_no_number(std::string_view line, std::size_t position) {
   if (position == 0 || line[position - 1] != '.') return false;
   const std::string_view rest = line.substr(position + 1);
   return rest.starts_with("INF") || rest.starts_with("IND") || rest.starts_with("QNAN") || rest.starts_with("SNAN");
 }
 
-/// Whether a line goes on in the next: its last character but blanks is a backslash that no comment holds.
+/// Tells whether a line continues on the next: its last character, apart from blanks, is a backslash outside a comment.
 bool goes_on(std::string_view line) {
   const std::size_t last = line.find_last_not_of(" \t\f\v");
   return last != std::string_view::npos && line[last] == '\\' && name_without_comment(line).size() == line.size();

@@ -8,8 +8,8 @@
 
 namespace kiln {
 
-/// The statements of a Wavefront file (OBJ and MTL): lines, of which a backslash at the end joins the next. Lines that
-/// begin with # are given too, and joined with nothing.
+/// Statements of a Wavefront file (OBJ and MTL): lines, which a backslash at the end joins to the next. Lines that
+/// begin with # are returned too, never joined.
 class WavefrontLines {
  public:
   explicit WavefrontLines(std::string_view text) : lines_(text) {}
@@ -17,10 +17,10 @@ class WavefrontLines {
   /// Moves to the next statement, which stays valid until the next call. False where there is none.
   bool next(std::string_view& statement);
 
-  /// The line that the statement begins in, from 1.
+  /// Returns the line that the statement begins in, from 1.
   std::uint32_t line() const { return line_; }
 
-  /// Whether the file ends within the statement: nothing stands behind it, not even the end of a line.
+  /// Tells whether the file ends within the statement, without even the end of a line.
   bool is_cut_off() const { return lines_.rest().empty() && !ends_in_line_end_; }
 
  private:
@@ -32,23 +32,23 @@ class WavefrontLines {
   bool ends_in_line_end_ = false;
 };
 
-/// Whether a word is that keyword, which is given in lower case, in any case of letters.
+/// Tells whether a word is a keyword, given in lower case, in any case of letters.
 bool is_keyword(std::string_view word, std::string_view lower_case);
 
-/// A statement of numbers without a comment behind it. A # within "1.#QNAN" and its like, as Windows writes what is no
-/// number, begins none.
+/// Returns a statement of numbers without the comment after it. A # within "1.#QNAN" and the like, which Windows writes
+/// for NaN, does not begin a comment.
 std::string_view without_comment(std::string_view numbers);
 
-/// A name that may hold blanks, without a comment behind it: a # that begins a word, outside of quotes.
+/// Returns a name, which may hold blanks, without the comment after it: a # that begins a word, outside of quotes.
 std::string_view name_without_comment(std::string_view name);
 
-/// A name without blanks around it, and without quotes where it stands in quotes.
+/// Returns a name without blanks around it, and without quotes if it is quoted.
 std::string_view unquoted(std::string_view name);
 
-/// A name that may stand in quotes at the beginning of `rest`, which is cut off: to the closing quote, or a word.
+/// Removes and returns a name at the beginning of `rest`: up to the closing quote if quoted, else a word.
 std::string_view next_name(std::string_view& rest);
 
-/// "'TEXT'" for messages, shortened where it is long, with a question mark for each byte that cannot be shown.
+/// Returns "'TEXT'" for messages, shortened if long, with a question mark for each byte that cannot be shown.
 std::string shown(std::string_view text);
 
 }  // namespace kiln

@@ -28,7 +28,7 @@ struct KeyHash {
 template <class Value>
 using Table = std::unordered_map<std::array<std::int64_t, 3>, Value, KeyHash>;
 
-/// Numbers places such that equal ones have one number.
+/// Numbers positions such that equal ones have one number.
 std::vector<std::uint32_t> number_places(const std::vector<Eigen::Vector3d>& places) {
   Table<std::uint32_t> numbers;
   numbers.reserve(places.size());
@@ -42,7 +42,7 @@ std::vector<std::uint32_t> number_places(const std::vector<Eigen::Vector3d>& pla
   return number;
 }
 
-/// Every place with a number of its own.
+/// Returns a number of its own for every position.
 std::vector<std::uint32_t> identity(std::size_t size) {
   std::vector<std::uint32_t> number(size);
   std::iota(number.begin(), number.end(), 0u);
@@ -53,7 +53,7 @@ bool any_border(const std::vector<double>& shortest) {
   return std::any_of(shortest.begin(), shortest.end(), [](double length) { return std::isfinite(length); });
 }
 
-/// The squared length of the shortest edge at each place on a border, by its number; infinity elsewhere.
+/// Returns the squared length of the shortest edge at each position on a border, by its number; infinity elsewhere.
 std::vector<double> shortest_border_edges(const SourceMesh& source, const std::vector<CutTriangle>& triangles,
                                           const std::vector<std::uint32_t>& number) {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> edges;
@@ -84,7 +84,7 @@ std::vector<double> shortest_border_edges(const SourceMesh& source, const std::v
 
 double weld_distance(const SourceMesh& source, const std::vector<CutTriangle>& triangles, const WeldChoice& choice) {
   const double size = box_of(source, triangles).diagonal().norm();
-  // Cells of the search are counted in whole numbers.
+  // The search counts cells in whole numbers, which bounds the distance from below.
   if (choice.kind == WeldChoice::Kind::distance) return std::max(choice.distance, 1e-15 * size);
   return std::clamp(2 * source.precision, std::ldexp(size, -22), 1e-6 * size);
 }
@@ -95,12 +95,12 @@ int weld_borders(SourceMesh& source, const std::vector<CutTriangle>& triangles, 
   if (choice.kind == WeldChoice::Kind::off) return 0;
   const double distance = weld_distance(source, triangles, choice);
   if (!(distance > 0) || !std::isfinite(distance)) return 0;
-  // Most files of closed surfaces say by their indices alone that they have no border.
+  // Most files of closed surfaces show by their indices alone that they have no border.
   if (!any_border(shortest_border_edges(source, triangles, identity(source.places.size())))) return 0;
   const std::vector<std::uint32_t> number = number_places(source.places);
   const std::vector<double> shortest = shortest_border_edges(source, triangles, number);
 
-  // Cells as wide as the distance hold the places that others come to lie on, so that 27 of them are searched.
+  // Cells are as wide as the distance and hold the positions that others may move onto, so 27 of them are searched.
   const Eigen::Vector3d origin = triangles.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero())
                                                    : source.places[source.corners[triangles[0].corners[0]].place];
   Table<std::vector<std::uint32_t>> cells;

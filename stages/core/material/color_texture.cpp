@@ -11,7 +11,7 @@ namespace kiln {
 
 namespace {
 
-/// What a stored value stands for.
+/// Conversion of stored values to linear ones.
 struct Decoding {
   ColorEncoding encoding;
   float base, gain;
@@ -22,7 +22,7 @@ struct Decoding {
   }
 };
 
-/// The place of a texel beyond the picture within it.
+/// Maps a texel outside the picture to one inside.
 int wrapped(int i, int texels, SourceMaterial::Wrap wrap) {
   if (wrap == SourceMaterial::Wrap::clamp) return std::clamp(i, 0, texels - 1);
   const int period = wrap == SourceMaterial::Wrap::mirror ? 2 * texels : texels;
@@ -77,8 +77,8 @@ Eigen::Vector3f ColorTexture::texel(int i, int j) const {
 }
 
 Eigen::Vector3f ColorTexture::at(const Eigen::Vector2f& uv, Wrap wrap_u, Wrap wrap_v) const {
-  // Per axis the two texels whose centres the point lies between, and the second one's weight. In double precision:
-  // uvs far outside the unit square would lose texels' fractions.
+  // Per axis, the two texels between whose centres the point lies, and the second one's weight. In double precision:
+  // uvs far outside the unit square would lose the fraction of a texel.
   struct Between {
     int first, second;
     float weight;

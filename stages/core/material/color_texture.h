@@ -12,29 +12,29 @@
 
 namespace kiln {
 
-/// A picture as a texture of linear colours, each 0 to 1.
+/// Picture as a texture of linear colours, each 0 to 1.
 class ColorTexture {
  public:
-  /// Reads PNG, JPEG, EXR and what else OpenImageIO reads. `encoding` is that of integers; floating-point pictures are
-  /// linear and lie in 0 to 1, or are clamped to that. Throws BadInput, also for values that are not numbers.
+  /// Reads PNG, JPEG, EXR and other formats that OpenImageIO reads. `encoding` is that of integers; floating-point
+  /// pictures are linear and are clamped to 0 .. 1. Throws BadInput, also for values that are not numbers.
   ColorTexture(const std::filesystem::path& file, ColorEncoding encoding);
 
-  /// The same of a picture that a mesh names or holds; stored values v become base + gain * v before they are decoded.
+  /// Reads a picture that a mesh names or holds; stored values v become base + gain * v before they are decoded.
   ColorTexture(const SourcePicture& picture, ColorEncoding encoding, float base = 0, float gain = 1);
 
   using Wrap = SourceMaterial::Wrap;
 
-  /// Bilinear between linear values; outside the unit square the picture is repeated, mirrored or goes on as its edge.
-  /// uv (0, 0) is the picture's lower left corner.
+  /// Interpolates bilinearly between linear values. Outside the unit square the picture repeats, mirrors, or continues
+  /// its edge. uv (0, 0) is the picture's lower left corner.
   Eigen::Vector3f at(const Eigen::Vector2f& uv, Wrap wrap_u = Wrap::repeat, Wrap wrap_v = Wrap::repeat) const;
 
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// Whether all pixels are grey.
+  /// Tells whether all pixels are grey.
   bool is_grey() const { return is_grey_; }
 
-  /// How many pixels had to be clamped.
+  /// Counts the pixels that had to be clamped.
   std::size_t clamped_pixels() const { return clamped_pixels_; }
 
  private:

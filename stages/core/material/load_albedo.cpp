@@ -18,7 +18,7 @@ Eigen::Vector3f decoded(const Eigen::Vector3f& color, bool is_linear) {
                    : Eigen::Vector3f(color.unaryExpr(&linear_from_srgb));
 }
 
-/// Refuses a textured face that has no texture coordinates; `owner` says whose texture it is.
+/// Refuses a textured face that has no texture coordinates; `owner` names whose texture it is.
 void require_uvs(const ImportedMesh& mesh, const ImportedSurface::FaceWithoutUvs& missing, const std::string& owner,
                  const std::string& remedy) {
   if (!missing.found) return;
@@ -28,12 +28,12 @@ void require_uvs(const ImportedMesh& mesh, const ImportedSurface::FaceWithoutUvs
                  "texture coordinates at every corner of it", remedy);
 }
 
-/// The materials of a mesh's triangles.
+/// Materials of a mesh's triangles.
 class MeshMaterials {
  public:
   MeshMaterials(const ImportedMesh& mesh, ColorEncoding encoding) : mesh_(mesh), encoding_(encoding) {}
 
-  /// Nothing where no face has a material that says anything.
+  /// Tells whether any face has a material that gives a colour or a texture.
   bool exist() const {
     const ImportedSurface& surface = mesh_.surface;
     return !surface.material_of.empty() &&
@@ -53,7 +53,7 @@ class MeshMaterials {
                     "export the mesh again with them");
     }
     const auto plain = static_cast<std::uint32_t>(textured.materials.size());
-    textured.materials.emplace_back();  // of faces without one
+    textured.materials.emplace_back();  // for faces without a material
     textured.material_of.reserve(surface.material_of.size());
     for (const std::int32_t material : surface.material_of)
       textured.material_of.push_back(material < 0 ? plain : static_cast<std::uint32_t>(material));
@@ -66,7 +66,7 @@ class MeshMaterials {
  private:
   SurfaceAlbedo::Material material(const SourceMaterial& source) {
     SurfaceAlbedo::Material material;
-    // Exporters write a black Kd beside a map; its product with the map, as the format has it, is black.
+    // Exporters write a black Kd beside a map, although by the format its product with the map is black.
     const bool no_color = !source.has_diffuse || (source.texture && source.diffuse.isZero(0));
     if (!no_color) {
       result_.clamped += (source.diffuse.array() < 0 || source.diffuse.array() > 1).any();

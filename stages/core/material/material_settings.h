@@ -8,16 +8,16 @@
 
 namespace kiln {
 
-/// How a file's colours are stored: as sRGB has them, or proportional to light.
+/// Encoding of a file's colours: sRGB, or proportional to light.
 enum class ColorEncoding { srgb, linear };
 
-/// Where the reflectance of a mesh's surface comes from.
+/// Source of the reflectance of a mesh's surface.
 struct MaterialSettings {
-  std::string albedo = "auto";  ///< auto: what the mesh file says; else one number or R,G,B, linear, 0 to 1
-  std::string texture = {};     ///< a picture looked up with the mesh's uvs, in place of its own materials
-  ColorEncoding encoding = ColorEncoding::srgb;  ///< of vertex colours, Kd and pictures of integers
+  std::string albedo = "auto";  ///< auto: from the mesh file; else one number or R,G,B, linear, 0 to 1
+  std::string texture = {};     ///< a picture looked up with the mesh's uvs, instead of its own materials
+  ColorEncoding encoding = ColorEncoding::srgb;  ///< encoding of vertex colours, Kd and integer pictures
 
-  /// The linear colour that `albedo` gives; nothing for auto. Throws WrongUsage for other text.
+  /// Returns the linear colour that `albedo` gives; nothing for auto. Throws WrongUsage for other text.
   std::optional<std::array<float, 3>> constant() const;
 };
 

@@ -12,18 +12,18 @@
 
 namespace kiln {
 
-/// The share of light, linear red, green and blue, each 0 to 1, that a mesh's diffuse surface reflects. Copies share
-/// what is large. May be asked by several threads at once.
+/// Share of light, as linear red, green and blue, each 0 to 1, that a mesh's diffuse surface reflects. Copies share
+/// large data. May be used by several threads at once.
 class SurfaceAlbedo {
  public:
-  /// Where it comes from.
+  /// Source of the albedo.
   enum class Source { none, constant, vertex_colors, materials, texture };
 
-  /// One material of a textured mesh: its colour times its texture.
+  /// Material of a textured mesh: its colour times its texture.
   struct Material {
     Eigen::Vector3f color = Eigen::Vector3f::Ones();
     std::shared_ptr<const ColorTexture> texture;  ///< null: none
-    /// The texture is looked up at texture_transform * (u, v, 1).
+    /// Transform of the lookup: texture_transform * (u, v, 1).
     Eigen::Matrix<float, 2, 3> texture_transform = Eigen::Matrix<float, 2, 3>::Identity();
     ColorTexture::Wrap wrap_u = ColorTexture::Wrap::repeat, wrap_v = ColorTexture::Wrap::repeat;
   };
@@ -35,29 +35,30 @@ class SurfaceAlbedo {
     std::vector<std::array<Eigen::Vector2f, 3>> uvs;  ///< one per triangle, or none without textures
   };
 
-  /// White, which nobody asked for.
+  /// Makes a white surface of source `none`: no albedo was given or found.
   SurfaceAlbedo() = default;
 
   static SurfaceAlbedo constant(const Eigen::Vector3f& linear, Source source = Source::constant);
 
-  /// Linear colours of vertices, interpolated linearly over `triangles`.
+  /// Makes an albedo of linear vertex colours, interpolated linearly over `triangles`.
   static SurfaceAlbedo of_vertices(std::vector<Eigen::Vector3f> linear, std::vector<Triangle> triangles);
 
   static SurfaceAlbedo of_materials(Textured textured, Source source);
 
-  /// At a point of a triangle: u is the weight of the second corner, v that of the third (as in SurfacePoint).
+  /// Returns the albedo at a point of a triangle: u is the weight of the second corner, v that of the third (as in
+  /// SurfacePoint).
   Eigen::Vector3f at(std::uint32_t triangle, float u, float v) const;
 
-  /// Whether it is the same everywhere, and then what.
+  /// Tells whether the albedo is the same everywhere; constant() returns it then.
   bool is_constant() const { return vertices_ == nullptr && textured_ == nullptr; }
   const Eigen::Vector3f& constant_value() const { return constant_; }
 
-  /// Whether red, green and blue are the same everywhere.
+  /// Tells whether red, green and blue are equal everywhere.
   bool is_grey() const { return is_grey_; }
 
   Source source() const { return source_; }
 
-  /// "none", "constant", "vertex colors", "materials" or "texture".
+  /// Returns "none", "constant", "vertex colors", "materials" or "texture".
   std::string source_name() const;
 
  private:

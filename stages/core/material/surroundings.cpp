@@ -23,7 +23,7 @@ void move_to_asset(TriangleMesh& mesh, const Placement& placement, const Placeme
   mesh.frame = frame;
 }
 
-/// A square that faces +Y, in the scene's space, with its centre as origin.
+/// Makes a square that faces +Y, in the scene's space, with its centre as origin.
 TriangleMesh ground_square(const Eigen::Vector3d& centre, double half_size) {
   TriangleMesh mesh;
   mesh.frame.origin = centre;
@@ -34,8 +34,7 @@ TriangleMesh ground_square(const Eigen::Vector3d& centre, double half_size) {
   return mesh;
 }
 
-/// The parts of a text between semicolons, but for those behind a backslash, which stand for themselves; a backslash
-/// before a backslash is one.
+/// Splits a text at semicolons, except at those escaped by a backslash; a backslash is escaped by another.
 std::vector<std::string> parts_of(const std::string& text) {
   std::vector<std::string> parts(1);
   for (std::size_t k = 0; k < text.size(); ++k) {

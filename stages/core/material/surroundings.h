@@ -16,27 +16,27 @@ namespace kiln {
 /// Another mesh of the scene that an asset stands in.
 struct Neighbour {
   std::filesystem::path file;
-  Placement placement;  ///< in the scene
+  Placement placement;  ///< placement in the scene
   MaterialSettings material;
   ImportSettings import;
 };
 
-/// Reads "FILE[;place=X,Y,Z[,AZIMUTH[,SCALE]]][;albedo=A][;albedo-texture=PICTURE][;albedo-encoding=E]"
-/// and the import options, such as ";up=+z" and ";fill-holes=EDGES", each value as the option of that name takes it.
-/// A semicolon or backslash of a name is written with a backslash before it. Throws WrongUsage.
+/// Reads "FILE[;place=X,Y,Z[,AZIMUTH[,SCALE]]][;albedo=A][;albedo-texture=PICTURE][;albedo-encoding=E]" and the import
+/// options, such as ";up=+z" and ";fill-holes=EDGES", each value in the form that the option of that name takes. A
+/// semicolon or backslash in a name is escaped by a backslash. Throws WrongUsage.
 Neighbour parse_neighbour(const std::string& text);
 
-/// A mesh around an asset, in the asset's object space.
+/// Mesh around an asset, in the asset's object space.
 struct PlacedMesh {
   std::string name;   ///< its file, or "the ground"
-  TriangleMesh mesh;  ///< with corner normals, turned like itself
+  TriangleMesh mesh;  ///< with corner normals, which are turned like the mesh
   std::vector<std::string> warnings;
   LoadedAlbedo material;
 };
 
-/// Loads what stands around an asset whose box in its own frame is `own`: the neighbours, in their order, then the
-/// ground, which lies below the middle of the box. The ground reflects what `material` gives as a constant. Albedo is
-/// loaded `with_albedo` alone. Throws WrongUsage, and BadInput for files that are missing or damaged.
+/// Loads the meshes around an asset whose box in its own frame is `own`: the neighbours, in their order, then the
+/// ground, centred below the middle of the box. The ground reflects the constant that `material` gives. Loads albedo
+/// only if `with_albedo`. Throws WrongUsage, and BadInput for files that are missing or damaged.
 std::vector<PlacedMesh> load_surroundings(const Surroundings& surroundings, const BoundingBox& own,
                                           const MaterialSettings& material, bool with_albedo,
                                           const MeshFrame& frame = {});

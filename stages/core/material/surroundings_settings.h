@@ -7,10 +7,10 @@
 
 namespace kiln {
 
-/// What stands around an asset and casts shadows on it, as the command line has it. Numbers in the scene's units.
+/// Objects around an asset that cast shadows on it, as the command line gives them. Numbers in the scene's units.
 struct Surroundings {
-  std::string place = "0,0,0";          ///< of the asset in the scene: X,Y,Z[,AZIMUTH[,SCALE]], as parse_placement
-  std::string ground = "none";          ///< or HEIGHT[,HALF-SIZE] of a square plane
+  std::string place = "0,0,0";  ///< place of the asset in the scene: X,Y,Z[,AZIMUTH[,SCALE]], as parse_placement
+  std::string ground = "none";  ///< or HEIGHT[,HALF-SIZE] of a square plane
   std::vector<std::string> neighbours;  ///< meshes, as parse_neighbour reads them
 
   bool any() const { return ground != "none" || !neighbours.empty(); }

@@ -31,25 +31,25 @@ Eigen::Matrix4f Camera::clip_from_object() const {
 
 namespace {
 
-/// A shape along an axis of the picture and along the view, about the middle of its box: the places of the two planes
-/// through its outermost vertices that are inclined as the picture's sides.
+/// Extent of a shape across the picture and along the view, about the middle of its box: the positions of the two
+/// planes, inclined as the picture's sides, that touch its outermost vertices.
 struct Wedge {
-  double slope;  ///< of the sides, across over along
+  double slope;  ///< slope of the sides, across over along
   double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
 
-  /// A side leans on the vertex whose distance across, less what the slope gives it, is the most.
+  /// Extends the planes to a vertex.
   void add(double across, double along) {
     lowest = std::min(lowest, across + slope * along);
     highest = std::max(highest, across - slope * along);
   }
-  /// The farthest forwards that an eye in the middle may stand, and how far across that is.
+  /// Returns how far forwards an eye between the planes may stand; the next function, how far across that is.
   double eye_along() const { return (lowest - highest) / (2 * slope); }
   double eye_across() const { return 0.5 * (lowest + highest); }
-  /// The same of an eye that stands at `across`.
+  /// Returns how far forwards an eye at `across` may stand.
   double eye_along(double across) const { return std::min(lowest - across, across - highest) / slope; }
 };
 
-/// The depths of a shape from a camera, those behind it left out.
+/// Sets the depth range of a shape as seen by a camera; vertices behind it do not count.
 void set_depths(Camera& camera, std::span<const Eigen::Vector3f> shape) {
   double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
   for (const Eigen::Vector3f& vertex : shape) {
@@ -57,8 +57,8 @@ void set_depths(Camera& camera, std::span<const Eigen::Vector3f> shape) {
     if (depth > 0) nearest = std::min(nearest, depth);
     farthest = std::max(farthest, depth);
   }
-  if (farthest <= 0) farthest = 1;  // all of it is behind
-  // Depth is stored in floats: a thousandth of the farthest is as near as can be told apart.
+  if (farthest <= 0) farthest = 1;  // the whole shape lies behind
+  // Depth is stored in floats, which cannot tell depths nearer than a thousandth of the farthest apart.
   camera.near_distance = static_cast<float>(std::max(0.99 * std::min(nearest, farthest), 1e-3 * farthest));
   camera.far_distance = static_cast<float>(1.01 * farthest);
 }
@@ -68,7 +68,7 @@ void set_depths(Camera& camera, std::span<const Eigen::Vector3f> shape) {
 Camera make_camera(std::span<const Eigen::Vector3f> shape, const CameraSettings& settings, int width, int height) {
   const double degree = std::numbers::pi / 180;
   const double azimuth = settings.azimuth_degrees * degree;
-  // Straight above or below, "up" would be undefined.
+  // Seen straight from above or below, "up" would be undefined.
   const double elevation = std::clamp(settings.elevation_degrees, -89.9, 89.9) * degree;
   const Eigen::Vector3d outwards(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
                                  std::cos(elevation) * std::cos(azimuth));
@@ -92,8 +92,8 @@ Camera make_camera(std::span<const Eigen::Vector3f> shape, const CameraSettings&
     across.add(place.dot(right), place.dot(forward));
     upwards.add(place.dot(up), place.dot(forward));
   }
-  const double least = 1e-6 * std::max(box.diagonal().norm(), 1e-24);  // of a single point
-  Eigen::Vector3d eye;                                                 // from the middle, along right, up and forward
+  const double least = 1e-6 * std::max(box.diagonal().norm(), 1e-24);  // for a single point
+  Eigen::Vector3d eye;  // relative to the middle, along right, up and forward
   if (settings.target)
     eye = {0, 0, std::min(across.eye_along(0), upwards.eye_along(0))};
   else

@@ -11,7 +11,7 @@
 
 #include "base/errors.h"
 
-// The layout is that of the Draco bitstream specification, https://google.github.io/draco/spec/, sections 3 and 5.
+// The layout is that of the Draco bitstream specification [Draco], sections 3 and 5.
 
 namespace kiln {
 
@@ -21,13 +21,13 @@ constexpr std::string_view magic = "DRACO";
 constexpr std::uint16_t metadata_flag = 0x8000;
 constexpr std::uint8_t edgebreaker = 1;
 
-/// A count of a mesh's connectivity: four bytes before the version `first_varint`, of variable length from it on.
+/// Reads a count of the connectivity: four bytes before version `first_varint`, of variable length from it on.
 bool read_count(draco::DecoderBuffer& buffer, int version, int first_varint, std::uint32_t& count) {
   return version < first_varint ? buffer.Decode(&count) : draco::DecodeVarint(&count, &buffer);
 }
 
-/// How many triangles the file says it has; 0 where it ends before it says so. Draco takes memory for that many
-/// before it looks whether they are there.
+/// Returns the number of triangles that the file announces; 0 where it ends before. Draco reserves memory for that many
+/// before it checks whether they are there.
 std::uint32_t announced_faces(std::span<const std::uint8_t> bytes) {
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -49,7 +49,7 @@ std::uint32_t announced_faces(std::span<const std::uint8_t> bytes) {
   return read_count(buffer, version, 0x200, vertices) && read_count(buffer, version, 0x200, faces) ? faces : 0;
 }
 
-/// Draco's own decoding, whose exceptions (of a size that no memory has) are faults of the file.
+/// Runs Draco's own decoder; its exceptions (sizes that no memory has) are faults of the file.
 draco::StatusOr<std::unique_ptr<draco::Mesh>> decode(std::span<const std::uint8_t> bytes) {
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -74,7 +74,7 @@ std::unique_ptr<draco::Mesh> decode_draco(std::span<const std::uint8_t> bytes, c
     throw BadInput(name, "holds points and no triangles", "a Draco mesh of triangles",
                    "make a surface of the points, and encode that");
   if (type.ok()) {
-    // Even the most regular connectivity takes a bit for some hundred triangles.
+    // Even the most regular connectivity takes one bit for some hundred triangles.
     const std::uint64_t most = (1u << 20) + 1024 * static_cast<std::uint64_t>(bytes.size());
     if (const std::uint32_t faces = announced_faces(bytes); faces > most)
       throw BadInput(name,

@@ -21,7 +21,7 @@ namespace kiln {
 namespace {
 
 constexpr char remedy[] = "run the stage that writes it again";
-constexpr char name_entry[] = "name";  // of an attribute's metadata
+constexpr char name_entry[] = "name";  // key in an attribute's metadata
 
 template <class Vector>
 int add_attribute(draco::Mesh& encoded, draco::GeometryAttribute::Type type, const std::vector<Vector>& values) {
@@ -59,7 +59,7 @@ void add_colors(draco::Mesh& encoded, const std::vector<Eigen::Vector3f>& colors
   }
 }
 
-/// The positions in the file's units, from the frame's origin.
+/// Returns the positions in the file's units, relative to the frame's origin.
 std::vector<Eigen::Vector3f> in_file_units(const TriangleMesh& mesh) {
   std::vector<Eigen::Vector3f> positions = mesh.positions;
   if (mesh.frame.exponent != 0)
@@ -74,7 +74,7 @@ void add_origin(draco::Mesh& encoded, const Eigen::Vector3d& origin) {
   encoded.AddMetadata(std::move(metadata));
 }
 
-/// Brings positions of a mesh that is very large or very small to ordinary size, and notes that in its frame.
+/// Scales a very large or very small mesh to ordinary size, and notes that in its frame.
 void normalise_size(TriangleMesh& mesh) {
   const BoundingBox box = bounding_box(mesh);
   const int exponent = ordinary_exponent((box.highest - box.lowest).cast<double>().maxCoeff());
@@ -84,7 +84,8 @@ void normalise_size(TriangleMesh& mesh) {
     position = (position.cast<double>() / mesh.frame.unit()).cast<float>();
 }
 
-/// Positions, triangles and what else the mesh has as the first attributes of `encoded`, and how to quantise them.
+/// Adds positions, triangles and what else the mesh has as the first attributes of `encoded`, and says how to quantise
+/// them.
 void add_mesh(draco::Mesh& encoded, const TriangleMesh& mesh, const DracoQuantisation& quantisation,
               std::vector<std::pair<int, int>>& attribute_bits) {
   encoded.set_num_points(static_cast<std::uint32_t>(mesh.positions.size()));
@@ -106,7 +107,7 @@ void add_mesh(draco::Mesh& encoded, const TriangleMesh& mesh, const DracoQuantis
   if (!mesh.colors.empty()) add_colors(encoded, mesh.colors);
 }
 
-/// A generic attribute of `components` unsigned integers a vertex, one after another in `values`.
+/// Adds a generic attribute of `components` unsigned integers per vertex, one after another in `values`.
 template <class Stored, class Value>
 void add_integers(draco::Mesh& encoded, const std::string& name, std::size_t components, draco::DataType type,
                   const std::vector<Value>& values) {
@@ -141,7 +142,7 @@ void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
   if (!stream) fail_to_write(file, "");
 }
 
-/// `name` is for messages.
+/// Decodes a mesh; `name` appears in messages.
 std::unique_ptr<draco::Mesh> decode(const std::string& bytes, const std::string& name) {
   return decode_draco({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, name, remedy);
 }
@@ -168,9 +169,9 @@ TriangleMesh mesh_of(const draco::Mesh& source, const std::string& name) {
   return mesh;
 }
 
-/// Which vertex of `mesh` each vertex of `written`, a file of it, is. The walk over the triangles that orders vertices
-/// depends on the triangles alone, so another file that holds nothing but positions and the vertices' indices has the
-/// same order; that both hold the same positions and triangles is checked.
+/// Finds, for each vertex of `written` (a file of `mesh`), the vertex of `mesh` that it is. Draco orders vertices by a
+/// walk over the triangles, which depends on the triangles alone, so another file that holds only positions and the
+/// vertices' indices has the same order. That both files hold the same positions and triangles is checked.
 std::vector<std::uint32_t> find_sources(const TriangleMesh& mesh, const TriangleMesh& written,
                                         const DracoQuantisation& quantisation) {
   draco::Mesh companion;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double radians_per_degree = 3.14159265358979323846 / 180;
 
-/// An edge that two triangles share, and the corner of each that it starts at.
+/// Edge that two triangles share, and the corner of each that it starts at.
 struct SharedEdge {
   EdgeKey key;
   std::uint32_t first, second;  ///< 3 * triangle + corner; the edges run in opposite directions
@@ -26,7 +26,7 @@ std::uint32_t vertex_at(const TriangleMesh& mesh, std::uint32_t corner) {
   return mesh.triangles[corner / 3][corner % 3];
 }
 
-/// In the order of their keys. Edges of one triangle, and of more than two, are left out.
+/// Finds the shared edges, in the order of their keys. Edges of one triangle, and of more than two, are left out.
 std::vector<SharedEdge> shared_edges(const TriangleMesh& mesh) {
   const auto corners = static_cast<std::uint32_t>(3 * mesh.triangles.size());
   std::vector<std::pair<EdgeKey, std::uint32_t>> edges(corners);
@@ -99,7 +99,7 @@ HardEdges hard_edges_of_groups(const TriangleMesh& mesh, const std::vector<std::
 
 void compute_normals_between(TriangleMesh& mesh, const HardEdges& hard_edges) {
   if (hard_edges.empty()) return compute_vertex_normals(mesh);
-  // Corners that hang together across smooth edges are one sector of their vertex.
+  // Corners that are connected across smooth edges form one sector of their vertex.
   DisjointSets sectors(3 * mesh.triangles.size());
   for (const SharedEdge& edge : shared_edges(mesh)) {
     if (std::binary_search(hard_edges.begin(), hard_edges.end(), edge.key)) continue;

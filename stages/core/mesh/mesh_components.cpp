@@ -11,12 +11,12 @@ namespace {
 
 struct ComponentShape {
   BoundingBox box;
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< a vertex of it
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< one of its vertices
   double six_volumes = 0;
   double double_area = 0;
   bool started = false;
   bool closed = true;
-  std::vector<std::uint32_t> triangles;  ///< filled where it is needed
+  std::vector<std::uint32_t> triangles;  ///< filled only where needed
 };
 
 std::array<Eigen::Vector3d, 3> corners_from(const TriangleMesh& mesh, const Triangle& t,
@@ -43,8 +43,8 @@ std::vector<ComponentShape> measure(const TriangleMesh& mesh, const Components& 
   return shapes;
 }
 
-/// Marks the components that have a border. Over the triangles at an inner vertex, the vertices after it are those
-/// before it; on a border one of each differs, and so do their sums.
+/// Marks the components that have a border. At an inner vertex, the vertices after it in its triangles are the same set
+/// as those before it; at a border one of each differs, and so do the sums of their numbers.
 void find_open(const TriangleMesh& mesh, const Components& components, std::vector<ComponentShape>& shapes) {
   std::vector<std::int64_t> balance(mesh.positions.size(), 0);
   for (const Triangle& t : mesh.triangles)
@@ -54,8 +54,7 @@ void find_open(const TriangleMesh& mesh, const Components& components, std::vect
       if (balance[vertex] != 0) shapes[components.of_triangle[i]].closed = false;
 }
 
-/// How often the closed component goes around `point` (Van Oosterom and Strackee, "The solid angle of a plane
-/// triangle", 1983).
+/// Returns the winding number of a closed component around `point` [Oosterom 1983].
 double winding_number(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles,
                       const Eigen::Vector3d& point) {
   double half_angles = 0;
@@ -120,7 +119,7 @@ int turn_inside_out_components(TriangleMesh& mesh, int& count) {
   const Components components = find_components(mesh);
   count = static_cast<int>(components.count);
   std::vector<ComponentShape> shapes = measure(mesh, components);
-  // What is so thin that rounding decides has no inside.
+  // A component so thin that rounding decides its sign has no inside.
   const auto is_negative = [](const ComponentShape& shape) {
     return shape.six_volumes < -1e-9 * std::pow(shape.double_area, 1.5);
   };

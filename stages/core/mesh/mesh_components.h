@@ -7,16 +7,16 @@
 
 namespace kiln {
 
-/// Which of the numbers 0 to n - 1 belong together (union-find with path halving).
+/// Partition of the numbers 0 to n - 1 (union-find with path halving).
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t size);
   std::uint32_t root(std::uint32_t member);
 
-  /// The lesser of the two roots stands for both.
+  /// Joins two sets; the lesser of the two roots becomes the root of both.
   void join(std::uint32_t a, std::uint32_t b);
 
-  /// The root of every member, in order.
+  /// Returns the root of every member, in order.
   std::vector<std::uint32_t> roots();
 
  private:
@@ -31,11 +31,11 @@ struct Components {
 
 Components find_components(const TriangleMesh& mesh);
 
-/// The box of each component.
+/// Returns the box of each component.
 std::vector<BoundingBox> component_boxes(const TriangleMesh& mesh, const Components& components);
 
-/// Turns the closed components of negative volume that lie in no other closed one; a cavity's wall faces inwards
-/// rightly. `mesh` is an oriented manifold. Returns how many were turned and sets how many components there are.
+/// Turns closed components of negative volume that lie inside no other closed component: the wall of a cavity faces
+/// inwards rightly. `mesh` is an oriented manifold. Returns the number turned, and sets the number of components.
 int turn_inside_out_components(TriangleMesh& mesh, int& components);
 
 }  // namespace kiln

@@ -13,12 +13,12 @@ namespace kiln {
 
 namespace {
 
-/// What samples are taken from.
+/// Surface that samples are taken from.
 struct SampledSurface {
   struct Face {
     Eigen::Vector3d a, ab, ac;
   };
-  std::vector<Eigen::Vector3d> vertices;  ///< those that a triangle uses
+  std::vector<Eigen::Vector3d> vertices;  ///< only vertices that a triangle uses
   std::vector<Face> faces;
   std::vector<double> area_up_to;  ///< summed area of the faces before and including this one
 };
@@ -41,7 +41,7 @@ SampledSurface to_sampled(const TriangleMesh& mesh) {
   return surface;
 }
 
-/// The i-th number in [0, 1) of a stream: SplitMix64 (Steele, Lea and Flood 2014), which can be entered anywhere.
+/// Returns the i-th number in [0, 1) of a stream: SplitMix64 [Steele 2014], which can be entered anywhere.
 double random_number(std::uint64_t seed, std::uint64_t i) {
   std::uint64_t z = seed * 0xd1342543de82ef95ull + (i + 1) * 0x9e3779b97f4a7c15ull;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
@@ -50,7 +50,7 @@ double random_number(std::uint64_t seed, std::uint64_t i) {
   return static_cast<double>(z >> 11) * 0x1p-53;
 }
 
-/// Sample i of n, one from each n-th part of the area.
+/// Returns sample i of n, one from each n-th part of the area.
 Eigen::Vector3d sample(const SampledSurface& surface, std::uint64_t seed, std::uint64_t i, std::uint64_t n) {
   const double share = (static_cast<double>(i) + random_number(seed, 3 * i)) / static_cast<double>(n);
   const double at = share * surface.area_up_to.back();
@@ -73,7 +73,7 @@ struct OneWay {
 OneWay distance_to(const SampledSurface& from, const NearestSurface& to, const MeshDistanceSettings& settings) {
   const std::uint64_t samples = static_cast<std::uint64_t>(settings.samples);
   const std::size_t points = samples + from.vertices.size();
-  // Chunks of a fixed size and sums in their order make the result independent of the threads.
+  // Chunks of a fixed size, summed in order, make the result independent of the threads.
   constexpr std::size_t chunk_points = 512;
   struct Partial {
     double largest_squared = 0;
@@ -87,7 +87,7 @@ OneWay distance_to(const SampledSurface& from, const NearestSurface& to, const M
     for (std::size_t i = chunk * chunk_points; i < end; ++i) {
       const bool is_sample = i < samples;
       const Eigen::Vector3d point = is_sample ? sample(from, settings.seed, i, samples) : from.vertices[i - samples];
-      // What is nearest to the neighbour is close to this one, too, and bounds the search.
+      // The nearest triangle of the sample before is close to this sample too, and bounds the search.
       const NearestSurface::Hit hit = to.nearest(point, hint);
       hint = hit.hint;
       const double squared = hit.squared_distance;
@@ -108,7 +108,7 @@ OneWay distance_to(const SampledSurface& from, const NearestSurface& to, const M
 
 MeshDistance mesh_distance(const TriangleMesh& first, const TriangleMesh& second,
                            const MeshDistanceSettings& settings) {
-  const NearestSurface first_surface(first), second_surface(second);  // throw where there is no area
+  const NearestSurface first_surface(first), second_surface(second);  // both throw where there is no area
   const double diagonal = bounding_box(first).diagonal();
   const OneWay from_first = distance_to(to_sampled(first), second_surface, settings);
   const OneWay from_second = distance_to(to_sampled(second), first_surface, settings);

@@ -16,15 +16,14 @@ struct MeshDistance {
   double rms_from_second = 0;
 };
 
-/// How densely the surfaces are sampled: besides every vertex, this many points per mesh spread by area.
+/// Sampling density: this many points per mesh, spread by area, besides every vertex.
 struct MeshDistanceSettings {
   int samples = 200'000;
   std::uint64_t seed = 1;
 };
 
-/// Symmetric distances of two meshes by dense sampling of both (Cignoni, Rocchini and Scopigno, "Metro", 1998; Aspert
-/// et al., "MESH", 2002); exact point-to-triangle distances from a bounding volume hierarchy. Independent of the thread
-/// count.
+/// Measures symmetric distances of two meshes by dense sampling of both ([Cignoni 1998], [Aspert 2002]);
+/// point-to-triangle distances are exact, from a bounding volume hierarchy. Independent of the thread count.
 MeshDistance mesh_distance(const TriangleMesh& first, const TriangleMesh& second,
                            const MeshDistanceSettings& settings = {});
 

@@ -1,5 +1,5 @@
-// Orientation: CGAL, "Polygon Mesh Processing", orient_polygon_soup. Taking sheets apart: Gueziec, Taubin, Lazarus and
-// Horn, "Cutting and stitching: converting sets of polygons to manifold surfaces", 2001, with local cuts and stitches.
+// Orientation: CGAL, "Polygon Mesh Processing", orient_polygon_soup. Taking sheets apart: [Gueziec 2001], with local
+// cuts and stitches.
 #include "mesh/mesh_repair.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -22,7 +22,7 @@ namespace {
 namespace PMP = CGAL::Polygon_mesh_processing;
 constexpr std::uint32_t none_yet = ~0u;
 
-/// Finds equal things by a hash of them; open addressing.
+/// Hash table that finds equal things; open addressing.
 class IndexTable {
  public:
   explicit IndexTable(std::size_t things) {
@@ -31,7 +31,7 @@ class IndexTable {
     slots_.assign(slots, none_yet);
   }
 
-  /// The first index added for which `equal` holds, or else `index`, which is added.
+  /// Returns the first index added for which `equal` holds; adds `index` and returns it where there is none.
   template <class Equal>
   std::uint32_t find_or_add(const std::array<std::uint32_t, 3>& key, std::uint32_t index, const Equal& equal) {
     std::uint64_t hash = 0;
@@ -61,11 +61,11 @@ Eigen::Vector3d area_normal(const TriangleMesh& mesh, const Triangle& triangle) 
   return (b - a).cross(c - a);
 }
 
-/// Exact: differences and products of floats have no more digits than a double, unless they are of very different
-/// size.
+/// Tells whether a triangle has no area. Exact: differences and products of floats fit a double, unless the floats are
+/// of very different size.
 bool is_flat(const TriangleMesh& mesh, const Triangle& triangle) { return area_normal(mesh, triangle).isZero(0); }
 
-/// Vertices at the same place become the first of them.
+/// Merges vertices at the same position into the first of them.
 int merge_vertices(TriangleMesh& mesh) {
   IndexTable table(mesh.positions.size());
   std::vector<std::uint32_t> kept(mesh.positions.size());
@@ -84,7 +84,7 @@ int merge_vertices(TriangleMesh& mesh) {
   return merged;
 }
 
-/// Leaves out vertices that no triangle uses; the others keep their order. Returns how many.
+/// Drops vertices that no triangle uses; the others keep their order. Returns how many.
 int drop_unused(TriangleMesh& mesh) {
   std::vector<std::uint32_t> new_index(mesh.positions.size(), none_yet);
   for (const Triangle& triangle : mesh.triangles)
@@ -105,13 +105,13 @@ int drop_unused(TriangleMesh& mesh) {
   return unused;
 }
 
-/// Whether two triangles of the same vertices run around them the same way.
+/// Tells whether two triangles of the same vertices are wound alike.
 bool is_wound_alike(const Triangle& a, const Triangle& b) {
   const auto k = static_cast<std::size_t>(std::find(b.begin(), b.end(), a[0]) - b.begin());
   return b[(k + 1) % 3] == a[1];
 }
 
-/// Drops triangles that repeat a vertex, and those that are there already; their backs too, unless `keeps_backs`.
+/// Drops triangles that repeat a vertex or another triangle; also backs of others, unless `keeps_backs`.
 void drop_duplicates(TriangleMesh& mesh, TriangleOrigins& origins, bool keeps_backs, MeshRepairs& repairs) {
   IndexTable table(mesh.triangles.size());
   std::vector<Triangle> kept;
@@ -144,8 +144,8 @@ void drop_duplicates(TriangleMesh& mesh, TriangleOrigins& origins, bool keeps_ba
   origins = std::move(kept_origins);
 }
 
-/// Winds triangles as their neighbours across edges of two triangles; each part that hangs together so is wound as the
-/// greater part of its area was. Returns how many were turned.
+/// Winds triangles like their neighbours across edges of two triangles; each connected part is wound as the greater
+/// part of its area was. Returns how many were turned.
 int orient(TriangleMesh& mesh) {
   using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
   std::vector<Point> points;
@@ -155,8 +155,8 @@ int orient(TriangleMesh& mesh) {
   for (const Triangle& t : mesh.triangles) polygons.push_back({t[0], t[1], t[2]});
   PMP::orient_polygon_soup(points, polygons);
 
-  // It splits vertices, too, but opens whole chains of edges where sheets meet: only the winding is taken from it, and
-  // what hangs together. Corners keep their places in a triangle unless it is turned.
+  // CGAL's function also splits vertices, but opens whole chains of edges where sheets meet: take only the winding and
+  // the connectivity from it. Corners keep their places in a triangle unless it is turned.
   std::vector<bool> turned(polygons.size());
   TriangleMesh parts;
   parts.positions.resize(points.size());
@@ -185,7 +185,7 @@ int orient(TriangleMesh& mesh) {
 
 // ---- Taking sheets apart.
 
-/// Corner 3 t + k of triangle t; it also names the edge that starts there.
+/// Returns the corner after `corner`. Corner 3 t + k of triangle t also names the edge that starts there.
 std::uint32_t next_corner(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
 std::uint32_t vertex_at(const TriangleMesh& mesh, std::uint32_t corner) {
   return mesh.triangles[corner / 3][corner % 3];
@@ -193,19 +193,19 @@ std::uint32_t vertex_at(const TriangleMesh& mesh, std::uint32_t corner) {
 
 using CornerPair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// An edge and the corners that its triangles' own edges start at.
+/// Edge of several triangles, and the corners that the triangles' own edges start at.
 struct SharedEdge {
-  std::uint32_t first = 0, last = 0;  ///< in the list of all
-  std::vector<CornerPair> pairs;      ///< triangles that stay together: edges of opposite direction
+  std::uint32_t first = 0, last = 0;  ///< range in the list of all corners
+  std::vector<CornerPair> pairs;      ///< pairs of triangles that stay together: edges of opposite direction
 };
 
-/// Of the triangles at an edge, those that continue each other best: flattest first; among equals those that form a
+/// Pairs the triangles at an edge that continue each other best: flattest first; among equals the pair that forms a
 /// convex edge, so that two solids that touch there stay two.
 std::vector<CornerPair> pair_sheets(const TriangleMesh& mesh, const std::uint32_t* first, const std::uint32_t* last) {
-  constexpr std::ptrdiff_t most = 64;  // a fan of more is no surface; all pairs would be too many
+  constexpr std::ptrdiff_t most = 64;  // larger fans are no surface, and have too many pairs
   if (last - first > most) return {};
   struct Candidate {
-    long bend;  ///< rounded, so that equals are equal
+    long bend;  ///< rounded, so that equal bends compare equal
     bool concave;
     CornerPair pair;
     auto order() const { return std::tie(bend, concave, pair); }
@@ -217,7 +217,7 @@ std::vector<CornerPair> pair_sheets(const TriangleMesh& mesh, const std::uint32_
   for (const std::uint32_t* i = first; i != last; ++i)
     for (const std::uint32_t* j = i + 1; j != last; ++j) {
       const std::uint32_t from = vertex_at(mesh, *i);
-      if (vertex_at(mesh, *j) == from) continue;  // same direction
+      if (vertex_at(mesh, *j) == from) continue;  // both run the same way
       const Eigen::Vector3d normal = unit_normal(*i);
       const std::uint32_t apex = vertex_at(mesh, next_corner(next_corner(*j)));
       const double height = normal.dot((mesh.positions[apex] - mesh.positions[from]).cast<double>());
@@ -236,9 +236,9 @@ std::vector<CornerPair> pair_sheets(const TriangleMesh& mesh, const std::uint32_
   return pairs;
 }
 
-/// Gives every fan of triangles that stay together a vertex of its own.
+/// Gives every fan of connected triangles a vertex of its own.
 void split_sheets(TriangleMesh& mesh, MeshRepairs& repairs) {
-  // Step 1: the triangles at each edge, and which of them stay together.
+  // Step 1: find the triangles at each edge, and which of them stay together.
   const auto corners = static_cast<std::uint32_t>(3 * mesh.triangles.size());
   std::vector<std::pair<std::uint64_t, std::uint32_t>> edges(corners);
   for (std::uint32_t corner = 0; corner < corners; ++corner) {
@@ -248,8 +248,8 @@ void split_sheets(TriangleMesh& mesh, MeshRepairs& repairs) {
   std::sort(edges.begin(), edges.end());
   std::vector<std::uint32_t> at_edges(corners);
   std::transform(edges.begin(), edges.end(), at_edges.begin(), [](const auto& edge) { return edge.second; });
-  std::vector<CornerPair> plain;      // of edges of two triangles
-  std::vector<SharedEdge> contested;  // of more
+  std::vector<CornerPair> plain;      // pairs at edges of two triangles
+  std::vector<SharedEdge> contested;  // edges of more triangles
   std::vector<bool> at_cut(mesh.positions.size(), false);
   for (std::uint32_t i = 0, end = 0; i < corners; i = end) {
     while (end < corners && edges[end].first == edges[i].first) ++end;
@@ -269,8 +269,8 @@ void split_sheets(TriangleMesh& mesh, MeshRepairs& repairs) {
     }
   }
 
-  // Step 2: corners that hang together across pairs are one vertex. Where a fan comes back to a contested edge, that
-  // edge has too many triangles still: there, none stay together.
+  // Step 2: corners connected across pairs become one vertex. A fan that comes back to a contested edge would put too
+  // many triangles on it: no pairs stay together there.
   std::vector<std::uint32_t> group;
   for (bool again = true; again;) {
     DisjointSets sets(corners);
@@ -294,7 +294,7 @@ void split_sheets(TriangleMesh& mesh, MeshRepairs& repairs) {
     }
   }
 
-  // Step 3: the first group of a vertex keeps it, others get copies.
+  // Step 3: the first group of a vertex keeps it, the others get copies.
   std::vector<std::uint32_t> vertex_of_group(corners, none_yet), kept_by(mesh.positions.size(), none_yet);
   std::vector<bool> was_split(mesh.positions.size(), false);
   for (std::uint32_t corner = 0; corner < corners; ++corner) {
@@ -314,7 +314,8 @@ void split_sheets(TriangleMesh& mesh, MeshRepairs& repairs) {
   }
 }
 
-/// After triangles were taken out or put in: edges that are there twice now, and fans that came apart.
+/// Restores a manifold after triangles were removed or added: drops edges that now appear twice, and splits fans that
+/// came apart.
 void make_manifold_again(TriangleMesh& mesh, TriangleOrigins& origins, bool keeps_backs) {
   MeshRepairs own;
   drop_duplicates(mesh, origins, keeps_backs, own);
@@ -367,12 +368,12 @@ MeshRepairs repair_mesh(TriangleMesh& mesh, const MeshRepairSettings& settings, 
   TriangleOrigins origins(mesh.triangles.size());
   std::iota(origins.begin(), origins.end(), 0u);
 
-  // Vertices and triangles one by one.
+  // Repair vertices and triangles one by one.
   repairs.merged_vertices = merge_vertices(mesh);
   repairs.unused_vertices = drop_unused(mesh) - repairs.merged_vertices;
   drop_duplicates(mesh, origins, settings.keeps_backs, repairs);
 
-  // The surface they form.
+  // Repair the surface that they form.
   if (!is_manifold(mesh)) {
     repairs.reversed_triangles = orient(mesh);
     split_sheets(mesh, repairs);
@@ -397,7 +398,7 @@ MeshRepairs repair_mesh(TriangleMesh& mesh, const MeshRepairSettings& settings, 
 }
 
 bool is_manifold(const TriangleMesh& mesh) {
-  // The triangles at each vertex, as the vertices after and before it.
+  // Triangles at each vertex, as the vertices after and before it.
   struct Wedge {
     std::uint32_t after, before;
     bool operator<(const Wedge& other) const { return after < other.after; }
@@ -423,12 +424,13 @@ bool is_manifold(const TriangleMesh& mesh) {
       const auto found = std::lower_bound(first, last, Wedge{neighbour, 0});
       return found != last && found->after == neighbour ? found : last;
     };
-    // One fan: from the one wedge that nothing comes before, or around, all are reached.
+    // Check that there is one fan: from the wedge that nothing precedes, or from any in a closed fan, all others are
+    // reached.
     std::vector<bool> is_followed(static_cast<std::size_t>(last - first), false);
     for (auto wedge = first; wedge != last; ++wedge) {
       const auto following = starting_at(wedge->before);
       if (following == last) continue;
-      if (is_followed[static_cast<std::size_t>(following - first)]) return false;  // two come before it
+      if (is_followed[static_cast<std::size_t>(following - first)]) return false;  // two wedges precede it
       is_followed[static_cast<std::size_t>(following - first)] = true;
     }
     const auto start = first + (std::find(is_followed.begin(), is_followed.end(), false) - is_followed.begin());

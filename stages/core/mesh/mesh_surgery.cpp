@@ -33,7 +33,7 @@ double double_area(const TriangleMesh& mesh, const Triangle& triangle) {
 
 bool is_flat(const TriangleMesh& mesh, const Triangle& triangle) { return !(double_area(mesh, triangle) > 0); }
 
-/// Vertices and faces have the same numbers.
+/// Converts a mesh; vertices and faces keep their numbers.
 SurfaceMesh to_surface(const TriangleMesh& mesh) {
   SurfaceMesh surface;
   surface.reserve(mesh.positions.size(), mesh.triangles.size() * 3 / 2, mesh.triangles.size());
@@ -49,7 +49,7 @@ Triangle triangle_of(const SurfaceMesh& surface, Face face) {
   return {surface.source(first), surface.target(first), surface.target(surface.next(first))};
 }
 
-/// The first face beside `face` that is older than a patch, else `otherwise`.
+/// Returns the first face beside `face` that is older than a patch, else `otherwise`.
 Face neighbour_of(const SurfaceMesh& surface, Face face, std::uint32_t old_faces, Face otherwise) {
   for (const Halfedge edge : surface.halfedges_around_face(surface.halfedge(face))) {
     const Face beside = surface.face(surface.opposite(edge));
@@ -58,15 +58,15 @@ Face neighbour_of(const SurfaceMesh& surface, Face face, std::uint32_t old_faces
   return otherwise;
 }
 
-/// Takes triangles out whose corners lie on one line. Their longest edge, which the third corner lies on, is flipped
-/// into the triangle on its other side, which is so cut in two. The one of the longest edge comes first: what lies
-/// beyond it has an area, or is no longer, so that edges only get shorter and it ends.
+/// Removes triangles whose corners lie on one line. Such a triangle's longest edge, which its third corner lies on, is
+/// flipped into the triangle beyond, which is cut in two by that. The triangle with the longest edge comes first: the
+/// one beyond it has an area or is no longer, so edges only get shorter and the loop ends.
 class FlatTriangles {
  public:
   FlatTriangles(TriangleMesh& mesh, TriangleOrigins& origins)
       : mesh_(mesh), origins_(origins), is_removed_(mesh.triangles.size(), false) {}
 
-  /// Returns how many there were.
+  /// Removes the flat triangles; returns how many there were.
   int remove() {
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) push_if_flat(t);
     const auto count = static_cast<int>(queue_.size());
@@ -75,7 +75,7 @@ class FlatTriangles {
     while (!queue_.empty()) {
       const Flat flat = queue_.top();
       queue_.pop();
-      // One that was flipped since is in the queue again.
+      // Skip entries that a flip has outdated: the triangle is in the queue again.
       if (is_removed_[flat.triangle] || mesh_.triangles[flat.triangle] != flat.corners) continue;
       if (!flip_longest_edge(flat.triangle)) take_out(flat.triangle);
     }
@@ -88,7 +88,7 @@ class FlatTriangles {
     double longest_edge;
     std::uint32_t triangle;
     Triangle corners;
-    bool operator<(const Flat& other) const {  // the queue has the greatest first
+    bool operator<(const Flat& other) const {  // the queue takes the greatest first
       return std::tie(longest_edge, other.triangle) < std::tie(other.longest_edge, triangle);
     }
   };
@@ -99,7 +99,7 @@ class FlatTriangles {
     return (mesh_.positions[a].cast<double>() - mesh_.positions[b].cast<double>()).squaredNorm();
   }
 
-  /// The corner that the longest edge starts at.
+  /// Returns the corner that the longest edge starts at.
   std::size_t longest_edge_of(const Triangle& t) const {
     std::size_t longest = 0;
     for (std::size_t k = 1; k < 3; ++k)
@@ -129,7 +129,7 @@ class FlatTriangles {
     is_removed_[triangle] = true;
   }
 
-  /// False where nothing lies beyond the edge, or where the new edge is there already or has no length.
+  /// Flips the longest edge; false where no triangle lies beyond it, or the new edge already exists or has no length.
   bool flip_longest_edge(std::uint32_t triangle) {
     const Triangle t = mesh_.triangles[triangle];
     const std::size_t k = longest_edge_of(t);
@@ -169,7 +169,7 @@ class FlatTriangles {
   TriangleOrigins& origins_;
   std::vector<bool> is_removed_;
   std::priority_queue<Flat> queue_;
-  std::unordered_map<std::uint64_t, std::uint32_t> triangle_at_;  ///< of directed edges
+  std::unordered_map<std::uint64_t, std::uint32_t> triangle_at_;  ///< by directed edge
 };
 
 }  // namespace
@@ -179,8 +179,8 @@ int remove_flat_triangles(TriangleMesh& mesh, TriangleOrigins& origins) {
 }
 
 int count_border_loops(const TriangleMesh& mesh) {
-  // Over the triangles at an inner vertex, the vertices after it are those before it; on a border one of each differs.
-  // Their sums tell, so that a closed surface needs no search.
+  // At an inner vertex, the vertices after it in its triangles are the same set as those before it; at a border one of
+  // each differs. Compare the sums of their numbers, so that a closed surface needs no search.
   std::vector<std::uint64_t> after_less_before(mesh.positions.size(), 0);
   for (const Triangle& t : mesh.triangles)
     for (int k = 0; k < 3; ++k) after_less_before[t[k]] += std::uint64_t{t[(k + 1) % 3]} - t[(k + 2) % 3];
@@ -191,7 +191,7 @@ int count_border_loops(const TriangleMesh& mesh) {
       if (after_less_before[from] != 0 && after_less_before[to] != 0) directed.emplace_back(from, to);
     }
   std::sort(directed.begin(), directed.end());
-  // A loop is a connected part of the border: a vertex has one edge of it that comes and one that goes.
+  // A loop is a connected part of the border: each of its vertices has one border edge in and one out.
   DisjointSets sets(mesh.positions.size());
   std::vector<std::uint32_t> on_border;
   for (const auto& [from, to] : directed) {

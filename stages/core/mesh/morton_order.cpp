@@ -6,7 +6,7 @@ namespace kiln {
 
 namespace {
 
-/// Every third bit of 63, the lowest 21 bits of `value`.
+/// Spreads the lowest 21 bits of `value` to every third of 63 bits.
 std::uint64_t spread_bits(std::uint64_t value) {
   value = (value | value << 32) & 0x1f00000000ffffull;
   value = (value | value << 16) & 0x1f0000ff0000ffull;

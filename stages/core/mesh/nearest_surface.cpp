@@ -22,12 +22,13 @@ struct Face {
   Eigen::Vector3d unit_normal() const { return ab.cross(ac).normalized(); }
 };
 
-/// Directions about an axis.
+/// Cone of directions about an axis.
 struct Cone {
   Eigen::Vector3f axis = Eigen::Vector3f::UnitZ();
-  float cosine = -1, sine = 0;  ///< of the largest angle to the axis; all directions from half a turn on
+  float cosine = -1,
+        sine = 0;  ///< of the largest angle between the axis and a direction; cosine -1 means all directions
 
-  /// No direction of the cone has a larger cosine with the unit vector than this.
+  /// Returns an upper bound of the cosine between the unit vector and a direction of the cone.
   float largest_cosine(const Eigen::Vector3f& direction) const {
     const float along = axis.dot(direction);
     if (along >= cosine) return 1;
@@ -37,10 +38,10 @@ struct Cone {
 
 struct Node {
   Eigen::AlignedBox3d box;
-  std::uint32_t begin = 0;  ///< of its faces
+  std::uint32_t begin = 0;  ///< first of its faces
   std::uint32_t end = 0;
-  std::uint32_t right = 0;  ///< the second child, the first is the next node; 0 for a leaf
-  Cone normals;             ///< of its faces
+  std::uint32_t right = 0;  ///< second child (the first is the next node); 0 for a leaf
+  Cone normals;             ///< normals of its faces
 };
 
 constexpr std::uint32_t leaf_faces = 4;
@@ -87,7 +88,7 @@ struct NearestSurface::Hierarchy {
     return {axis, smallest, std::sqrt(std::max(0.0f, 1 - smallest * smallest))};
   }
 
-  /// Halves the faces along the widest direction of their middles.
+  /// Adds a node that halves its faces along the widest direction of their centres. Returns its number.
   std::uint32_t add(std::uint32_t begin, std::uint32_t end) {
     const auto index = static_cast<std::uint32_t>(nodes.size());
     Node node;
@@ -132,8 +133,8 @@ NearestSurface::~NearestSurface() = default;
 NearestSurface::NearestSurface(NearestSurface&&) noexcept = default;
 NearestSurface& NearestSurface::operator=(NearestSurface&&) noexcept = default;
 
-/// Finds the nearest of the faces that count(face) says count, nearer than `within`, into `hit`. `may_count` says of a
-/// node whether any of its faces may.
+/// Finds into `hit` the nearest face for which count(face) holds, nearer than `within`. `may_count` tells whether any
+/// face of a node may.
 template <class Counts, class MayCount>
 void NearestSurface::search(const Eigen::Vector3d& point, std::uint32_t hint, double within, Hit& hit,
                             const Counts& counts, const MayCount& may_count) const {
@@ -146,7 +147,7 @@ void NearestSurface::search(const Eigen::Vector3d& point, std::uint32_t hint, do
   };
   look_at(hint);
 
-  // The nearer child first; a stack of 64 is deep enough for halves of 2^32 faces.
+  // Visit the nearer child first; a stack of 64 is deep enough for halves of 2^32 faces.
   std::array<std::pair<double, std::uint32_t>, 64> stack;
   std::size_t depth = 0;
   stack[depth++] = {nodes[0].box.squaredExteriorDistance(point), 0};
@@ -178,7 +179,7 @@ std::optional<NearestSurface::Hit> NearestSurface::nearest_facing(const Eigen::V
                                                                   std::uint32_t hint) const {
   const Eigen::Vector3f normal = facing.normal.normalized().cast<float>();
   const float smallest = static_cast<float>(facing.smallest_cosine);
-  constexpr float rounding = 1e-4f;  // of cones
+  constexpr float rounding = 1e-4f;  // slack for rounding of cones
   constexpr std::uint32_t none = ~0u;
   Hit hit;
   hit.hint = none;

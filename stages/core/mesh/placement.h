@@ -8,8 +8,8 @@
 
 namespace kiln {
 
-/// Where an object stands in a scene: scaled evenly, turned, then moved. Even scales alone, so that angles and
-/// directions of light stay what they are.
+/// Place of an object in a scene: scaled uniformly, turned, then moved. Only uniform scales, so that angles and
+/// directions of light are kept.
 struct Placement {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   double scale = 1;  ///< above 0
@@ -20,17 +20,17 @@ struct Placement {
     return rotation.transpose() * (scene - translation) / scale;
   }
 
-  /// Column-vector matrix from object space to the scene's.
+  /// Returns the matrix (column vectors) from object space to the scene's.
   Eigen::Matrix4d matrix() const;
 
   bool turns() const { return !rotation.isIdentity(0); }
 };
 
-/// Reads "X,Y,Z[,AZIMUTH[,SCALE]]": where the object's origin goes, how far it is turned about +Y (degrees; +Z turns
-/// towards +X), and its scale. Throws WrongUsage, which calls the value `name`.
+/// Reads "X,Y,Z[,AZIMUTH[,SCALE]]": the position of the object's origin, its turn about +Y (degrees; +Z turns towards
+/// +X), and its scale. Throws WrongUsage, whose message calls the value `name`.
 Placement parse_placement(std::string_view name, std::string_view text);
 
-/// The box around a placed box.
+/// Returns the box around a placed box.
 BoundingBox placed_box(const BoundingBox& box, const Placement& placement);
 
 }  // namespace kiln

@@ -11,7 +11,7 @@ namespace kiln {
 
 namespace {
 
-/// `vector` without its part along the unit vector `normal`, normalised; zero where nothing is left.
+/// Returns `vector` without its part along the unit vector `normal`, normalised; zero where nothing is left.
 Eigen::Vector3d in_plane(const Eigen::Vector3d& vector, const Eigen::Vector3d& normal) {
   const Eigen::Vector3d projected = vector - normal.dot(vector) * normal;
   const double length = projected.norm();
@@ -62,7 +62,7 @@ std::vector<TangentFrame> tangent_frames(const TriangleMesh& mesh) {
   std::vector<TangentFrame> frames(count);
   for (std::size_t i = 0; i < count; ++i) {
     const double length = tangents[i].norm();
-    // Where no face says anything, any direction in the plane will do.
+    // Where no face gives a tangent, any direction in the plane will do.
     frames[i].tangent =
         length > 0 ? Eigen::Vector3f((tangents[i] / length).cast<float>()) : mesh.normals[i].unitOrthogonal();
     frames[i].sign = orientation[i] < 0 ? -1.0f : 1.0f;
@@ -85,7 +85,7 @@ Eigen::Vector3f to_object_space(const Eigen::Vector3f& normal_tangent, const Eig
 Eigen::Vector3f to_tangent_space(const Eigen::Vector3f& normal_object, const Eigen::Vector3f& normal,
                                  const TangentFrame& frame) {
   const Eigen::Matrix3d matrix = matrix_of(normal, frame);
-  // The tangent may have cancelled to nothing between vertices whose frames disagree; the map can only say "up" there.
+  // The tangent may have vanished between vertices whose frames disagree; the map can only say "up" there.
   constexpr double smallest_determinant = 1e-9;
   if (!(std::abs(matrix.determinant()) > smallest_determinant)) return Eigen::Vector3f::UnitZ();
   return (matrix.inverse() * normal_object.cast<double>()).normalized().cast<float>();

@@ -11,9 +11,9 @@ namespace kiln {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Where the positions of a mesh lie in the coordinates of the file it comes from: file = origin + 2^exponent *
-/// position. Meshes near the origin and of ordinary size have none, so that positions are those of the file. Others are
-/// moved and scaled, by a power of two that rounds nothing, until floats hold them.
+/// Transform from the positions of a mesh to the coordinates of its file: file = origin + 2^exponent * position. Meshes
+/// of ordinary size near the origin have the identity, so their positions are those of the file. Others are moved and
+/// scaled by a power of two, which rounds nothing, until float32 holds them.
 struct MeshFrame {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< in the file's units
   int exponent = 0;
@@ -24,28 +24,29 @@ struct MeshFrame {
   Eigen::Vector3d from_file(const Eigen::Vector3d& place) const { return (place - origin) / unit(); }
 };
 
-/// The neutral indexed mesh that all rooms exchange. Object space, +Y up, right-handed; triangles wind
-/// counter-clockwise seen from outside. Per-vertex attributes are empty or as many as the positions.
+/// Indexed mesh that all rooms exchange. Object space, +Y up, right-handed; triangles wind counter-clockwise seen from
+/// outside. Per-vertex attributes are empty or as many as the positions.
 struct TriangleMesh {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Triangle> triangles;
   std::vector<Eigen::Vector3f> normals;  ///< unit vectors
   std::vector<Eigen::Vector2f> uvs;      ///< (0,0) is the lower left corner of the atlas
 
-  /// Red, green and blue from 0 to 1 as the file holds them; most files' are sRGB-encoded, none say so.
+  /// Red, green and blue from 0 to 1 as the file holds them; most files are sRGB-encoded, none say so.
   std::vector<Eigen::Vector3f> colors = {};
 
-  /// Unit vectors at the corners of each triangle, where hard edges part the normals of one vertex; else none, and
+  /// Unit vectors at the corners of each triangle, where hard edges split the normals of a vertex; empty where
   /// `normals` hold at all corners. With corner normals, `normals` are their means.
   std::vector<std::array<Eigen::Vector3f, 3>> corner_normals = {};
 
   MeshFrame frame = {};
 };
 
-/// The exponent of the frame of a mesh whose box has this longest side: 0 for ordinary sizes, a millionth to a million.
+/// Returns the exponent of the frame of a mesh whose box has this longest side: 0 for ordinary sizes, a millionth to a
+/// million.
 int ordinary_exponent(double longest_side);
 
-/// An axis-aligned box; empty (lowest > highest) for a mesh without vertices.
+/// Axis-aligned box; empty (lowest > highest) for a mesh without vertices.
 struct BoundingBox {
   Eigen::Vector3f lowest = Eigen::Vector3f::Constant(std::numeric_limits<float>::infinity());
   Eigen::Vector3f highest = Eigen::Vector3f::Constant(-std::numeric_limits<float>::infinity());
@@ -54,24 +55,23 @@ struct BoundingBox {
   float diagonal() const { return (highest - lowest).norm(); }
 };
 
-/// The box around the vertices that triangles refer to.
+/// Returns the box around the vertices that triangles use.
 BoundingBox bounding_box(const TriangleMesh& mesh);
 
-/// The normal at a corner (0 to 2) of a triangle of a mesh with normals.
+/// Returns the normal at a corner (0 to 2) of a triangle of a mesh with normals.
 inline const Eigen::Vector3f& corner_normal(const TriangleMesh& mesh, std::uint32_t triangle, std::size_t corner) {
   return mesh.corner_normals.empty() ? mesh.normals[mesh.triangles[triangle][corner]]
                                      : mesh.corner_normals[triangle][corner];
 }
 
-/// Sets `normals` to the average of the adjacent faces' normals, weighted by the angle at the vertex (Thuermer and
-/// Wuethrich, "Computing vertex normals from polygonal facets", 1998), and clears `corner_normals`. A vertex with no
-/// proper face gets +Y.
+/// Sets `normals` to the average of the adjacent faces' normals, weighted by the angle at the vertex [Thuermer 1998],
+/// and clears `corner_normals`. A vertex without a proper face gets +Y.
 void compute_vertex_normals(TriangleMesh& mesh);
 
-/// Whether every edge has exactly two triangles, which run along it in opposite directions.
+/// Tells whether every edge has exactly two triangles, which run along it in opposite directions.
 bool is_closed(const TriangleMesh& mesh);
 
-/// The surface's area.
+/// Returns the surface's area.
 double surface_area(const TriangleMesh& mesh);
 
 }  // namespace kiln

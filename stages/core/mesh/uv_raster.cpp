@@ -7,8 +7,8 @@ namespace kiln {
 
 namespace {
 
-// Fixed point: 1/4096 texel. With coordinates of at most 2^18 texels (uvs up to 16 with 2^14 texels a side) they stay
-// below 2^30 and the products of the edge functions below 2^61.
+// Fixed point of 1/4096 texel. Coordinates of at most 2^18 texels (uvs up to 16 with 2^14 texels a side) stay below
+// 2^30 then, and the products of the edge functions below 2^61.
 constexpr int subtexel_bits = 12;
 constexpr std::int64_t subtexels = std::int64_t{1} << subtexel_bits;
 constexpr float largest_texels = 1 << 18;
@@ -17,21 +17,21 @@ struct FixedPoint {
   std::int64_t x = 0, y = 0;
 };
 
-/// Twice the signed area of (a, b, p).
+/// Returns twice the signed area of (a, b, p).
 std::int64_t edge_function(const FixedPoint& a, const FixedPoint& b, const FixedPoint& p) {
   return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
 }
 
-/// Whether a centre on the edge from a to b belongs to the triangle at its left: so for exactly one of the edge's two
-/// directions, namely left edges (downwards) and top edges (leftwards).
+/// Tells whether a centre on the edge from a to b belongs to the triangle at its left: true for exactly one of the
+/// edge's two directions, that of left edges (downwards) and top edges (leftwards).
 bool owns_edge(const FixedPoint& a, const FixedPoint& b) { return b.y < a.y || (b.y == a.y && b.x < a.x); }
 
-/// The first texel whose centre is at or after a coordinate.
+/// Returns the first texel whose centre is at or after a coordinate.
 std::int64_t first_centre_from(std::int64_t coordinate) {
   return (coordinate + subtexels / 2 - 1) >> subtexel_bits;  // = ceil((coordinate - half) / one); the shift floors
 }
 
-/// The last texel whose centre is at or before a coordinate.
+/// Returns the last texel whose centre is at or before a coordinate.
 std::int64_t last_centre_to(std::int64_t coordinate) { return (coordinate - subtexels / 2) >> subtexel_bits; }
 
 }  // namespace
@@ -57,7 +57,7 @@ UvRaster rasterise_uvs(const TriangleMesh& mesh, int width, int height) {
     }
     if (!usable) continue;
 
-    // A mirrored triangle covers what it covers: turn it round, and its weights with it.
+    // A mirrored triangle covers the same texels: reverse it, and its weights with it.
     std::int64_t twice_area = edge_function(corner[0], corner[1], corner[2]);
     if (twice_area == 0) continue;
     const bool mirrored = twice_area < 0;
@@ -73,7 +73,7 @@ UvRaster rasterise_uvs(const TriangleMesh& mesh, int width, int height) {
     const std::int64_t first_j = std::max<std::int64_t>(0, first_centre_from(lowest_y));
     const std::int64_t last_j = std::min<std::int64_t>(height - 1, last_centre_to(highest_y));
 
-    // The value of an edge function must reach this for a centre to be inside.
+    // Least value of each edge function at centres inside.
     std::int64_t least[3];
     for (int k = 0; k < 3; ++k) least[k] = owns_edge(corner[(k + 1) % 3], corner[(k + 2) % 3]) ? 0 : 1;
 

@@ -7,7 +7,7 @@
 
 namespace kiln {
 
-/// Which triangle a texel of the atlas lies in, and where.
+/// Triangle that a texel of the atlas lies in, and the place in it.
 struct TexelSource {
   static constexpr std::uint32_t none = ~0u;
   std::uint32_t triangle = none;  ///< `none`: the texel's centre lies in no triangle
@@ -17,7 +17,7 @@ struct TexelSource {
   bool covered() const { return triangle != none; }
 };
 
-/// A texture's worth of texel sources: texel (column i, row j from the bottom) is [j * width + i].
+/// Texel sources of a whole texture: texel (column i, row j from the bottom) is [j * width + i].
 struct UvRaster {
   int width = 0;
   int height = 0;
@@ -28,12 +28,12 @@ struct UvRaster {
   const TexelSource& at(int i, int j) const { return texels[static_cast<std::size_t>(j) * width + i]; }
 };
 
-/// Rasterises a mesh with uvs: a texel is covered when its centre ((i+0.5)/W, (j+0.5)/H) lies in a triangle's uv, a
-/// centre on an edge shared by two triangles belonging to just one of them (exact integer edge functions on uvs rounded
+/// Rasterises a mesh with uvs. A texel is covered when its centre ((i+0.5)/W, (j+0.5)/H) lies in a triangle's uv; a
+/// centre on an edge shared by two triangles belongs to just one of them (exact integer edge functions on uvs rounded
 /// to 1/256 texel or finer, with a top-left rule). A texel claimed by several triangles keeps the first.
 UvRaster rasterise_uvs(const TriangleMesh& mesh, int width, int height);
 
-/// Value at a texel of a per-vertex attribute, interpolated linearly.
+/// Interpolates a per-vertex attribute linearly at a texel.
 template <class Value>
 Value interpolate(const TriangleMesh& mesh, const std::vector<Value>& attribute, const TexelSource& source) {
   const Triangle& t = mesh.triangles[source.triangle];

@@ -12,10 +12,11 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Average internal reflection of diffuse light at the boundary: the rational fit that Jensen et al. quote.
+/// Returns the average internal reflection of diffuse light at the boundary: the rational fit that [Jensen 2001]
+/// quotes.
 double internal_reflection(double eta) { return -1.440 / (eta * eta) + 0.710 / eta + 0.668 + 0.0636 * eta; }
 
-/// 1 - x e^-y for 0 <= x <= 1, given 1 - x, without cancellation.
+/// Returns 1 - x e^-y for 0 <= x <= 1, given 1 - x, without cancellation.
 double complement(double one_minus_x, double x, double y) { return one_minus_x - x * std::expm1(-y); }
 
 }  // namespace

@@ -10,13 +10,13 @@ namespace kiln {
 
 namespace {
 
-/// The upper 53 bits of a fraction in units of 2^-64.
+/// Returns the upper 53 bits of a fraction in units of 2^-64.
 double as_fraction(std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }
 
-/// Uniform in [0, 1). std::uniform_real_distribution may differ between libraries; this does not.
+/// Draws a number from [0, 1) uniformly. std::uniform_real_distribution may differ between libraries; this does not.
 double uniform(std::mt19937_64& random) { return as_fraction(random()); }
 
-/// A uniformly distributed rotation (Shoemake, "Uniform random rotations", Graphics Gems III, 1992).
+/// Draws a uniformly distributed rotation [Shoemake 1992].
 Eigen::Quaterniond random_rotation(std::mt19937_64& random) {
   const double u = uniform(random), v = 2 * std::numbers::pi * uniform(random),
                w = 2 * std::numbers::pi * uniform(random);
@@ -24,14 +24,14 @@ Eigen::Quaterniond random_rotation(std::mt19937_64& random) {
           std::sqrt(u) * std::sin(w)};
 }
 
-/// The equal-area map from height z in [-1, 1] and azimuth in turns.
+/// Maps a height z in [-1, 1] and an azimuth in turns to the sphere, with equal areas.
 Eigen::Vector3d on_sphere(double z, double turns) {
   const double radius = std::sqrt(std::max(0.0, 1 - z * z));
   const double phi = 2 * std::numbers::pi * turns;
   return {radius * std::cos(phi), radius * std::sin(phi), z};
 }
 
-/// The radical inverse of `index` in base 2, in units of 2^-64: its bits in reverse order.
+/// Returns the radical inverse of `index` in base 2, in units of 2^-64: its bits in reverse order.
 std::uint64_t radical_inverse(std::uint64_t index) {
   std::uint64_t inverse = 0;
   for (std::uint64_t bit = 1ull << 63; index != 0; index >>= 1, bit >>= 1)
@@ -39,7 +39,7 @@ std::uint64_t radical_inverse(std::uint64_t index) {
   return inverse;
 }
 
-/// Grows with the azimuth, from 0 to 4 over a turn; unlike atan2 the same on any machine.
+/// Ranks azimuths: grows from 0 to 4 over a turn; unlike atan2 the same on any machine.
 float azimuth_rank(const Eigen::Vector3f& direction) {
   const float sum = std::abs(direction.x()) + std::abs(direction.y());
   if (sum == 0) return 0;
@@ -90,13 +90,13 @@ std::int64_t directions_for_bands(Sampling sampling, int bands) {
 }
 
 std::vector<Eigen::Vector3f> progressive_directions(std::int64_t first, int count, std::uint64_t seed) {
-  // The multiplier: a search digit by digit for lattices whose dual lattice, at all heights of the sphere and all sizes
-  // 2^5 to 2^30, has the least sum of |k|^-3 (the spectrum of caps); of the best two hundred, the one whose prefixes up
-  // to 8,192 have the least spherical cap discrepancy (by Stolarsky's invariance principle, from distances between
-  // pairs).
+  // The multiplier comes from a search, digit by digit, for lattices whose dual lattice has the least sum of |k|^-3
+  // (the spectrum of caps) at all heights of the sphere and all sizes 2^5 to 2^30. Of the best two hundred, it is the
+  // one whose prefixes up to 8,192 have the least spherical cap discrepancy (by Stolarsky's invariance principle, from
+  // distances between pairs).
   constexpr std::uint64_t multiplier = 124'176'601;
-  // Centres the heights: with 2^m lattice heights k / 2^m, a third leaves them a sixth of a step off at any m, where
-  // none would leave half a step.
+  // An offset of a third centres the heights: 2^m lattice heights k / 2^m are then a sixth of a step off centre at any
+  // m; without an offset, half a step.
   constexpr std::uint64_t third = 0x5555'5555'5555'5555;
 
   std::mt19937_64 random(seed);
@@ -115,8 +115,8 @@ void order_coherently(std::vector<Eigen::Vector3f>& directions, int block) {
   const auto begin = directions.begin();
   std::stable_sort(begin, directions.end(), [](const auto& a, const auto& b) { return a.z() > b.z(); });
 
-  // Collars of about the height of a patch between two caps of one patch each; each collar takes the whole number of
-  // patches that keeps the sum of all above it nearest to their area.
+  // The sphere is cut into two caps of one patch each and collars between them, about as high as a patch is wide. Each
+  // collar takes the whole number of patches that keeps the sum of all above it nearest to their area.
   const auto count = static_cast<std::int64_t>(directions.size());
   const std::int64_t patches = (count + block - 1) / block;
   if (patches <= 2) return;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double brightest = 1e6;
 
-/// The shortest text that from_chars reads as the same number.
+/// Writes the shortest text that from_chars reads as the same number.
 template <class Number>
 std::string shortest(Number value) {
   char text[32];
@@ -27,7 +27,7 @@ std::string shortest(Number value) {
   throw WrongUsage(std::string(name) + ": found '" + std::string(found) + "'; expected " + expected);
 }
 
-/// How a kind of light is written: its name, and how many numbers come before the colour.
+/// Syntax of a kind of light: its name, and how many numbers come before the colour.
 struct Syntax {
   LightSpec::Kind kind;
   std::string_view name;
@@ -45,7 +45,7 @@ const Syntax& syntax_of(LightSpec::Kind kind) {
   return *std::find_if(syntaxes.begin(), syntaxes.end(), [&](const Syntax& syntax) { return syntax.kind == kind; });
 }
 
-/// The colour that starts at `first` of a list of numbers.
+/// Reads the colour that starts at `first` of a list of numbers.
 std::array<float, 3> colour_at(std::string_view text, const std::vector<double>& values, std::size_t first) {
   std::array<float, 3> colour;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -126,7 +126,7 @@ std::string to_text(const LightSpec& spec) {
 
 namespace {
 
-/// Sine of half the angle that a ball covers as seen from `distance`; 1 from inside.
+/// Returns the sine of half the angle that a ball covers as seen from `distance`; 1 from inside.
 double sine_of_ball(double radius, double distance) { return distance > radius ? radius / distance : 1; }
 
 }  // namespace

@@ -24,14 +24,14 @@ struct LightSpec {
   Kind kind = Kind::directional;
   double azimuth_degrees = 45;                 ///< 0 is +Z, 90 is +X
   double elevation_degrees = 30;               ///< 90 is +Y
-  double half_angle_degrees = 10;              ///< of a cone
-  std::array<double, 3> position = {0, 0, 0};  ///< of a ball, object units
-  double radius = 1;                           ///< of a ball, object units
+  double half_angle_degrees = 10;              ///< half-angle of a cone
+  std::array<double, 3> position = {0, 0, 0};  ///< centre of a ball, object units
+  double radius = 1;                           ///< radius of a ball, object units
   std::array<float, 3> colour = {1, 1, 1};
   std::array<float, 3> ground = {0, 0, 0};
 };
 
-/// Reads, angles in degrees and the colour white where it is left out,
+/// Reads a light. Angles are in degrees; the colour may be left out, and is white then:
 ///   [directional:]AZIMUTH,ELEVATION[,R,G,B]
 ///   cone:AZIMUTH,ELEVATION,HALF-ANGLE[,R,G,B]
 ///   sphere:X,Y,Z,RADIUS[,R,G,B]
@@ -40,27 +40,27 @@ struct LightSpec {
 /// Azimuths of -360 to 360, elevations of -90 to 90, half-angles of 0 to 180, colours of 0 to 1e6. Throws WrongUsage.
 LightSpec parse_light_spec(std::string_view text);
 
-/// A text that parse_light_spec reads as the same light.
+/// Writes a text that parse_light_spec reads as the same light.
 std::string to_text(const LightSpec& spec);
 
-/// The light in spherical harmonics as it comes in at `viewpoint`, three channels (R, G, B), without a window. Only a
-/// ball depends on the place: its own radiance is the same everywhere, so that its irradiance falls with the square of
-/// the distance, and is such that a white surface which faces it has the radiance `colour` at the origin.
+/// Returns the light in spherical harmonics as it arrives at `viewpoint`, three channels (R, G, B), without a window.
+/// Only a ball depends on the viewpoint: its own radiance is constant, so its irradiance falls with the square of the
+/// distance, and is such that a white surface that faces it has the radiance `colour` at the origin.
 LightCoefficients light_coefficients(const LightSpec& spec, int bands,
                                      const Eigen::Vector3d& viewpoint = Eigen::Vector3d::Zero());
 
-/// What the bands of that light are multiplied with under `window`: the window's weights, scaled so that a white
-/// surface which faces the light has the radiance that LightSpec says, for every window and number of bands
-/// (axial_weights; each light by itself, so that light stays a sum). Ambient light, of band 0 alone, and hemispheres,
-/// which have two bands and do not ring, stay as they are.
+/// Returns the factors of that light's bands under `window`: the window's weights, scaled so that a white surface that
+/// faces the light has the radiance that LightSpec gives, for every window and number of bands (axial_weights; per
+/// light, so that light stays a sum). Ambient light, of band 0 alone, and hemispheres, which have two bands and do not
+/// ring, keep factors of 1.
 std::vector<double> window_weights(const LightSpec& spec, int bands, LightWindow window,
                                    const Eigen::Vector3d& viewpoint = Eigen::Vector3d::Zero());
 
-/// light_coefficients times these.
+/// Returns light_coefficients times window_weights.
 LightCoefficients windowed_light(const LightSpec& spec, int bands, LightWindow window,
                                  const Eigen::Vector3d& viewpoint = Eigen::Vector3d::Zero());
 
-/// The sum of the lights, three channels, each windowed.
+/// Returns the sum of the lights, three channels, each windowed.
 LightCoefficients light_coefficients(std::span<const LightSpec> specs, int bands, LightWindow window);
 
 }  // namespace kiln

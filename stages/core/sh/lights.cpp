@@ -24,7 +24,7 @@ LightCoefficients constant_light(int bands, std::span<const float> radiance) {
 }
 
 std::vector<double> cone_bands(int bands, double half_angle) {
-  // Of a thin cone the closed form has lost its digits; it is as good as a point.
+  // For a thin cone the closed form loses its digits to cancellation; a directional light is accurate enough.
   if (half_angle < 1e-3) return std::vector<double>(static_cast<std::size_t>(bands), std::numbers::pi);
   const double cosine = std::cos(std::min(half_angle, std::numbers::pi));
   const double brightness = cosine > 0 ? 1 / (1 - cosine * cosine) : 1;

@@ -16,13 +16,14 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// The integral of cos(m a), and of sin(m a), over azimuths a from `first` to `last`.
+/// Integrates cos(m a) (the next function sin(m a)) over azimuths a from `first` to `last`.
 double integral_of_cosine(int m, double first, double last) {
   return m == 0 ? last - first : (std::sin(m * last) - std::sin(m * first)) / m;
 }
 double integral_of_sine(int m, double first, double last) { return (std::cos(m * first) - std::cos(m * last)) / m; }
 
-/// Row i: the integrals over the azimuths of column i, of cos(m a) in column m >= 0 and sin(m a) in bands - 1 + m.
+/// Returns, in row i, the integrals over the azimuths of column i: of cos(m a) in column m >= 0, of sin(m a) in column
+/// bands - 1 + m.
 Eigen::MatrixXd azimuth_integrals(int bands, int width) {
   Eigen::MatrixXd integrals(width, 2 * bands - 1);
   for (int i = 0; i < width; ++i) {
@@ -34,7 +35,7 @@ Eigen::MatrixXd azimuth_integrals(int bands, int width) {
   return integrals;
 }
 
-/// The integral over a band of elevations of what Y_lm has of the elevation, by coefficient_index(l, m), m >= 0.
+/// Integrates the elevation-dependent factor of Y_lm over a band of elevations, by coefficient_index(l, m), m >= 0.
 std::vector<double> elevation_integrals(const ShBasis& basis, double lower, double upper) {
   // A polynomial of sines and cosines of degree l + 1: error falls faster than any power once a node stands for a
   // radian of its argument.

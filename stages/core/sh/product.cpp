@@ -30,7 +30,7 @@ ShProduct::ShProduct(int bands) : bands_(bands) {
         double sum = 0;
         for (std::size_t s = 0; s < values.size(); ++s)
           sum += quadrature.weights[s] * values[s][i] * values[s][j] * values[s][k];
-        // Those that symmetry makes zero come out at some 1e-16; the least of the others is above 0.005.
+        // Products that vanish by symmetry come out at some 1e-16; the least of the others is above 0.005.
         if (std::abs(sum) > 1e-10)
           entries_.push_back(
               {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), static_cast<std::uint8_t>(k), sum});
@@ -49,7 +49,7 @@ std::vector<float> ShProduct::operator()(std::span<const float> f, std::span<con
   assert(static_cast<int>(f.size()) == coefficient_count(bands_) && f.size() == g.size());
   std::vector<double> sums(f.size(), 0.0);
   for (const auto& [i, j, k, value] : entries_) {
-    // Each order of three indices once.
+    // Add each order of the three indices once.
     if (i == j && j == k) {
       sums[k] += value * f[i] * g[i];
     } else if (i == j) {

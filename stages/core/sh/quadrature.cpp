@@ -8,7 +8,7 @@ namespace kiln {
 
 namespace {
 
-/// Node `index` of `count` on [-1, 1], by Newton's iteration on the Legendre polynomial.
+/// Computes node `index` of `count` on [-1, 1], by Newton's iteration on the Legendre polynomial.
 LineNode line_node(int index, int count) {
   double z = std::cos(std::numbers::pi * (index + 0.75) / (count + 0.5)), derivative = 1;
   for (int step = 0; step < 100; ++step) {

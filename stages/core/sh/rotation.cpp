@@ -11,7 +11,7 @@ namespace kiln {
 
 namespace {
 
-/// One band's matrix from the band before it; names and signs are those of the paper's tables 1 and 2.
+/// Matrix of one band from that of the band before it; names and signs are those of [Ivanic 1996], tables 1 and 2.
 class Recursion {
  public:
   Recursion(const Eigen::MatrixXd& first, const Eigen::MatrixXd& before, int l)
@@ -23,7 +23,7 @@ class Recursion {
     const double u = std::sqrt((l_ + m) * (l_ - m) / denominator);
     const double v = 0.5 * std::sqrt((m == 0 ? 2 : 1) * (l_ + order - 1.0) * (l_ + order) / denominator);
     const double w = m == 0 ? 0 : 0.5 * std::sqrt((l_ - order - 1.0) * (l_ - order) / denominator);
-    // A factor of zero stands before a term that would read outside the matrix.
+    // Factors of zero stand before terms that would read outside the matrix.
     return (u != 0 ? u * p(0, m, n) : 0) + (m == 0 ? -v : v) * v_term(m, n) - (w != 0 ? w * w_term(m, n) : 0);
   }
 

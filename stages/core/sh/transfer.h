@@ -6,7 +6,7 @@
 
 namespace kiln {
 
-/// Points that receive light: texels of an atlas, vertices, pixels of a picture. Unit normals; one of each per point.
+/// Points that receive light (texels of an atlas, vertices, pixels of a picture) and their unit normals, one per point.
 struct Receivers {
   std::span<const Eigen::Vector3f> positions;
   std::span<const Eigen::Vector3f> normals;
@@ -14,8 +14,8 @@ struct Receivers {
   std::size_t size() const { return positions.size(); }
 };
 
-/// Transfer vectors of many receivers (t_i of the numeric contract), plane after plane: value of coefficient i at
-/// receiver r is values[i * receivers + r].
+/// Transfer vectors of many receivers, plane after plane: coefficient i of receiver r is values[i * receivers + r].
+/// ARCHITECTURE.md, "Contracts", defines the coefficients t_i.
 struct TransferVectors {
   std::size_t receivers = 0;
   int coefficients = 0;
@@ -29,38 +29,38 @@ struct TransferVectors {
   std::span<const float> plane(int coefficient) const { return {values.data() + coefficient * receivers, receivers}; }
 };
 
-/// ||a - b|| / ||b|| over all receivers and coefficients; `b` is the reference. Sums in float64.
+/// Returns ||a - b|| / ||b|| over all receivers and coefficients; `b` is the reference. Sums in float64.
 double relative_l2(const TransferVectors& a, const TransferVectors& b);
 
-/// The same over all channels together.
+/// Returns relative_l2 over all channels together.
 double relative_l2(std::span<const TransferVectors> a, std::span<const TransferVectors> b);
 
-/// Expected relighting error sqrt(sum d'Sd / sum t'St) with d = a - b, t = b, under lighting_prior.
+/// Returns the expected relighting error sqrt(sum d'Sd / sum t'St) with d = a - b, t = b and S = lighting_prior.
 double expected_relighting_error(const TransferVectors& a, const TransferVectors& b);
 
-/// The same over all channels together.
+/// Returns expected_relighting_error over all channels together.
 double expected_relighting_error(std::span<const TransferVectors> a, std::span<const TransferVectors> b);
 
-/// An error of many receivers, measured on some of them.
+/// Error of a population of receivers, estimated from a sample of them.
 struct SampledError {
   double value = 0;
-  /// With a confidence of 95 % all receivers' own is within this of it; 0 where all were measured. It is 1.96 standard
-  /// errors of a ratio of means (Cochran, "Sampling techniques", 1977, 6.4), and needs a few hundred receivers whose
-  /// errors are not those of a handful alone.
+  /// Half-width of the 95 % confidence interval of `value`; 0 where all receivers were measured. It is 1.96 standard
+  /// errors of a ratio of means ([Cochran 1977], section 6.4), and needs a few hundred receivers, no handful of which
+  /// dominates the error.
   double uncertainty = 0;
 };
 
-/// relative_l2 of `population` receivers, of which `a` and `b` have some that are spread evenly.
+/// Estimates relative_l2 of `population` receivers from an evenly spread sample of them, `a` and `b`.
 SampledError sampled_relative_l2(std::span<const TransferVectors> a, std::span<const TransferVectors> b,
                                  std::size_t population);
 
-/// expected_relighting_error of them.
+/// Estimates expected_relighting_error of `population` receivers likewise.
 SampledError sampled_relighting_error(std::span<const TransferVectors> a, std::span<const TransferVectors> b,
                                       std::size_t population);
 
-/// Diagonal of the second moment of lighting coefficients, by band: (l + 1)^-2. Photographed environments have power
-/// spectra that fall about as the square of the frequency (Dror, Willsky and Adelson, "Statistical characterization of
-/// real-world illumination", 2004, section 4); only the ratios between bands matter.
+/// Returns the diagonal of the second moment of lighting coefficients, by band: (l + 1)^-2. The power spectra of
+/// photographed environments fall about as the square of the frequency ([Dror 2004], section 4); only the ratios
+/// between bands matter.
 std::vector<double> lighting_prior(int bands);
 
 }  // namespace kiln

@@ -9,23 +9,23 @@
 
 namespace kiln {
 
-/// Directions are summed block after block of so many: in float32 within a block, exactly across blocks.
+/// Number of directions in a block: directions are summed in float32 within a block, exactly across blocks.
 inline constexpr int block_directions = 32;
 
-/// One block's sum as a multiple of 2^-23. A block holds at most 32 products of a cosine and a basis function, which is
-/// below 2.8 up to band 24, so it fits 31 bits.
+/// Scale of a block's sum as an integer: multiples of 2^-23. A block holds at most 32 products of a cosine and a basis
+/// function, each below 2.8 up to band 24, so a sum fits 31 bits.
 inline constexpr float fixed_point_one = 8388608.f;
 inline std::int32_t to_fixed_point(float block_sum) {
   return static_cast<std::int32_t>(std::lrint(block_sum * fixed_point_one));
 }
 
-/// Sums of B_i(s) V(s) max(0, n.s) over directions s, without the quadrature weight, as fixed-point integers. So any
-/// order of the blocks gives the same bits, on any number of threads, of machines and of runs, and a billion directions
-/// are as exact as one: the patent's reason for its three accumulation buffers, without the buffers.
+/// Sums of B_i(s) V(s) max(0, n.s) over directions s, without the quadrature weight, as fixed-point integers. Blocks
+/// added in any order, on any number of threads, machines and runs, give the same bits, and a billion directions lose
+/// no precision ([US 7,948,490] keeps three accumulation buffers for that).
 struct TransferSums {
   std::size_t receivers = 0;
   int coefficients = 0;
-  std::int64_t directions = 0;       ///< how many were added
+  std::int64_t directions = 0;       ///< number of directions added so far
   std::vector<std::int64_t> values;  ///< plane after plane, as in TransferVectors
 
   TransferSums() = default;
@@ -40,7 +40,7 @@ struct TransferSums {
   /// Adds the sums over other directions for the same receivers.
   void add(const TransferSums& other);
 
-  /// t_i = 4/N times the sums: the integral divided by pi, the N directions being spread evenly.
+  /// Returns t_i = 4/N times the sums: the integral divided by pi, for N evenly spread directions.
   TransferVectors transfer() const;
 };
 

@@ -16,13 +16,13 @@ namespace kiln {
 
 namespace {
 
-/// A function on the sphere whose bands can be weighted anew without evaluating it anew.
+/// Function on the sphere whose bands can be weighted anew without evaluating the basis again.
 class BandedFunction {
  public:
   explicit BandedFunction(std::span<const float> coefficients)
       : coefficients_(coefficients.begin(), coefficients.end()),
         basis_(static_cast<int>(std::lround(std::sqrt(static_cast<double>(coefficients.size()))))) {
-    // A dozen directions for each coefficient: the distance between them is a fifth of the shortest wave.
+    // A dozen directions per coefficient: their spacing is a fifth of the shortest wave.
     const int count = 64 + 12 * basis_.size();
     for (const Eigen::Vector3f& direction : sample_directions(Sampling::fibonacci, count, 1)) {
       directions_.push_back(direction.cast<double>().normalized());
@@ -57,7 +57,7 @@ class BandedFunction {
     for (std::size_t l = 0; l < bands.size(); ++l) sum += window[l] * bands[l];
     return sum;
   }
-  /// Pattern search in the tangent plane.
+  /// Descends to a local minimum, by pattern search in the tangent plane.
   double downhill(Eigen::Vector3d at, double value, std::span<const double> window) const {
     for (double step = 0.5 * spacing_; step > 1e-4 * spacing_; step *= 0.5) {
       const Eigen::Vector3d u = at.unitOrthogonal(), v = at.cross(u);
@@ -76,7 +76,7 @@ class BandedFunction {
   std::vector<double> coefficients_;
   ShBasis basis_;
   std::vector<Eigen::Vector3d> directions_;
-  std::vector<std::vector<double>> bands_of_;  ///< of each direction: what each band adds
+  std::vector<std::vector<double>> bands_of_;  ///< per direction: what each band adds
   double spacing_ = 0, largest_ = 0;
 };
 
@@ -86,7 +86,7 @@ std::vector<double> laplacian_window(int bands, double strength) {
   return window;
 }
 
-/// The least strength, at least `weakest`, at which nothing rings, to a thousandth of it.
+/// Finds the least strength, at least `weakest`, at which nothing rings, to a thousandth of it.
 double least_strength(double weakest, const std::function<bool(double)>& rings) {
   if (!rings(weakest)) return weakest;
   double weak = weakest, strong = std::max(1e-3, weakest);
@@ -98,7 +98,7 @@ double least_strength(double weakest, const std::function<bool(double)>& rings) 
   return strong;
 }
 
-/// Sum over l of terms_l P_l(x).
+/// Returns the sum over l of terms_l P_l(x).
 double legendre_sum(std::span<const double> terms, double x) {
   double sum = 0, before = 0, p = 1;  // P_(l-1) and P_l
   for (std::size_t l = 0; l < terms.size(); ++l) {
@@ -109,9 +109,10 @@ double legendre_sum(std::span<const double> terms, double x) {
   return sum;
 }
 
-/// The least value of a function around an axis: of many places on a meridian, and between the best's neighbours.
+/// Finds the least value of a function around an axis: the least of many places on a meridian, refined between its
+/// neighbours.
 double least_on_meridian(std::span<const double> terms) {
-  const auto places = 32 * terms.size() + 32;  // the shortest wave takes more than 32 of them
+  const auto places = 32 * terms.size() + 32;  // the shortest wave takes more than 32 places
   const double step = std::numbers::pi / static_cast<double>(places);
   const auto value = [&](double angle) { return legendre_sum(terms, std::cos(angle)); };
   double least = value(0), best = 0;
@@ -121,7 +122,7 @@ double least_on_meridian(std::span<const double> terms) {
       best = step * static_cast<double>(k);
     }
   double low = best - step, high = best + step;
-  for (int round = 0; round < 40; ++round) {  // by thirds, to 1e-7 of a step
+  for (int round = 0; round < 40; ++round) {  // thirds, down to 1e-7 of a step
     const double third = (high - low) / 3;
     if (value(low + third) < value(high - third))
       high -= third;
@@ -131,7 +132,7 @@ double least_on_meridian(std::span<const double> terms) {
   return std::min(least, value(0.5 * (low + high)));
 }
 
-/// deringing_window of a light around an axis.
+/// Finds the deringing_window of a light around an axis.
 std::vector<double> axial_deringing_window(std::span<const double> zonal) {
   const int bands = static_cast<int>(zonal.size());
   std::vector<double> terms(zonal.size());
@@ -144,7 +145,7 @@ std::vector<double> axial_deringing_window(std::span<const double> zonal) {
   return laplacian_window(bands, least_strength(0, [&](double strength) { return least(strength) < -tolerance; }));
 }
 
-/// The window of a number of bands; `dering` where it has to be looked for.
+/// Returns the window of a number of bands; `dering` computes the deringing one.
 std::vector<double> chosen_window(LightWindow window, int bands, const std::function<std::vector<double>()>& dering) {
   switch (window) {
     case LightWindow::hann:
