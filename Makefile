@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Kiln's front door. CMake builds the stages, `kiln` runs them on content.
 #
 #   make          build everything into build/release

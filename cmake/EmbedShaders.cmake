@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Writes OUTPUT, a C++ file that holds the text of every shader of INPUTS by its file name.
 set(rows "")
 foreach(input ${INPUTS})

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # make install and make package: programs, the runtime as libraries, shaders, licences.
 include(CMakePackageConfigHelpers)
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 # What every target of the house has in common: C++20, warnings as errors, one folder for executables, ccache.
 
 set(CMAKE_CXX_STANDARD 20)

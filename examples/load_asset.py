@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """load_asset.py FOLDER: relights three texels of a baked folder under two lights, the worked numbers of docs/format.md.
 
 Written from that page alone: version 2, planes in pictures, a constant albedo, one channel. Needs Pillow.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Puts the fragment at the head of its texel's list.
 #include "bake_bundle_lists.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A surface seen along one direction per instance, from the light.
 #include "bake_views.glsl"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What every receiver sees along a batch of directions: of its texel's list the fragment nearest before it.
 //   STEEPEST_SLOPE  largest tangent of the angle between normal and direction that a slope or bias follows
 //   RECEIVER_PLANE  1: fragments are compared with the receiver's tangent plane at the texel's centre

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Fragments of a batch of directions in lists, one per texel of each direction's map (stages/bake/egl/bundle_lists.h).
 const uint END_OF_LIST = 0xffffffffu;
 const uint FACES_LIGHT = 0x80000000u;  // a triangle with that bit turns its front to the light, its back to receivers

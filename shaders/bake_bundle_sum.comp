@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sums what the points of the surface that receivers see send them, over a block of directions: float32 sums that stay in
 // registers, and are added to the totals.
 //   CHUNK   components of a chunk, a multiple of 4

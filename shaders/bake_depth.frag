@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Which triangle each texel of a depth map shows.
 layout(location = 0) out uint triangle;
 

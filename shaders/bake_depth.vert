@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // One layer of the depth maps per instance: an occluder seen along one direction.
 #ifdef HAS_VERTEX_LAYER
 #extension GL_ARB_shader_viewport_layer_array : require

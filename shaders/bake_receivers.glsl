@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Texels of the atlas (or any points) that receive light, and the tiles of them that a pass visits: one per workgroup.
 struct Receiver {
   vec4 position;  // xyz, object space

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A coarse map of each depth map: the least and the greatest depth of every square of CELL x CELL texels.
 //   CELL      texels a side
 //   MIDPOINT  as in bake_weigh.comp

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Projects a block of directions: its float32 sums of weights * basis rows stay in registers, and are added to the totals.
 //   BLOCK   directions of a full block; the weights of those beyond a smaller one are zero
 //   CHUNK   coefficients of a chunk, a multiple of 4

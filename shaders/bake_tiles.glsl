@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Conservative regions: a tile of receivers that is wholly lit or wholly shadowed from a direction, as the coarse maps of
 // bake_regions.comp tell, needs no test of its receivers. Slacks cover whatever a test may add, so that no result changes.
 struct Tile {

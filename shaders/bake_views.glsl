@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The directions of one batch and the frames of their depth maps, as stages/bake/egl/shadow_frame.h has them.
 struct View {
   vec4 row_u;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every receiver against the depth maps of a batch of directions: clamped cosine times visibility
 // (stages/bake/egl/shadow_settings.h says what each option does).
 //   TAPS            1, 2 or 3: so many texels a side are compared

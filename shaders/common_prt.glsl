@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Exit radiance from a baked or a compressed asset under a light: the one place that knows the format.
 //
 // A stack of coefficients. With t_i = min_i + s_i (max_i - min_i), s_i the stored value of plane i (0 to 1) and L_i the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The surface's own reflectance, which no transfer has in it. Stored in sRGB, which the texture unit decodes.
 #ifdef ALBEDO_MAP
 layout(binding = 3) uniform sampler2D albedo_map;

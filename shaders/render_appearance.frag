@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // First pass of deferred shading: writes what shading needs of the nearest surface, without any light. These are
 // PixelFlow's appearance parameters [Lastra 1995].
 layout(location = 3) uniform float asset_number;  // from 1

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How much each incident-light sample point counts at a point of the surface; what common_prt.glsl wants.
 #ifndef PRT_SAMPLES
 #define PRT_SAMPLES 1

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Deferred shading, second pass: light, once for each visible sample of one asset.
 #include "common_prt.glsl"
 #include "render_albedo.glsl"

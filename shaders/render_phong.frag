@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // [Phong 1975]: no light is ever in shadow. Balls light by the inverse square of their distance; light without a
 // direction arrives as irradiance in nine harmonics [Ramamoorthi 2001].
 // NORMAL_MAP: normals of the high mesh, object space, in place of the low mesh's.

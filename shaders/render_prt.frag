@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Textured PRT, plain or compressed.
 #include "common_prt.glsl"
 #include "render_albedo.glsl"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 layout(location = 0) uniform mat4 clip_from_object;
 
 layout(location = 0) in vec3 position_object;

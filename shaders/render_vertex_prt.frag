@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "render_albedo.glsl"
 
 in vec2 surface_uv;

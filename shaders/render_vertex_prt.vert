@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Per-vertex PRT: the dot product with the light at every vertex, four coefficients to a texel of vertex_transfer.
 #include "common_prt.glsl"
 #include "render_contributions.glsl"

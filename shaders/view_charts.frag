@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A colour for each chart, darker where the surface turns away from the eye.
 layout(location = 1) uniform vec3 eye_object;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // How far a sample is covered by an edge of its triangle, in alpha. The distance to an edge is the barycentric coordinate
 // over its slope on the screen.
 layout(location = 1) uniform float half_width_samples;

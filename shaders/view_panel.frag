@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A panel, pixel for pixel, straight alpha.
 layout(location = 0) uniform ivec2 corner;  // its lower left one in the window, pixels
 layout(binding = 0) uniform sampler2D panel;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Samples to the pixels of the finished picture, straight alpha, as tools/render/output/picture.h has it.
 //
 // VIEW_RADIANCE: linear radiance through exposure and tone curve.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Every corner of every triangle, three in a row, for inspection: nothing is shared between triangles.
 layout(location = 0) uniform mat4 clip_from_object;
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The picture in the window, over a quiet backdrop where it is transparent.
 layout(location = 0) uniform vec2 window_pixels;
 layout(binding = 0) uniform sampler2D picture;

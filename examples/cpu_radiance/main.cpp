@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Prints the exit radiance of points of an asset: cpu_radiance FOLDER LIGHT POINT...
 // LIGHT as kiln-render's --light has it ("45,30"); a POINT is a texel, numbered row after row from the bottom, or a
 // vertex.

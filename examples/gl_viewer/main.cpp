@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Shows an asset under a light: gl_viewer FOLDER            in a window; drag turns the asset, with shift the light
 //                               gl_viewer FOLDER --picture FILE.ppm    without one, through EGL
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kiln/asset.h"
 
 #include <string>

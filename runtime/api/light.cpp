@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kiln/light.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kiln/radiance.h"
 
 #include <algorithm>

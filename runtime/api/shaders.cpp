@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kiln/shaders.h"
 
 #include "gpu/shader_table.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "runtime/decode/plane_weights.h"
 
 #include <cmath>

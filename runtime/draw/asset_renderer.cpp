@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "runtime/draw/asset_renderer.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "runtime/draw/frame.h"
 
 #include "gpu/program.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "runtime/draw/scene_renderer.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "runtime/draw/technique.h"
 
 #include "base/errors.h"

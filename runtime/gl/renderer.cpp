@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "kiln/gl/renderer.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "runtime/light/environment.h"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "runtime/light/incident_samples.h"
 
 #include <Eigen/LU>

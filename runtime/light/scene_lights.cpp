@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "runtime/light/scene_lights.h"
 
 #include <algorithm>

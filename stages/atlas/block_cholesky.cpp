@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // [Davis 2005]: the factorisation L D L^T, row by row along the elimination tree; here of 2 x 2 blocks. The order is
 // approximately that of minimum degree.
 #include "atlas/block_cholesky.h"

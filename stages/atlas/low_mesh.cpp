@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "atlas/low_mesh.h"
 
 #include "import/import_mesh.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "atlas/atlas.h"
 #include "atlas/drawing.h"
 #include "atlas/keep_uv.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The search runs over orders in which charts are put down, bottom left first ([Baker 1980]; with turned bitmaps as in
 // [Levy 2002], section 4): simulated annealing at a resolution at which one packing takes less than a millisecond. Its
 // best orders are then placed at the resolution of the texels.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Energy and line search: [Smith 2015]. Reweighted proxies: [Rabinovich 2017].
 #include "atlas/relax.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "compress/clustered_pca.h"
 
 #include <Eigen/SVD>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/command_line.h"
 #include "image/image_file.h"
 #include "import/import_mesh.h"

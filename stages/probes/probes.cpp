@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Transfer from distant light to light that arrives at points in space: the neighbourhood transfer of [Sloan 2002],
 // section 6, by rays that start at the point.
 #include "probes/probes.h"

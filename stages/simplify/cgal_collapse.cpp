@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // CGAL's loop is instantiated once, whatever the cost: CostPolicy stands between them.
 #include "simplify/cgal_collapse.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "simplify/feature_edges.h"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
 // Header for cgal_collapse.cpp alone: it shows CGAL and OpenMesh, whose graph traits must be seen before CGAL's

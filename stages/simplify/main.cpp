@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "import/import_mesh.h"

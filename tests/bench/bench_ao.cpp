@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Ambient occlusion beside another baker's: peers/blender_ao.py runs all of it.
 //
 //   bench_ao export HIGH ATLAS FOLDER     both meshes as OBJ files with their normals, for the other program

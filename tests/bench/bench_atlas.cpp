@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Atlases of meshes, beside those of other tools. Prints Markdown rows.
 //
 //   bench_atlas low_5000.drc low_1000.drc --size 1024 --gutter 4          makes atlases, of both qualities

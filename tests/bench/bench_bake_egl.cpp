@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The EGL bake engine alone, on a bare machine: needs EGL, OpenGL 4.5 and this one executable. A closed, bumpy ball of
 // about 80,000 triangles shadows itself; receivers are points spread over it.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What a bounce costs beside the direct bake of the same backend, over the same directions: CPU seconds, and ratios.
 //
 //   bench_bounces ASSET HIGH [--backend beams embree egl] [--directions N] [--bands N] [--shadow-size N]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The error of transfer in small atlases whose charts have even or signal-aware scales: `bench_density HIGH
 // low.drc...`. Prints Markdown. Both atlases hold the transfer of the high mesh's points that their texels stand for;
 // what bilinear lookups give at points spread over the low mesh is compared with transfer taken right there.

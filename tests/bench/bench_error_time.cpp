@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Error against time: an asset baked by each of a list of settings with each of several numbers of directions, compared
 // with Embree's rays over many more directions from some of the receivers. Prints CSV, one row per bake:
 //   setting                                as `kiln-bake` takes it

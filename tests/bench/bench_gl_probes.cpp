@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The EGL engine against two hand-written probes of what it is made of, in one run, so that the ratio holds on any
 // machine: a depth map per direction, and a compute shader that compares every receiver with a batch of them.
 //   bench_gl_probes [--directions 256] [--asset FOLDER] [--mesh MESH] [--sizes 512 1024] [--repeats 2]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Normal maps beside another baker's: peers/blender_normals.py runs all of it.
 //
 //   bench_normals export HIGH ATLAS FOLDER     both meshes as OBJ files, positions shared, for the other program

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The rays of a bake against a straightforward loop over Embree's streams, in one run, so that the ratio holds on any
 // machine:
 //   bench_rays [--directions 10000] [--threads 2] [--asset FOLDER] [--mesh MESH] [--reference 65536] [--repeats 1]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Every shadow option of the EGL engine against rays over the same directions, so that only visibility differs:
 // relative L2 of the transfer vectors (bands^2 coefficients), in per cent. Receivers are points spread evenly over the
 // mesh.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Simplification beside what else there is: CGAL's edge collapse (Lindstrom-Turk; Garland-Heckbert planes),
 // meshoptimizer's and OpenMesh's quadrics, in one process and on one thread each but for ours. Prints Markdown rows:
 // CPU and wall seconds of the collapse (the mesh is in each library's own form before),

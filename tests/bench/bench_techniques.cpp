@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Measures the time of a frame and the GPU memory of every technique, as in [Chapter 2010], tables 6.1 and 6.2, and of
 // deferred shading where many surfaces lie behind one another; and the error of a few samples of incident light near a
 // mesh. Prints Markdown.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Measures on a machine with a GPU what the programs built elsewhere do there: the EGL bake engine, the techniques of
 # relighting, and bounces. Needs bash, coreutils and the GPU's own driver; libraries that the machine lacks are carried
 # along.

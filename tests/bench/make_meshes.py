@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Writes meshes of kinds that scans seldom are, for benchmarks: make_meshes.py FOLDER
 
 cards.obj   5,000 leaves in a ball, two triangles each, one-sided and open

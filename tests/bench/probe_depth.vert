@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The depth probe of bench_gl_probes: a mesh seen along one direction.
 layout(location = 0) in vec3 position_object;
 uniform mat4 to_map;  // map coordinates and depth, 0 to 1 each

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The shading probe of bench_gl_probes: every receiver against a batch of depth maps, one comparison each; its sums go
 // into one buffer, receiver after receiver.
 //   BATCH          directions

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // run_cases PROGRAMS CASES.json: runs command lines and holds what they do against what the file says.
 //
 // The file: {"setup": [commands], "cases": [{"name", "steps": [step]}]}. Each case gets a folder of its own with

@@ -1,4 +1,5 @@
 #!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
 # test_driver.sh PROGRAMS: what kiln's cases cannot hold: builds that run side by side, are interrupted or killed, names
 # that are no UTF-8, disks that are full, and metrics.cpp's list against the records of a build.
 set -eu

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # A bake that is stopped by a signal goes on with --resume to the same bytes: test_resume.sh PROGRAM_FOLDER. So do shards that are merged.
 set -euo pipefail
 programs=$1

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # One thread and many give the same bytes: test_threads.sh PROGRAM_FOLDER. The whole pipeline, both backends; only the records, which hold
 # timings, may differ.
 set -euo pipefail

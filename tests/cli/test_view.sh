@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # kiln-view in a window of a display that nobody sees (Xvfb): test_view.sh PROGRAM_FOLDER.
 set -euo pipefail
 programs=$1

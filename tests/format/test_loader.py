@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """test_loader.py SOURCES: the loader of examples/ prints the worked numbers of docs/format.md, and refuses what it does not know."""
 import json, pathlib, shutil, subprocess, sys, tempfile
 

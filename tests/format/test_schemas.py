@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
 """test_schemas.py PROGRAMS SOURCES: what a run writes fits docs/schema, and what is broken does not.
 
 Needs python3-jsonschema and python3-yaml. Each broken variant is one change to what was written, and must be refused.

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # Installs Kiln into a scratch prefix and uses it as a stranger would: test_install.sh SOURCE_FOLDER BUILD_FOLDER
 set -eu
 source_folder=$1 build_folder=$2

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The room that reads and writes assets: versions, requirements, faults, and the numbers of docs/format.md.
 #include <array>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the user can ask of an atlas besides how it is cut and packed: its size, its density, uvs to keep; and what
 // becomes of odd triangles.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What cutting and packing stand on: the linear solver of relaxation, and the search for free places in a grid.
 
 #include <Eigen/Dense>

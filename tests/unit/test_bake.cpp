@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Transfer against closed forms, and the two backends against each other.
 #include <Eigen/Geometry>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Bounced light against an independent path tracer.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>

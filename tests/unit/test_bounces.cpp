@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Bounced light against closed forms, and the ways of gathering it against each other.
 #include <Eigen/Geometry>
 #include <cmath>

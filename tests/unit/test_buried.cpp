@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Points inside other parts of a mesh, against solids whose inside is known, and texels that are buried there.
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include <draco/compression/encode.h>
 #include <draco/point_cloud/point_cloud_builder.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The driver's own logic: the pipeline file, the stages' commands, the Makefile's quoting. What make makes of it is in
 // tests/cli.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the driver keeps between builds: what a stage read and made, by content; and what it tells people.
 #include <fcntl.h>
 #include <fstream>

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
 # The house keeps its arrows: test_house.sh SOURCE_FOLDER BENCH_BAKE_EGL
 set -u
 source_folder=$1 engine_program=$2
@@ -24,6 +25,15 @@ grep -rnE '^#include' "$source_folder/runtime/include" | grep -vE '#include (<[a
 # The EGL engine can be carried to a bare machine.
 ldd "$engine_program" | grep -E 'OpenImageIO|embree|draco|OpenMesh|tbb|gmp|fmt|xxhash' && fault "the EGL engine links more than EGL, GL and Eigen"
 ldd "$engine_program" | grep -q EGL || fault "$engine_program does not look like the EGL engine"
+
+# Every source file says its licence; what the runtime is made of is not under the GPL.
+licence() { head -2 "$1" | grep -o 'SPDX-License-Identifier: .*' | cut -d' ' -f2; }
+while IFS= read -r file; do
+  [ -n "$(licence "$file")" ] || fault "$file does not say its licence"
+done < <(find "$source_folder/stages" "$source_folder/runtime" "$source_folder/tools" "$source_folder/examples" "$source_folder/shaders" "$source_folder/tests" \( -name '*.cpp' -o -name '*.h' -o -name '*.inc' -o -name '*.glsl' -o -name '*.comp' -o -name '*.vert' -o -name '*.frag' -o -name '*.py' -o -name '*.sh' -o -name CMakeLists.txt \))
+while IFS= read -r file; do
+  [ "$(licence "$file")" = MIT ] || fault "$file is part of the runtime and not under the MIT licence"
+done < <(find "$source_folder/runtime" "$source_folder/examples" "$source_folder/shaders" -type f \( -name '*.cpp' -o -name '*.h' -o -name '*.glsl' -o -name '*.frag' -o -name '*.py' \))
 
 lines() { wc -l < "$1"; }
 while IFS= read -r file; do

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // However a bake is cut (slabs, shards, checkpoints), its bits are the same; and it takes as many directions as its
 // error needs.
 #include <filesystem>

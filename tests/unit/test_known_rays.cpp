@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What is kept of rays: it is what searching again finds, and whatever is kept, or not, sums have the same bits.
 #include <algorithm>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Probes in space: matrices against closed forms, what is inside, the files, and what a renderer asks of them.
 #include <cmath>
 #include <fstream>

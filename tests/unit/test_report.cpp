@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // What the report computes by itself: budgets, pictures, the reference picture, and the text around them.
 #include <cmath>
 #include <filesystem>

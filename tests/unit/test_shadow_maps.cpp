@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The options of depth maps (shadow_settings.h), each on scenes whose truth is known.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Shapes that fall apart easily: thin walls, specks, slivers, parts far away. All of it is generated.
 #include <algorithm>
 #include <cmath>

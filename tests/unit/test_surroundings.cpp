@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Neighbours and the ground around an asset: where they stand in its object space, and what they shadow.
 #include <cmath>
 #include <fstream>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Bakes per vertex: what a Draco file keeps, where vertices stand, and transfer through file and back.
 #include <cmath>
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "lights/light_file.h"
 
 #include "asset/fields.h"

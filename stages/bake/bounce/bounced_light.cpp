@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/bounce/bounced_light.h"
 
 #include "bake/engines/engines.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Transfer bounces as radiance does, because it is linear in the light (Sloan, Kautz and Snyder, "Precomputed radiance
 // transfer for real-time rendering in dynamic, low-frequency lighting environments", 2002, section 5). Gathered at
 // points of the surface bounce after bounce, and at the receivers once: a final gather, as of radiosity (Lischinski,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Directions outermost, one depth map each, all texels shaded against it: Sloan, Snyder and Lake, US patent 7,948,490.
 // Where the patent alternates between buffers because hardware of its day could not blend into float targets, sums of a
 // block of directions stay in registers here and the totals are integers: exact, and read and written once per block.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/egl/shadow_frame.h"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/engines/beam_engine.h"
 
 #include "sh/basis.h"

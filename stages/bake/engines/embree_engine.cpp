@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/engines/embree_engine.h"
 
 #include "raycast/ray_transfer.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/engines/engines.h"
 
 #include "bake/bounce/ray_gather_engine.h"

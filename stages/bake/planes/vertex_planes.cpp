@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/planes/vertex_planes.h"
 
 #include <algorithm>

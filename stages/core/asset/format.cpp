@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "asset/format.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "asset/prt_asset.h"
 
 #include <algorithm>

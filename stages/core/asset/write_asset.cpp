@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "asset/write_asset.h"
 
 #include <algorithm>

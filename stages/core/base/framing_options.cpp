@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "base/framing_options.h"
 
 #include <vector>

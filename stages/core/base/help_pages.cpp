@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "base/help_pages.h"
 
 #include <CLI/CLI.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #pragma once
 
 // This header has no .cpp file, so that rooms which link nothing may use it.

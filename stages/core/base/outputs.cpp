@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "base/outputs.h"
 
 #include <cerrno>

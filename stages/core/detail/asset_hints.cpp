@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "detail/asset_hints.h"
 
 #include <algorithm>

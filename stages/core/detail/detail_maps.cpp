@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "detail/detail_maps.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>

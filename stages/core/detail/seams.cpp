@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "detail/seams.h"
 
 #include <Eigen/Geometry>

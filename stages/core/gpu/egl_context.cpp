@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "gpu/egl_context.h"
 
 #include <epoxy/gl.h>

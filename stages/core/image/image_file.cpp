@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "image/image_file.h"
 
 #include <OpenImageIO/filesystem.h>

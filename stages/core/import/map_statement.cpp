@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The format: Alias|Wavefront, "Advanced Visualizer Manual", appendix B2, "Object material files (.MTL)", version 4.2,
 // "Options for texture map statements". Options precede the name there; exporters also write them after it.
 #include "import/map_statement.h"

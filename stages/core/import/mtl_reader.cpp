@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The format: Alias|Wavefront, "Advanced Visualizer Manual", appendix B2, "Object material files (.MTL)", version 4.2.
 // Ke and norm are of Clara.io's "extension to MTL for physically based rendering".
 #include "import/mtl_reader.h"

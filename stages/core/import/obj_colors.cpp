@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // ZBrush describes its comments in the files that it writes: "The following MRGB block contains ZBrush Vertex Color
 // (Polypaint) and masking output as 4 hexadecimal values per vertex. The vertex color format is MMRRGGBB with up to 64
 // entries per MRGB line." Colours after coordinates: [Bourke 2020].

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The format: Alias|Wavefront, "Advanced Visualizer Manual", appendix B1, "Object files (.obj)", version 3.0. Colours
 // of vertices, which it lacks: obj_colors.cpp.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Colours of OFF files after the Geomview manual, "OFF Files" (geomview.org/docs/html/OFF.html).
 
 #include "import/off_colors.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The header of OFF files after the Geomview manual, "OFF Files" (geomview.org/docs/html/OFF.html). Files of ModelNet40
 // have the first number stuck to the keyword, others leave out the number of edges or the keyword.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // OFF files, text and binary, after the Geomview manual, "OFF Files" (geomview.org/docs/html/OFF.html); colours after
 // the coordinates of vertices without the keyword COFF after MeshLab (vcglib, wrap/io_trimesh/import_off.h).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Colours of PLY files: the format [Turk 1994] has properties red, green and blue of type uchar. Others write floats of
 // 0 to 1 (VTK, Blender), doubles of 0 to 1 (Open3D), unsigned shorts, or 0 to 255 in any type.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The header of PLY files after [Turk 1994]; comments "TextureFile" after MeshLab (vcglib,
 // wrap/io_trimesh/import_ply.h).
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // PLY files, the meaning of elements and properties: [Turk 1994]; strips of triangles after the Stanford 3D Scanning
 // Repository's files; texture coordinates of corners and numbers of textures after MeshLab (vcglib,
 // wrap/io_trimesh/import_ply.h).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // The data of PLY files after [Turk 1994].
 
 #include "import/ply_rows.h"

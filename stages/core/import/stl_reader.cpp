@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // STL files, ASCII and binary, after [3D Systems 1989]; colours in the attribute bytes after Materialise Magics and
 // VisCAM/SolidView (en.wikipedia.org/wiki/STL_(file_format)#Color_in_binary). Normals of facets only repeat the winding
 // and are ignored.

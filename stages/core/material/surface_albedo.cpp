@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "material/surface_albedo.h"
 
 #include <Eigen/Geometry>

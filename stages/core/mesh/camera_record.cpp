@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mesh/camera_record.h"
 
 namespace kiln {

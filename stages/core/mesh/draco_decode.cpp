@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mesh/draco_decode.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mesh/draco_file.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mesh/hard_edges.h"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mesh/mesh_components.h"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mesh/mesh_distance.h"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // Orientation: CGAL, "Polygon Mesh Processing", orient_polygon_soup. Taking sheets apart: [Gueziec 2001], with local
 // cuts and stitches.
 #include "mesh/mesh_repair.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mesh/morton_order.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mesh/nearest_surface.h"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mesh/placement.h"
 
 #include <cmath>

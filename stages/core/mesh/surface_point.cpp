@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mesh/surface_point.h"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mesh/tangent_space.h"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mesh/triangle_mesh.h"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mesh/triangle_point.h"
 
 namespace kiln {

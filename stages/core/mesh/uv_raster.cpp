@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "mesh/uv_raster.h"
 
 #include <algorithm>

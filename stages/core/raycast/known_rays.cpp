@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #include "raycast/known_rays.h"
 
 namespace kiln {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
 // One copy of a function for each width of vectors that x86-64 has, chosen when the program starts; the bits are the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "sh/basis.h"
 
 #include <cassert>

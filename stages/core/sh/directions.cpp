@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "sh/directions.h"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "sh/light_spec.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "sh/ray_offset.h"
 
 #include <algorithm>

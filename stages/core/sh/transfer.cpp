@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "sh/transfer.h"
 
 #include <cassert>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "sh/transfer_sums.h"
 
 #include <cassert>

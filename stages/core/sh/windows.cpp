@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 #include "sh/windows.h"
 
 #include <Eigen/Geometry>

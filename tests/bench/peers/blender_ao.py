@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's selected-to-active bake of ambient occlusion beside kiln-bake, same atlas and size; prints Markdown.
 
     python3 tests/bench/peers/blender_ao.py BENCH_AO KILN_BAKE HIGH ASSET [--samples 16 64 256] [--directions 64 256 1024]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's Decimate modifier (collapse) beside kiln-simplify; prints Markdown rows.
 
     python3 tests/bench/peers/blender_decimate.py BENCH_SIMPLIFY HIGH.obj [--faces 5000 1000 500] [--repeat 3]

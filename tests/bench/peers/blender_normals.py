@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's selected-to-active normal bake beside kiln-normals, same atlas, size and samples; prints Markdown rows.
 
     python3 tests/bench/peers/blender_normals.py BENCH_NORMALS HIGH ATLAS.drc [--size 512] [--samples 1 64]

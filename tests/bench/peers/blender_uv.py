@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """Blender's Smart UV Project beside kiln-atlas, on the same low meshes; prints Markdown rows.
 
     python3 tests/bench/peers/blender_uv.py BENCH_ATLAS LOW.obj... [--size 1024] [--gutter 4] [--repeat 3]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
 """MeshLab's quadric edge collapse beside kiln-simplify; prints Markdown rows.
 
     xvfb-run -a python3 tests/bench/peers/meshlab_decimate.py BENCH_SIMPLIFY HIGH.obj [--faces 5000 1000 500]

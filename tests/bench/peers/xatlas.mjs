@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
 // xatlas beside kiln-atlas: unwraps an OBJ file of triangles and writes it with uvs, for `bench_atlas --measure`.
 //
 //   npm install watlas && node xatlas.mjs IN.obj OUT.obj [--size 1024] [--padding 4] [--brute-force]
