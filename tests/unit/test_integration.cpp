@@ -197,7 +197,7 @@ TEST_P(Cuts, BouncesHaveTheSameBitsWhateverIsKeptOfRays) {
     EXPECT_LT(resumed.bounces->kept_bytes, kept.bounces->kept_bytes);
   }
 
-  // Of shards that are merged, nothing is.
+  // Merged shards know nothing of their rays.
   std::vector<fs::path> parts;
   for (int index : {1, 2}) {
     parts.push_back(folder / ("bounced" + std::to_string(index)));

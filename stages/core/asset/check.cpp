@@ -135,7 +135,7 @@ CheckedFolder check_probes(const fs::path& folder) {
   return {folder, probes_format, version, faults.found()};
 }
 
-/// Of a folder that is described.
+/// Checks one folder, by whichever description it has.
 CheckedFolder check_one(const fs::path& folder) {
   if (is_there(folder / probes_name)) return check_probes(folder);
   CheckedFolder checked = check_description(description_file(folder));

@@ -26,7 +26,7 @@ struct BeamReceivers {
   BeamReceivers() = default;
   /// Rays start `ray_offset` (object units) off the receiver along its normal.
   BeamReceivers(const Receivers& receivers, float ray_offset);
-  /// The same, of receivers whose packet_order is known.
+  /// Packets of receivers whose packet_order is known.
   BeamReceivers(const Receivers& receivers, float ray_offset, std::vector<std::uint32_t> in_packets);
 };
 

@@ -72,7 +72,7 @@ class FirstHits {
     std::uint32_t direction;
     std::uint32_t lanes;
   };
-  /// Of one packet, directions ascending.
+  /// Hits of one packet, directions ascending.
   struct Packet {
     std::vector<Rays> rays;
     std::vector<Hit> hits;
