@@ -41,7 +41,6 @@ int main(int argc, char** argv) {
     const AssetFolder asset = load_asset_folder(folder, compressed);
     if (high_file.empty()) high_file = recorded_high_mesh(asset);
     std::optional<EarlierReport> earlier = find_earlier(page_file, asset, command.result(0, Json::object()));
-
     // Run, and save.
     OutputSet outputs(folder_of(page_file));
     const std::string page_name = page_file.filename().string();
