@@ -5,6 +5,7 @@
 #include <string>
 
 #include "api/report_errors.h"
+#include "asset/format.h"
 #include "runtime/light/scene_lights.h"
 #include "sh/light_spec.h"
 #include "sh/lights.h"
@@ -12,8 +13,6 @@
 namespace kiln::runtime {
 
 namespace {
-
-constexpr int most_bands = 24;
 
 LightWindow window_of(Window window) {
   switch (window) {
@@ -108,15 +107,15 @@ Light& Light::latitude_longitude(int width, int height, std::span<const float> p
     if (!(value >= 0) || !std::isfinite(value))
       throw Error("Light::latitude_longitude: found " + std::to_string(value) +
                   "; expected radiance that is finite and not negative");
-  const LightCoefficients light = latitude_longitude_light(most_bands, width, height, 3, pixels);
+  const LightCoefficients light = latitude_longitude_light(most_asset_bands, width, height, 3, pixels);
   lights_->environment = lights_->environment ? add_lights(*lights_->environment, light) : light;
   return *this;
 }
 
 std::vector<float> Light::coefficients(int bands, const std::array<double, 3>& viewpoint) const {
-  if (bands < 1 || bands > most_bands)
+  if (bands < 1 || bands > most_asset_bands)
     throw Error("Light::coefficients: found " + std::to_string(bands) + " bands; expected 1 to " +
-                std::to_string(most_bands));
+                std::to_string(most_asset_bands));
   return report_errors([&] {
     const LightCoefficients light = lights_->incident(bands, {viewpoint[0], viewpoint[1], viewpoint[2]});
     std::vector<float> coefficients;
