@@ -44,7 +44,7 @@ class Search {
     const CompressCandidate eight = plain(8);
     result_.plain = eight;
     if (asset_.bits == 8) result_.plain.error = rounding_error();
-    result_.target_error = target_error(settings_).value_or(result_.plain.error);
+    result_.target_error = settings_.max_error.value_or(result_.plain.error);
     if (settings_.components > source_.length())
       throw WrongUsage(fmt::format("pca: found {}; expected at most {}, the length of a transfer vector",
                                    settings_.components, source_.length()));
@@ -268,7 +268,7 @@ class Search {
   /// Where the settings fix the model and leave the error open, the error is what the model leaves, and a quarter more
   /// for rounding.
   void raise_target(double left) {
-    if (is_fixed() && settings_.max_error == "auto")
+    if (is_fixed() && !settings_.max_error)
       result_.target_error = std::max(result_.target_error, rounding_allowance * left);
   }
 
@@ -371,7 +371,7 @@ class Search {
     throw WrongUsage(
         fmt::format("max-error: found {}; expected at least {:.3g}, which --clusters and --pca as they are "
                     "leave; allow more error, clusters or components",
-                    settings_.max_error, *least_error_ / reach));
+                    settings_.max_error ? numbers_text({*settings_.max_error}) : "auto", *least_error_ / reach));
   }
 
   /// Lets the cheapest candidate settle, where it is of clusters; keeps it as it was where that saves nothing.

@@ -13,12 +13,9 @@ enum class ColorEncoding { srgb, linear };
 
 /// Where the reflectance of a mesh's surface comes from.
 struct MaterialSettings {
-  std::string albedo = "auto";  ///< auto: what the mesh file says; else one number or R,G,B, linear, 0 to 1
-  std::string texture = {};     ///< a picture looked up with the mesh's uvs, in place of its own materials
+  std::optional<std::array<float, 3>> albedo = {};  ///< linear, 0 to 1; nothing: what the mesh file says
+  std::string texture = {};  ///< a picture looked up with the mesh's uvs, in place of its own materials
   ColorEncoding encoding = ColorEncoding::srgb;  ///< of vertex colours, Kd and pictures of integers
-
-  /// The linear colour that `albedo` gives; nothing for auto. Throws WrongUsage for other text.
-  std::optional<std::array<float, 3>> constant() const;
 };
 
 /// Adds `albedo`, `albedo-texture` and `albedo-encoding` to a stage's options.

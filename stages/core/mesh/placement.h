@@ -30,6 +30,9 @@ struct Placement {
 /// towards +X), and its scale. Throws WrongUsage, which calls the value `name`.
 Placement parse_placement(std::string_view name, std::string_view text);
 
+/// A turn about +Y, which turns +Z towards +X.
+Eigen::Matrix3d turn_about_y(double degrees);
+
 /// The box around a placed box.
 BoundingBox placed_box(const BoundingBox& box, const Placement& placement);
 

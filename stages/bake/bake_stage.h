@@ -1,0 +1,10 @@
+#pragma once
+
+#include "base/stage_info.h"
+
+namespace kiln {
+
+/// The description of the bake stage.
+const StageInfo& bake_stage();
+
+}  // namespace kiln

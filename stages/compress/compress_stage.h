@@ -1,0 +1,10 @@
+#pragma once
+
+#include "base/stage_info.h"
+
+namespace kiln {
+
+/// The description of the compress stage.
+const StageInfo& compress_stage();
+
+}  // namespace kiln

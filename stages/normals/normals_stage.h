@@ -1,0 +1,10 @@
+#pragma once
+
+#include "base/stage_info.h"
+
+namespace kiln {
+
+/// The description of the normals stage.
+const StageInfo& normals_stage();
+
+}  // namespace kiln

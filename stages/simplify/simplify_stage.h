@@ -1,0 +1,10 @@
+#pragma once
+
+#include "base/stage_info.h"
+
+namespace kiln {
+
+/// The description of the simplify stage.
+const StageInfo& simplify_stage();
+
+}  // namespace kiln
