@@ -171,7 +171,7 @@ assets:
   // The mesh is read as the first stage reads it, but for what the stage says itself.
   EXPECT_EQ(grid.command,
             (std::vector<std::string>{"kiln-probes", "a.obj", "-o", "out/grid/probes/", "--grid", "2x2x2", "--bands",
-                                      "3", "--albedo", "0.5", "--up", "-y", "--fill-holes", "4"}));
+                                      "3", "--albedo", "0.5", "--up=-y", "--fill-holes", "4"}));
   EXPECT_EQ(grid.inputs, std::vector<fs::path>{"a.obj"});
   EXPECT_EQ(value_after(run_of(rules, "grid", "report").command, "--probes"), "out/grid/probes/");
   EXPECT_TRUE(contains(run_of(rules, "grid", "report").inputs, "out/grid/probes/probes.json"));
