@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "base/asset_layout.h"
 #include "base/errors.h"
 #include "base/process.h"
 #include "base/stopwatch.h"
@@ -196,7 +197,7 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
 
   // Draw the high mesh by rays, from the very camera that kiln-render used.
   const Stopwatch reference_watch;
-  const TriangleMesh atlas = load_atlas(asset.prt() / "atlas.drc");
+  const TriangleMesh atlas = load_atlas(asset.prt() / layout::atlas_mesh);
   const ImportSettings how = import_settings_of(asset.record("simplify").value("settings", Json::object()));
   const ImportedMesh imported = import_mesh(high_file, how, atlas.frame);  // as in the stages before
   const TriangleMesh& high = imported.mesh;
