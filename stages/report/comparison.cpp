@@ -54,8 +54,10 @@ TriangleMesh surroundings_of(const AssetFolder& asset, const TriangleMesh& high)
   const Json& bake = asset.record("bake");
   const Json settings = bake.value("settings", Json::object());
   Surroundings surroundings;
-  surroundings.place = settings.value("place", surroundings.place);
-  surroundings.ground = settings.value("ground", surroundings.ground);
+  OptionSet options;
+  add_surroundings_options(options, surroundings);
+  for (const Option& option : options.options())
+    if (settings.contains(option.name)) option.set(settings.at(option.name).get<std::string>());
   surroundings.neighbours = bake.value("neighbours", surroundings.neighbours);
   TriangleMesh all;
   for (const PlacedMesh& placed : load_surroundings(surroundings, bounding_box(high), {}, false, high.frame)) {
