@@ -3,6 +3,7 @@
 #include "atlas/drawing.h"
 #include "atlas/keep_uv.h"
 #include "atlas/low_mesh.h"
+#include "base/asset_layout.h"
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "detail/asset_hints.h"
@@ -52,7 +53,7 @@ int main(int argc, char** argv) {
       throw BadInput(low_file.string(),
                      "is so thin that its atlas of " + result.size.text() + " texels covers the centre of none",
                      "charts wider than a texel", "give a larger --size");
-    write_png(outputs.add("atlas.png"), draw_atlas(written.mesh, result.size, settings.gutter));
+    write_png(outputs.add(layout::atlas_picture), draw_atlas(written.mesh, result.size, settings.gutter));
     Json metrics = written.to_json();
     metrics.update(result.to_json());
     command.finish(outputs, command.result(result.seconds, metrics));

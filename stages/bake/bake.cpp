@@ -176,13 +176,13 @@ BakeResult merge_shards(const std::vector<fs::path>& folders, const TexelReceive
   // Step 1: the first shard says how many directions there are, and who integrated them.
   const Json first = read_sums(folders.front() / slab_name(0)).key;
   BakeSettings merged = settings;
-  if (parse_error_target(settings.max_error).wanted) {
+  if (settings.max_error.wanted) {
     merged.sampling = Sampling::progressive;
     merged.directions = first.value("directions", 1);
   }
   if (settings.backend == BakeBackend::automatic) bake_options(merged).find("backend")->set(first.value("backend", ""));
   const std::string renderer = first.value("renderer", "");
-  merged.max_error = "none";
+  merged.max_error = {};
   RayMemory memory(bounce_memory_share(settings));
   Integration integration(receivers.view(), occluders, merged, seed, threads, progress);
 
@@ -237,7 +237,7 @@ BakeVerification verify(const BakeResult& result, const std::vector<TransferVect
                                                                          : BakeBackend::egl;
   BakeSettings other_settings = settings;
   other_settings.backend = other;
-  other_settings.max_error = "none";
+  other_settings.max_error = {};
   other_settings.adaptive = 0;
   other_settings.directions = result.directions;
   other_settings.sampling = result.sampling;

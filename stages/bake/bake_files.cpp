@@ -128,7 +128,7 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
                           {"vertices_facing_away", vertices.facing_away}};
   if (has_albedo_within(settings))
     scene.albedo = PrtAlbedo::of_transfer();
-  else if (const auto given = settings.material.constant())
+  else if (const auto given = settings.material.albedo)
     scene.albedo = PrtAlbedo::of_constant({(*given)[0], (*given)[1], (*given)[2]});
   return scene;
 }
@@ -149,7 +149,7 @@ Json describe_adaptive(const AdaptiveReport& report, int directions) {
 
 /// What ranges.json is to say of the reflectance: that of the settings, else what the normals stage found.
 PrtAlbedo shipped_albedo(const DetailMaps& detail, const MaterialSettings& material) {
-  const auto given = material.constant();
+  const auto given = material.albedo;
   if (given) return PrtAlbedo::of_constant({(*given)[0], (*given)[1], (*given)[2]});
   if (!detail.albedo.values().empty()) return PrtAlbedo::of_picture(albedo_map_name);
   return detail.albedo_known ? PrtAlbedo::of_constant(detail.constant_albedo) : PrtAlbedo();
@@ -207,7 +207,7 @@ void BakeScene::add_warnings(const std::vector<std::string>& further) {
 }
 
 std::vector<std::string> direction_warnings(const BakeSettings& settings) {
-  const bool by_error = settings.max_error != "none";  // of progressive directions as many as it takes
+  const bool by_error = settings.max_error.wanted;  // of progressive directions as many as it takes
   const int most = by_error ? settings.max_directions : settings.directions;
   const std::int64_t needed =
       directions_for_bands(by_error ? Sampling::progressive : settings.sampling, settings.bands);
@@ -252,7 +252,7 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
   if (settings.receiver == BakeReceiver::high && !paths.occluders.empty())
     scene.high_area = surface_area(occluders.front());
   set_aside_buried(paths, settings, scene);
-  if (settings.bake_albedo && detail && !settings.material.constant())
+  if (settings.bake_albedo && detail && !settings.material.albedo)
     take_albedos(scene.receivers, *detail);
   else if (settings.bake_albedo)
     take_albedos(scene.receivers, scene.occluders);

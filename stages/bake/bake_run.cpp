@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "base/asset_layout.h"
 #include "base/errors.h"
 
 namespace kiln {
@@ -15,7 +16,7 @@ namespace {
 fs::path checkpoint_folder(const BakePaths& paths) {
   fs::path output = paths.output.lexically_normal();
   if (!output.has_filename()) output = output.parent_path();  // "prt/"
-  return output.string() + ".checkpoint";
+  return layout::checkpoint_folder(output);
 }
 
 }  // namespace

@@ -15,17 +15,23 @@ void add_bounce_options(OptionSet& options, BakeSettings& settings) {
                        "How often light bounces off the occluders; auto: until the next bounce adds less than what "
                        "--bits costs",
                        [](const std::string& text) { parse_bounces(text); });
-  add_material_options(options, settings.material);
-  add_import_options(options, settings.import);
-  options
+  options.affects(Affects::storing);
+  OptionSet material, import;
+  add_material_options(material, settings.material);
+  add_import_options(import, settings.import);
+  options.append(material, Affects::storing)
+      .append(import, Affects::sums)
       .toggle("bake-albedo", settings.bake_albedo,
               "Puts the receivers' albedo in the stored transfer, in place of leaving it to the renderer")
+      .affects(Affects::storing)
       .number("bounce-edge", settings.bounce_edge, 1e-4, 1,
               "Light bounces off a surface whose longer edges are cut: the longest, a fraction of the occluders' "
               "diagonal")
+      .affects(Affects::storing)
       .integer("bounce-memory", settings.bounce_memory, 0, 1'000'000,
                "MB that may be kept of rays for bounces to use again, half of it for the receivers and half for the "
-               "surface; with less, more is searched again, and the result is the same");
+               "surface; with less, more is searched again, and the result is the same")
+      .affects(Affects::storing);
 }
 
 /// How the EGL engine decides visibility; shadow_settings.h has what each means.
@@ -67,6 +73,10 @@ void add_shadow_options(OptionSet& options, BakeSettings& settings) {
       .toggle("count-ambiguous", shadows.count_ambiguous, "Count those even where rays do not decide them (egl)");
 }
 
+std::string error_text(const ErrorTarget& target) {
+  return !target.wanted ? "none" : target.floor ? "auto" : numbers_text({target.error});
+}
+
 const std::vector<std::pair<std::string, BakeBackend>> backend_words = {{"auto", BakeBackend::automatic},
                                                                         {"egl", BakeBackend::egl},
                                                                         {"beams", BakeBackend::beams},
@@ -84,60 +94,99 @@ BounceTarget parse_bounces(const std::string& text) {
   return {.automatic = false, .count = count};
 }
 
+ErrorTarget parse_error_target(const std::string& text) {
+  if (text == "none") return {};
+  if (text == "auto") return {.wanted = true, .floor = true, .error = 0};
+  double error = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), error);
+  if (failure != std::errc{} || end != text.data() + text.size() || !(error > 0 && error < 1))
+    throw WrongUsage("max-error: found '" + text + "'; expected none, auto or a number above 0 and below 1");
+  return {.wanted = true, .floor = false, .error = error};
+}
+
 std::string backend_name(BakeBackend backend) {
   for (const auto& [name, value] : backend_words)
     if (value == backend) return name;
   return {};
 }
 
-OptionSet bake_options(BakeSettings& settings) {
-  OptionSet options;
+namespace {
+
+/// Directions, engine, receivers, and how coefficients are stored.
+void add_main_options(OptionSet& options, BakeSettings& settings) {
   options.integer("bands", settings.bands, 1, 24, "Bands of spherical harmonics; n bands have n*n coefficients")
+      .affects(Affects::sums)
       .integer("directions", settings.directions, 1, 100'000'000, "Directions that the transfer is integrated over")
+      .affects(Affects::plan)
       .choice("sampling", settings.sampling,
               {{"fibonacci", Sampling::fibonacci},
                {"progressive", Sampling::progressive},
                {"stratified", Sampling::stratified}},
               "How the directions are spread")
-      .text(
-          "max-error", settings.max_error,
+      .affects(Affects::sums)
+      .typed<ErrorTarget>(
+          "max-error", settings.max_error, "none, auto or a number above 0 and below 1",
           "Takes as many directions as bring the estimated error of integration under this: a relative L2 of transfer "
-          "vectors, or auto for what --bits costs; the directions are then progressive ones")
+          "vectors, or auto for what --bits costs; the directions are then progressive ones",
+          parse_error_target, error_text)
+      .affects(Affects::plan)
       .integer("max-directions", settings.max_directions, 64, 100'000'000, "The most directions that --max-error takes")
+      .affects(Affects::plan)
       .number("adaptive", settings.adaptive, 0, 0.5,
               "Bakes some texels and interpolates others where that costs no more than this, a relative L2 of transfer "
               "vectors as texels held out say; 0 bakes every texel")
+      .affects(Affects::sums)
       .choice("backend", settings.backend, backend_words,
               "Shadows from depth maps on the GPU, from beams of rays on the CPU, or ray by ray from Embree, the "
               "reference; auto: egl if EGL has a GPU, else beams, but embree below 192 directions")
+      .affects(Affects::plan)
       .choice(
           "receiver", settings.receiver, {{"high", BakeReceiver::high}, {"low", BakeReceiver::low}},
           "Which surface receives light: the high mesh's point of a texel (needs --detail) or of a vertex (the closest "
           "of the first --occluder), or the low mesh's")
+      .affects(Affects::sums)
       .toggle("per-vertex", settings.per_vertex, "Bake into the vertices of any mesh: no atlas, no --detail, no --size")
+      .affects(Affects::sums)
       .integer("bits", settings.bits, 8, 16, "Bits of a stored coefficient, 8 or 16")
+      .affects(Affects::storing)
       .choice(
           "buried", settings.buried, {{"fill", BuriedChoice::fill}, {"keep", BuriedChoice::keep}},
           "Fills texels that stand inside another part of the occluders from those beside them, or bakes them, black "
           "as they are; subsurface always keeps them")
+      .affects(Affects::sums)
       .choice("seams", settings.seams, {{"equalise", SeamChoice::equalise}, {"keep", SeamChoice::keep}},
               "Changes texels near the atlas' seams so that lookups on both sides agree, or keeps them")
+      .affects(Affects::storing)
       .extent("size", settings.size, 0, 16384,
               "Width and height in texels where no --detail says it; 0 for what kiln-atlas packed for")
-      .text("gl-device", settings.gl_device, "EGL device: auto, software, or its number");
-  add_surroundings_options(options, settings.surroundings);
+      .affects(Affects::plan)
+      .text("gl-device", settings.gl_device, "EGL device: auto, software, or its number")
+      .affects(Affects::plan);
+}
+
+}  // namespace
+
+OptionSet bake_options(BakeSettings& settings) {
+  OptionSet options, surroundings, subsurface, shadows;
+  add_main_options(options, settings);
+  add_surroundings_options(surroundings, settings.surroundings);
+  options.append(surroundings, Affects::sums);
   add_bounce_options(options, settings);
-  add_subsurface_options(options, settings.subsurface);
-  add_shadow_options(options, settings);
-  options
+  add_subsurface_options(subsurface, settings.subsurface);
+  add_shadow_options(shadows, settings);
+  options.append(subsurface, Affects::storing)
+      .append(shadows, Affects::sums)
       .number_or_auto(
           "ray-offset", settings.ray_offset, 0, 1,
           "Start of a ray off the surface as a fraction of the occluders' diagonal (rays); auto: as much as "
           "the precision of their positions asks for")
+      .affects(Affects::sums)
       .integer("verify-directions", settings.verify_directions, 0, 100'000'000,
                "Also measure the error against that many rays per texel, and against the other backend; 0 for no")
+      .affects(Affects::verifying)
       .integer("verify-texels", settings.verify_texels, 1, 100'000'000,
-               "Texels, evenly spread, that the error is measured on");
+               "Texels, evenly spread, that the error is measured on")
+      .affects(Affects::verifying);
   return options;
 }
 

@@ -49,12 +49,24 @@ BounceTarget parse_bounces(const std::string& text);
 /// With an albedo of 0.8 throughout, the hundredth bounce in a closed room is a 5-billionth of the direct light.
 inline constexpr int most_bounces = 100;
 
+/// The error that decides how many directions a bake takes.
+struct ErrorTarget {
+  bool wanted = false;  ///< not so: BakeSettings::directions decides
+  bool floor = false;   ///< the error of range compression at the chosen bits
+  double error = 0;     ///< relative L2 of transfer vectors, where it is not the floor
+
+  bool operator==(const ErrorTarget&) const = default;
+};
+
+/// Of --max-error: "none", "auto" or a number above 0 and below 1. Throws WrongUsage.
+ErrorTarget parse_error_target(const std::string& text);
+
 struct BakeSettings {
   int bands = 5;  ///< bands^2 coefficients
   int directions = 1024;
-  std::string max_error = "none";  ///< none, auto or relative L2: decides the number of directions
-  int max_directions = 65536;      ///< that max_error may take
-  double adaptive = 0;             ///< relative L2 that interpolating texels may cost; 0: every texel is baked
+  ErrorTarget max_error;       ///< of integration: decides the number of directions, where it is wanted
+  int max_directions = 65536;  ///< that max_error may take
+  double adaptive = 0;         ///< relative L2 that interpolating texels may cost; 0: every texel is baked
   Sampling sampling = Sampling::fibonacci;
   int bits = 8;  ///< of a stored coefficient
   BuriedChoice buried = BuriedChoice::fill;

@@ -46,7 +46,7 @@ class Search {
     const CompressCandidate eight = plain(8);
     result_.plain = eight;
     if (asset_.bits == 8) result_.plain.error = rounding_error();
-    result_.target_error = target_error(settings_).value_or(result_.plain.error);
+    result_.target_error = settings_.max_error.value_or(result_.plain.error);
     if (settings_.components > source_.length())
       throw WrongUsage(fmt::format("pca: found {}; expected at most {}, the length of a transfer vector",
                                    settings_.components, source_.length()));
@@ -271,7 +271,7 @@ class Search {
   /// Raises the target where the settings fix the model and leave the error open: to the model's residual and a quarter
   /// more for rounding.
   void raise_target(double left) {
-    if (is_fixed() && settings_.max_error == "auto")
+    if (is_fixed() && !settings_.max_error)
       result_.target_error = std::max(result_.target_error, rounding_allowance * left);
   }
 
@@ -375,7 +375,7 @@ class Search {
     throw WrongUsage(
         fmt::format("max-error: found {}; expected at least {:.3g}, which --clusters and --pca as they are "
                     "leave; allow more error, clusters or components",
-                    settings_.max_error, *least_error_ / reach));
+                    settings_.max_error ? numbers_text({*settings_.max_error}) : "auto", *least_error_ / reach));
   }
 
   /// Improves the cheapest candidate by further rounds, if it has clusters; keeps the old one where that saves nothing.

@@ -10,12 +10,14 @@ namespace kiln {
 OptionSet compress_options(CompressSettings& settings) {
   OptionSet options;
   options
-      .text(
-          "max-error", settings.max_error,
+      .typed<std::optional<double>>(
+          "max-error", settings.max_error, "auto or 1e-06 to 1",
           "Expected relighting error against the input that the result stays under, 1e-6 to 1, or auto: what planes "
           "of 8 bits have against planes of more. Whatever it is, 999 of 1,000 texels stay under an error of 0.05, and "
           "999 of 1,000 jumps of it where clusters meet under 0.08, so that no blotch and no border shows; where "
-          "--clusters and --pca leave no choice, a miss is warned of")
+          "--clusters and --pca leave no choice, a miss is warned of",
+          parse_compression_error,
+          [](const std::optional<double>& error) { return error ? numbers_text({*error}) : "auto"; })
       .integer_or_auto("clusters", settings.clusters, 1, 256,
                        "Clusters of texels, each with a basis of its own; 1: one basis for all; auto: what is cheapest")
       .integer_or_auto("pca", settings.components, 1, 256,
@@ -25,13 +27,13 @@ OptionSet compress_options(CompressSettings& settings) {
   return options;
 }
 
-std::optional<double> target_error(const CompressSettings& settings) {
-  if (settings.max_error == "auto") return std::nullopt;
+std::optional<double> parse_compression_error(const std::string& text) {
+  if (text == "auto") return std::nullopt;
   double value = 0;
-  const char* end = settings.max_error.data() + settings.max_error.size();
-  const auto [rest, fault] = std::from_chars(settings.max_error.data(), end, value);
+  const char* end = text.data() + text.size();
+  const auto [rest, fault] = std::from_chars(text.data(), end, value);
   if (fault != std::errc() || rest != end || !(value >= 1e-6 && value <= 1))
-    throw WrongUsage("max-error: found '" + settings.max_error + "'; expected auto, or a number of 1e-6 to 1");
+    throw WrongUsage("max-error: found '" + text + "'; expected auto, or a number of 1e-6 to 1");
   return value;
 }
 

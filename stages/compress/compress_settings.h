@@ -9,16 +9,16 @@
 namespace kiln {
 
 struct CompressSettings {
-  std::string max_error = "auto";  ///< expected relighting error, or auto: that of planes of 8 bits
-  int clusters = 0;                ///< 1 to 256; 1 is plain PCA; 0: the cheapest
-  int components = 0;              ///< basis vectors per cluster; 0: the cheapest
-  int gutter = 4;  ///< width in texels of the gutter that is kept; texels further away are never looked up
-  int seed = 1;    ///< for the first clusters; --seed, common to all stages
+  std::optional<double> max_error;  ///< expected relighting error; nothing: what planes of 8 bits have
+  int clusters = 0;                 ///< 1 to 256; 1 is plain PCA; 0: what is cheapest
+  int components = 0;               ///< basis vectors per cluster; 0: what is cheapest
+  int gutter = 4;                   ///< texels around a chart that are kept; those further off are never looked up
+  int seed = 1;                     ///< of the first clusters; --seed, common to all stages
 };
 
 OptionSet compress_options(CompressSettings& settings);
 
-/// Returns the error that was asked for; none for "auto". Throws WrongUsage.
-std::optional<double> target_error(const CompressSettings& settings);
+/// Of --max-error: nothing for "auto". Throws WrongUsage.
+std::optional<double> parse_compression_error(const std::string& text);
 
 }  // namespace kiln

@@ -16,7 +16,6 @@ int main(int argc, char** argv) {
     command.options("Compression", compress_options(settings));
     command.parse(argc, argv);
     settings.seed = command.seed();
-    target_error(settings);
     std::error_code error;
     if (std::filesystem::equivalent(input, output, error))
       throw WrongUsage("output: found the input's folder; expected another one");

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/asset_layout.h"
 #include "base/command_line.h"
 #include "image/image_file.h"
 #include "import/import_mesh.h"
@@ -35,14 +36,14 @@ int main(int argc, char** argv) {
         make_normals(high.mesh, atlas, settings, hints, command.progress("normals"), material.albedo);
 
     // Save.
-    write_png(outputs.add("normal.png"), result.normal);
-    write_exr(outputs.add("position.exr"), result.position);
-    write_png(outputs.add("coverage.png"), result.coverage);
-    write_png(outputs.add("match.png"), result.match);
+    write_png(outputs.add(layout::normal_map), result.normal);
+    write_exr(outputs.add(layout::position_map), result.position);
+    write_png(outputs.add(layout::coverage_map), result.coverage);
+    write_png(outputs.add(layout::match_map), result.match);
     if (result.albedo_map)
-      write_png(outputs.add("albedo.png"), result.albedo_map->picture);
+      write_png(outputs.add(layout::albedo_map), result.albedo_map->picture);
     else
-      outputs.remove_stale("albedo.png");
+      outputs.remove_stale(layout::albedo_map);
     command.finish(outputs, command.result(result.seconds, result.to_json()));
   });
 }

@@ -21,7 +21,7 @@ ProbeScene load_probe_scene(const std::vector<std::filesystem::path>& files, con
       throw BadInput(file.string(),
                      "lies many times its size from the origin, or is a million times larger or smaller than one unit",
                      "a mesh whose probes can be told as floats", "move it, or give --scale");
-    if (settings.bounces == "0") {
+    if (settings.bounces == 0) {
       scene.add(imported.mesh);
       continue;
     }

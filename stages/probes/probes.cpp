@@ -137,7 +137,7 @@ ProbeSet place_probes(const TriangleMesh& mesh, const std::vector<Eigen::Vector3
   probes.positions = points;
   if (!points.empty()) return probes;
   Eigen::AlignedBox3f box;
-  if (const auto given = parse_box(settings.box)) {
+  if (const auto given = settings.box) {
     box = {Eigen::Vector3f((*given)[0], (*given)[1], (*given)[2]),
            Eigen::Vector3f((*given)[3], (*given)[4], (*given)[5])};
   } else {
@@ -146,7 +146,7 @@ ProbeSet place_probes(const TriangleMesh& mesh, const std::vector<Eigen::Vector3
     box.min().array() -= margin;
     box.max().array() += margin;
   }
-  probes.grid = ProbeGrid{parse_grid(settings.grid), box.min(), box.max()};
+  probes.grid = ProbeGrid{settings.grid, box.min(), box.max()};
   for (std::size_t k = 0; k < probes.grid->count(); ++k) probes.positions.push_back(probes.grid->position(k));
   return probes;
 }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sstream>
 #include <vector>
 
@@ -38,6 +40,12 @@ std::vector<Number> numbers_of(const std::string& text, char separator) {
   return numbers;
 }
 
+std::string grid_text(const std::array<int, 3>& grid) { return fmt::format("{}", fmt::join(grid, "x")); }
+
+std::string box_text(const std::optional<ProbeBox>& box) {
+  return box ? fmt::format("{}", fmt::join(*box, ",")) : "auto";
+}
+
 }  // namespace
 
 std::array<int, 3> parse_grid(const std::string& text) {
@@ -51,16 +59,19 @@ std::array<int, 3> parse_grid(const std::string& text) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-std::optional<std::array<float, 6>> parse_box(const std::string& text) {
+std::optional<ProbeBox> parse_box(const std::string& text) {
   if (text == "auto") return std::nullopt;
-  const std::vector<float> numbers = numbers_of<float>(text, ',');
+  std::string plain;  // a list of pipeline.yaml comes with "; " between its items
+  for (const char c : text)
+    if (c != ' ') plain += c == ';' ? ',' : c;
+  const std::vector<float> numbers = numbers_of<float>(plain, ',');
   bool good = numbers.size() == 6;
   for (std::size_t k = 0; good && k < 6; ++k)
     good = std::isfinite(numbers[k]) && (k < 3 || numbers[k - 3] <= numbers[k]);
   if (!good)
     throw WrongUsage("box: found '" + text +
                      "'; expected auto, or six numbers X0,Y0,Z0,X1,Y1,Z1, none of the first three above its second");
-  std::array<float, 6> box{};
+  ProbeBox box{};
   std::copy(numbers.begin(), numbers.end(), box.begin());
   return box;
 }
@@ -77,21 +88,23 @@ std::optional<int> parse_probe_bounces(const std::string& text) {
 OptionSet probes_options(ProbesSettings& settings) {
   OptionSet options;
   options
-      .checked_text("grid", settings.grid, "NxMxK, each 1 to 1024",
-                    "Points along x, y and z, at the box's borders and evenly between",
-                    [](const std::string& text) { parse_grid(text); })
-      .checked_text("box", settings.box, "auto or X0,Y0,Z0,X1,Y1,Z1",
-                    "The grid's box, object units; auto: that of the meshes and half its longest side around",
-                    [](const std::string& text) { parse_box(text); })
+      .typed<std::array<int, 3>>("grid", settings.grid, "NxMxK, each 1 to 1024",
+                                 "Points along x, y and z, at the box's borders and evenly between", parse_grid,
+                                 grid_text)
+      .typed<std::optional<ProbeBox>>(
+          "box", settings.box, "auto or X0,Y0,Z0,X1,Y1,Z1",
+          "The grid's box, object units; auto: that of the meshes and half its longest side around", parse_box,
+          box_text)
       .integer("bands", settings.bands, 1, 8, "Bands of spherical harmonics: a matrix has bands^4 entries")
       .integer("directions", settings.directions, 16, 65536, "Directions that a point looks into")
       .choice("sampling", settings.sampling, {{"fibonacci", Sampling::fibonacci}, {"stratified", Sampling::stratified}},
               "How the directions are spread")
-      .checked_text(
+      .typed<std::optional<int>>(
           "bounces", settings.bounces, "auto or 0 to 100",
           "How often light bounces off the meshes on its way to a point; auto: until a bounce adds less than a "
           "thousandth",
-          [](const std::string& text) { parse_probe_bounces(text); })
+          parse_probe_bounces,
+          [](const std::optional<int>& bounces) { return bounces ? std::to_string(*bounces) : "auto"; })
       .number("bounce-edge", settings.bounce_edge, 1e-4, 1,
               "Longest edge of the triangles that light bounces off, a fraction of the meshes' diagonal");
   add_material_options(options, settings.material);

@@ -13,14 +13,17 @@
 
 namespace kiln {
 
+/// The lower corner, then the upper one.
+using ProbeBox = std::array<float, 6>;
+
 struct ProbesSettings {
-  std::string grid = "8x8x8";  ///< points along x, y and z
-  std::string box = "auto";    ///< box of the grid, object units: X0,Y0,Z0,X1,Y1,Z1
-  int bands = 5;               ///< bands of the distant light and of the arriving light
-  int directions = 1024;       ///< directions that a point looks into
+  std::array<int, 3> grid = {8, 8, 8};  ///< points along x, y and z
+  std::optional<ProbeBox> box;          ///< of the grid, object units; nothing: around the meshes
+  int bands = 5;                        ///< of the light far away and of the light that comes in
+  int directions = 1024;                ///< that a point looks into
   Sampling sampling = Sampling::fibonacci;
-  std::string bounces = "0";  ///< how often light bounces off the meshes before it reaches a point: a number, or auto
-  double bounce_edge = 0.01;  ///< longest edge of the surface points' mesh, as a fraction of the meshes' diagonal
+  std::optional<int> bounces = 0;  ///< how often light bounces off the meshes before it reaches a point; nothing: auto
+  double bounce_edge = 0.01;       ///< longest edge of what it bounces off, fraction of the meshes' diagonal
   ImportSettings import = {};
   MaterialSettings material;
 };
@@ -35,7 +38,7 @@ inline constexpr std::size_t most_grid_points = 1u << 18;
 std::optional<int> parse_probe_bounces(const std::string& text);
 inline constexpr int most_probe_bounces = 100;
 
-/// Parses "X0,Y0,Z0,X1,Y1,Z1": the lower corner, then the upper one; none for "auto". Throws WrongUsage.
-std::optional<std::array<float, 6>> parse_box(const std::string& text);
+/// "X0,Y0,Z0,X1,Y1,Z1": the lower corner, then the upper one; none for "auto". Throws WrongUsage.
+std::optional<ProbeBox> parse_box(const std::string& text);
 
 }  // namespace kiln

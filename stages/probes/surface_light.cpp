@@ -57,7 +57,7 @@ Eigen::Vector3f ProbeScene::albedo_at(std::uint32_t triangle, float u, float v) 
 SurfaceLight light_surface(const ProbeScene& scene, const ProbesSettings& settings, int seed,
                            const ProgressFunction& progress) {
   SurfaceLight light;
-  const int bounces = parse_probe_bounces(settings.bounces).value_or(most_probe_bounces);
+  const int bounces = settings.bounces.value_or(most_probe_bounces);
   if (bounces == 0 || scene.mesh.triangles.empty()) return light;
   light.channels = scene.grey() ? 1 : 3;
   light.cache = make_surface_cache(
@@ -88,7 +88,7 @@ SurfaceLight light_surface(const ProbeScene& scene, const ProbesSettings& settin
     for (std::size_t k = 0; k < last.size(); ++k) light.values[k] += last[k];
     const double all = norm(light.values);
     light.last_share = all > 0 ? norm(last) / all : 0;
-    const bool is_enough = settings.bounces == "auto" && light.last_share < automatic_share;
+    const bool is_enough = !settings.bounces && light.last_share < automatic_share;
     if (light.bounces == bounces || is_enough) return light;
     TransferSums gathered(cache.size(), width);
     add_gathered(rays, &beams, receivers, directions, {cache.points, last, static_cast<std::size_t>(width)}, gathered,

@@ -44,9 +44,9 @@ BudgetVerdict judge_budget(const Budget& budget, const Json& metrics) {
   std::istringstream path(budget.metric);
   for (std::string key, walked; std::getline(path, key, '.'); walked += (walked.empty() ? "" : ".") + key) {
     if (!at->is_object() || !at->contains(key)) {
-      const std::string names =
-          walked.empty() ? "a stage: simplify, atlas, normals, bake, compress (where kiln-report is given it) or report"
-                         : walked + ".*: " + known_metrics(*at);
+      const std::string names = walked.empty() ? "a stage: simplify, atlas, normals, bake, compress and probes (where "
+                                                 "kiln-report is given them) or report"
+                                               : walked + ".*: " + known_metrics(*at);
       throw WrongUsage("budget: found the metric '" + budget.metric + "'; expected one of " + names);
     }
     at = &(*at)[key];

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "base/asset_layout.h"
 #include "base/errors.h"
 #include "base/process.h"
 #include "base/stopwatch.h"
@@ -53,8 +54,10 @@ TriangleMesh surroundings_of(const AssetFolder& asset, const TriangleMesh& high)
   const Json& bake = asset.record("bake");
   const Json settings = bake.value("settings", Json::object());
   Surroundings surroundings;
-  surroundings.place = settings.value("place", surroundings.place);
-  surroundings.ground = settings.value("ground", surroundings.ground);
+  OptionSet options;
+  add_surroundings_options(options, surroundings);
+  for (const Option& option : options.options())
+    if (settings.contains(option.name)) option.set(settings.at(option.name).get<std::string>());
   surroundings.neighbours = bake.value("neighbours", surroundings.neighbours);
   TriangleMesh all;
   for (const PlacedMesh& placed : load_surroundings(surroundings, bounding_box(high), {}, false, high.frame)) {
@@ -196,7 +199,7 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
 
   // Draw the high mesh by rays, from the very camera that kiln-render used.
   const Stopwatch reference_watch;
-  const TriangleMesh atlas = load_atlas(asset.prt() / "atlas.drc");
+  const TriangleMesh atlas = load_atlas(asset.prt() / layout::atlas_mesh);
   const ImportSettings how = import_settings_of(asset.record("simplify").value("settings", Json::object()));
   const ImportedMesh imported = import_mesh(high_file, how, atlas.frame);  // as in the stages before
   const TriangleMesh& high = imported.mesh;

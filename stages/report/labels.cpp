@@ -87,6 +87,10 @@ constexpr Known known_metrics[] = {
     {"bytes_per_texel_out", "bytes per covered texel", Unit::plain},
     {"lookups_in", "texture lookups, baked", Unit::plain},
     {"lookups_out", "texture lookups", Unit::plain},
+    {"open_share", "share of the sky that points see, mean", Unit::share},
+    {"invalid", "points inside of something solid", Unit::plain},
+    {"last_bounce_share", "light that the last bounce added, relative L²", Unit::share},
+    {"surface_points", "points of the surface that light bounces at", Unit::plain},
     {"border_share", "texels at borders of clusters", Unit::share},
     {"silhouette_difference", "silhouette difference", Unit::share},
 };

@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
   return run_program("kiln-report", [&] {
     // Parse.
     CommandLine command("kiln-report", "Gathers what the stages say of an asset, and shows it beside its original.");
-    std::filesystem::path folder, page_file, high_file, compressed;
+    std::filesystem::path folder, page_file, high_file, compressed, probes;
     std::vector<std::string> budgets;
     bool reuses = false;
     ReportSettings settings;
@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
     command.input_option("high", high_file,
                          "The high mesh to compare with (default: the one that simplify.json names)");
     command.input_option("compressed", compressed, "The asset as kiln-compress stored it, to show beside it");
+    command.input_option("probes", probes, "What kiln-probes found around the asset, to list with the other stages");
     command.options("Pictures", report_options(settings));
     command.app()
         .add_option("--budget", budgets,
@@ -38,7 +39,7 @@ int main(int argc, char** argv) {
     command.parse(argc, argv);
 
     // Load.
-    const AssetFolder asset = load_asset_folder(folder, compressed);
+    const AssetFolder asset = load_asset_folder(folder, compressed, probes);
     if (high_file.empty()) high_file = recorded_high_mesh(asset);
     std::optional<EarlierReport> earlier = find_earlier(page_file, asset, command.result(0, Json::object()));
     // Run, and save.

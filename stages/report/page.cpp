@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "base/asset_layout.h"
 #include "detail/texel_way.h"
 #include "report/labels.h"
 #include "report/page_style.h"
@@ -217,20 +218,23 @@ std::string textures_section(const AssetFolder& asset, const fs::path& scratch) 
   };
   const Json& atlas = asset.record("atlas");
   std::string html = "<section><h2>Textures</h2>\n<div class=pair>\n";
-  html += figure(image(thumbnail(asset.folder / "atlas.png", 8, texture_pixels), "Charts of the atlas", scratch),
-                 fmt::format("<b>Charts</b> · {} charts, {} of the texels covered, stretch L² {}",
-                             value(atlas, "charts"), value(atlas, "utilisation"), value(atlas, "stretch_l2")));
+  html +=
+      figure(image(thumbnail(asset.folder / layout::atlas_picture, 8, texture_pixels), "Charts of the atlas", scratch),
+             fmt::format("<b>Charts</b> · {} charts, {} of the texels covered, stretch L² {}", value(atlas, "charts"),
+                         value(atlas, "utilisation"), value(atlas, "stretch_l2")));
   html += figure(
-      image(thumbnail(asset.folder / "normals" / "normal.png", 16, texture_pixels), "Normal map", scratch),
+      image(thumbnail(layout::stage_folder(asset.folder, "normals") / layout::normal_map, 16, texture_pixels),
+            "Normal map", scratch),
       fmt::format(
           "<b>Normal map</b> · {} space, gutters filled; {} found by rays outwards, {} inwards, {} by nearest point",
           value(normals, "space"), value(normals, "found_by_ray_outwards"), value(normals, "found_by_ray_inwards"),
           value(normals, "found_by_nearest_point")));
-  if (const fs::path albedo = asset.folder / "normals" / "albedo.png"; has_albedo_map(normals) && fs::exists(albedo))
+  if (const fs::path albedo = layout::stage_folder(asset.folder, "normals") / layout::albedo_map;
+      has_albedo_map(normals) && fs::exists(albedo))
     html += figure(image(thumbnail(albedo, 8, texture_pixels), "Albedo", scratch),
                    fmt::format("<b>Albedo</b> · from {}; off the high mesh's by {} (root mean square, linear)",
                                escaped(normals["albedo"].value("source", "")), value(normals["albedo"], "error_rms")));
-  if (const fs::path match = asset.folder / "normals" / "match.png"; fs::exists(match))
+  if (const fs::path match = layout::stage_folder(asset.folder, "normals") / layout::match_map; fs::exists(match))
     html += match_figure(match, scratch);
   return html + "</div></section>\n";
 }

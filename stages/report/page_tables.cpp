@@ -18,7 +18,8 @@ struct StageColour {
 };
 constexpr std::array stage_colours = {StageColour{"simplify", "#7a5c3e"}, StageColour{"atlas", "#5f6b3a"},
                                       StageColour{"normals", "#3f6b6b"},  StageColour{"bake", "#8c4a2f"},
-                                      StageColour{"compress", "#7d4a66"}, StageColour{"report", "#5a5568"}};
+                                      StageColour{"compress", "#7d4a66"}, StageColour{"probes", "#8a6d2f"},
+                                      StageColour{"report", "#5a5568"}};
 
 std::string row(const std::string& label, const std::string& value) {
   return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", escaped(label), value);
@@ -30,7 +31,7 @@ std::string metric_rows(const std::string& stage, const Json& metrics) {
   for (const auto& [key, value] : metrics.items()) {
     if (key == "stage" || key == "version" || key == "settings" || key == "inputs" || key == "outputs" ||
         key == "seconds" || key == "budgets_missed" || key == "verification" || key == "plain" || key == "chosen" ||
-        key == "bounces" || key == "subsurface" || value.is_array())
+        (key == "bounces" && value.is_object()) || key == "subsurface" || value.is_array())
       continue;
     if (!value.is_object()) {
       html += row(metric_label(stage + "." + key), metric_value(key, value));
@@ -79,7 +80,7 @@ std::string stages_section(const Json& metrics) {
   for (const StageColour& stage : stage_colours)
     if (metrics.contains(stage.stage)) total += metrics.at(stage.stage).at("seconds").get<double>();
   for (const auto& [stage, colour] : stage_colours) {
-    if (!metrics.contains(stage)) continue;  // compress is optional
+    if (!metrics.contains(stage)) continue;  // on request
     const Json& result = metrics.at(stage);
     const double seconds = result.at("seconds").get<double>();
     const std::string time = metric_value("seconds", result.at("seconds"));

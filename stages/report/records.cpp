@@ -39,7 +39,7 @@ const StageRecord& AssetFolder::stage_record(const std::string& stage) const {
   throw std::logic_error("no record of stage " + stage);
 }
 
-AssetFolder load_asset_folder(const fs::path& folder, const fs::path& compressed) {
+AssetFolder load_asset_folder(const fs::path& folder, const fs::path& compressed, const fs::path& probes) {
   if (!fs::is_directory(folder))
     throw BadInput(folder.string(), "is not a folder", "the folder of a baked asset", "run kiln build");
   AssetFolder asset;
@@ -47,11 +47,11 @@ AssetFolder load_asset_folder(const fs::path& folder, const fs::path& compressed
   // The path "out/bunny/" has an empty last part.
   const fs::path whole = fs::weakly_canonical(folder);
   asset.name = (whole.filename().empty() ? whole.parent_path() : whole).filename().string();
-  for (const auto& [stage, file] : {std::pair("simplify", "simplify.json"), std::pair("atlas", "atlas.json"),
-                                    std::pair("normals", "normals/normals.json"), std::pair("bake", "prt/bake.json")})
-    asset.records.push_back(load_record(folder / file, stage));
+  for (const char* stage : {"simplify", "atlas", "normals", "bake"})
+    asset.records.push_back(load_record(layout::record(folder, stage), stage));
   asset.compressed = compressed;
-  if (!compressed.empty()) asset.records.push_back(load_record(compressed / "compress.json", "compress"));
+  if (!compressed.empty()) asset.records.push_back(load_record(layout::record_in(compressed, "compress"), "compress"));
+  if (!probes.empty()) asset.records.push_back(load_record(layout::record_in(probes, "probes"), "probes"));
 
   asset.baked = load_prt_description(asset.prt());
   if (asset.baked.vertices > 0 || asset.baked.pca)
@@ -64,7 +64,7 @@ fs::path recorded_high_mesh(const AssetFolder& asset) {
   const Json inputs = asset.record("simplify").value("inputs", Json::object());
   const fs::path high = inputs.empty() ? fs::path() : path_of_text(inputs.begin().key());
   if (high.empty() || !fs::is_regular_file(high))
-    throw BadInput((asset.folder / "simplify.json").string(),
+    throw BadInput(asset.stage_record("simplify").file.string(),
                    "names the high mesh '" + high.string() + "', which does not exist", "a mesh to compare with",
                    "give it by --high");
   return high;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "asset/prt_asset.h"
+#include "base/asset_layout.h"
 #include "base/json.h"
 
 namespace kiln {
@@ -20,19 +21,21 @@ struct StageRecord {
 /// Folder of an asset that has passed all stages up to the bake.
 struct AssetFolder {
   std::filesystem::path folder;
-  std::string name;                  ///< name of the asset: the folder's
-  std::vector<StageRecord> records;  ///< simplify, atlas, normals, bake; also compress if there is `compressed`
-  PrtDescription baked;              ///< content of ranges.json
-  std::filesystem::path compressed;  ///< output folder of kiln-compress; empty: none
+  std::string name;                  ///< of the asset: the folder's
+  std::vector<StageRecord> records;  ///< simplify, atlas, normals, bake; compress and probes where given
+  PrtDescription baked;              ///< what ranges.json says
+  std::filesystem::path compressed;  ///< what kiln-compress made of it; empty: nothing
 
-  std::filesystem::path prt() const { return folder / "prt"; }
+  std::filesystem::path prt() const { return layout::stage_folder(folder, "bake"); }
   const StageRecord& stage_record(const std::string& stage) const;
   const Json& record(const std::string& stage) const { return stage_record(stage).json; }
 };
 
-/// Reads the stages' records and ranges.json, and the record in `compressed`, an output folder of kiln-compress, unless
-/// that is empty. Throws BadInput where one is missing or is not what its stage writes.
-AssetFolder load_asset_folder(const std::filesystem::path& folder, const std::filesystem::path& compressed = {});
+/// Reads the stages' records and ranges.json, and the records in `compressed`, an output folder of kiln-compress, and
+/// in `probes`, one of kiln-probes, unless those are empty. Throws BadInput where one is missing or is not what its
+/// stage writes.
+AssetFolder load_asset_folder(const std::filesystem::path& folder, const std::filesystem::path& compressed = {},
+                              const std::filesystem::path& probes = {});
 
 /// Returns the high mesh that the simplification started from, as its record names it. Throws BadInput where that file
 /// no longer exists.

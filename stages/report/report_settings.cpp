@@ -24,7 +24,7 @@ std::optional<double> parse_albedo(const std::string& text) {
 }  // namespace
 
 double ReportSettings::albedo_factor(bool asset_has_albedo) const {
-  return parse_albedo(albedo).value_or(asset_has_albedo ? 1 : 0.8);
+  return albedo.value_or(asset_has_albedo ? 1 : 0.8);
 }
 
 OptionSet report_options(ReportSettings& settings) {
@@ -40,10 +40,11 @@ OptionSet report_options(ReportSettings& settings) {
   add_framing_options(options, settings.framing);
   options.integer("picture-size", settings.picture_size, 64, 2048, "Of the rendered pictures, pixels a side");
   options.integer("directions", settings.directions, 16, 65536, "Directions of the reference's transfer integral");
-  options.checked_text("albedo", settings.albedo, "auto or 0 to 1",
-                       "Share of the light that surfaces reflect, times the asset's own albedo; auto: 1 where it has "
-                       "one, else 0.8",
-                       [](const std::string& text) { parse_albedo(text); });
+  options.typed<std::optional<double>>(
+      "albedo", settings.albedo, "auto or 0 to 1",
+      "Share of the light that surfaces reflect, times the asset's own albedo; auto: 1 where it has "
+      "one, else 0.8",
+      parse_albedo, [](const std::optional<double>& albedo) { return albedo ? numbers_text({*albedo}) : "auto"; });
   options.text("gl-device", settings.gl_device, "EGL device to draw on: auto, software, or its number");
   return options;
 }

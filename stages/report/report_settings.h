@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,9 +16,9 @@ struct ReportSettings {
   double camera_azimuth_degrees = 20;               ///< where the camera stands: 0 is +Z, 90 is +X
   double camera_elevation_degrees = 12;
   FramingSettings framing;
-  int picture_size = 512;       ///< pixels a side
-  int directions = 1024;        ///< directions of the reference's transfer integral
-  std::string albedo = "auto";  ///< auto, or a factor of the surface's own albedo
+  int picture_size = 512;        ///< pixels a side
+  int directions = 1024;         ///< of the reference's transfer integral
+  std::optional<double> albedo;  ///< what the surface's own is multiplied by; nothing: auto
 
   /// Returns that factor; auto is 1 where the asset has an albedo of its own, else 0.8.
   double albedo_factor(bool asset_has_albedo) const;

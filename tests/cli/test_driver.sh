@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # test_driver.sh PROGRAMS: what kiln's cases cannot hold: builds that run side by side, are interrupted or killed, names
-# that are no UTF-8, disks that are full, and metrics.cpp's list against the records of a build.
+# that are no UTF-8, disks that are full, and the stages' lists of metrics against the records of a build.
 set -eu
 programs=$1
 work=$(mktemp -d)
@@ -95,6 +95,7 @@ cat >>pipeline.yaml <<EOF
     material: {albedo: 0.5}
     bake: {verify-directions: 64, verify-texels: 64, bounces: auto, max-error: 0.2}
     compress: {max-error: 0.5}
+    probes: {grid: 2x2x2, bands: 2, directions: 64}
 EOF
 $kiln build all --quiet
 python3 - out/all/metrics.json pipeline.yaml "$kiln" <<'EOF'
@@ -106,7 +107,7 @@ def numbers(at, path):
         if key in ("settings", "inputs", "outputs", "budgets", "lights", "candidates"): continue
         if isinstance(value, dict): yield from numbers(value, path + [key])
         elif isinstance(value, (bool, int, float)): yield ".".join(path + [key])
-names = [name for stage in ("simplify", "atlas", "normals", "bake", "compress", "report")
+names = [name for stage in ("simplify", "atlas", "normals", "bake", "compress", "probes", "report")
          for name in numbers(record[stage], [stage]) if name not in ("report.peak_memory_bytes", "report.budgets_missed")]
 assert len(names) > 100, names
 text = open(pipeline).read() + "    budgets:\n"

@@ -29,6 +29,16 @@ if [ $status -ne 0 ]; then  # else the machine was so fast that nothing was left
   [ ! -e stopped/ranges.json ]
   [ -e stopped.checkpoint/slab_0000.sums ]
 fi
+# A checkpoint holds for what is decided after it, such as the seams, and for no other sums.
+if [ $status -ne 0 ]; then
+  cp -r stopped.checkpoint seams.checkpoint
+  status=0
+  "${bake[@]}" -o stopped --resume --bands 4 2>message || status=$?
+  [ $status -eq 3 ] && grep -q 'other inputs or settings' message && [ -e stopped.checkpoint/slab_0000.sums ]
+  "${bake[@]}" -o seams_whole --seams keep
+  "${bake[@]}" -o seams --resume --seams keep
+  diff --recursive --brief --exclude bake.json seams_whole seams
+fi
 "${bake[@]}" -o stopped --resume
 [ ! -e stopped.checkpoint ]
 same stopped

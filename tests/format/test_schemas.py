@@ -22,6 +22,7 @@ defaults:
   atlas: {size: 32, gutter: 2}
   bake: {bands: 2, directions: 64, backend: embree}
   compress: {max-error: 0.2}
+  probes: {grid: 2x1x2, bands: 2, directions: 64}
   report: {picture-size: 64, directions: 32, lights: ['45,30', 'ambient:1']}
 budgets:
   bake.texels: {min: 1}
@@ -83,7 +84,7 @@ with tempfile.TemporaryDirectory() as folder:
         "pca": ["pca/pca.json"],
         "matrices": ["probes/matrices.json"],
         "record": ["out/post/simplify.json", "out/post/atlas.json", "out/post/normals/normals.json", "out/post/prt/bake.json",
-                   "out/post/small/compress.json", "out/post/report.json", "vertices/bake.json", "probes/probes.json"],
+                   "out/post/small/compress.json", "out/post/probes/probes.json", "out/post/report.json", "vertices/bake.json", "probes/probes.json"],
         "metrics": ["out/post/metrics.json"],
     }.items():
         for file in files:

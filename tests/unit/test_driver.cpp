@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <sstream>
 
+#include "base/asset_layout.h"
 #include "base/errors.h"
 #include "kiln/asset_names.h"
 #include "kiln/build.h"
@@ -150,6 +151,64 @@ assets:
   EXPECT_EQ(pipeline.assets[0].budgets, std::vector<std::string>{"compress.error<=0.01"});
   EXPECT_TRUE(pipeline.assets[2].budgets.empty());
   EXPECT_TRUE(passes(make_rules(pipeline_of("assets:\n  a: {mesh: x.obj, compress: true}\n")), "a", "compress"));
+}
+
+TEST(Pipeline, ProbesOnRequest) {
+  EXPECT_FALSE(passes(make_rules(pipeline_of(two_assets)), "first", "probes"));
+  const Pipeline pipeline = pipeline_of(R"(
+defaults:
+  probes: {grid: 2x2x2}
+  import: {up: +z, fill-holes: 4}
+  material: {albedo: 0.5}
+budgets:
+  probes.invalid: {max: 0}
+assets:
+  grid: {mesh: a.obj, probes: {bands: 3, up: -y}}
+  points: {mesh: a.obj, probes: {points: at/some.txt}}
+  none: {mesh: a.obj, probes: false}
+)");
+  const std::vector<MakeRule> rules = make_rules(pipeline);
+  const StageRun& grid = run_of(rules, "grid", "probes");
+  // The mesh is read as the first stage reads it, but for what the stage says itself.
+  EXPECT_EQ(grid.command,
+            (std::vector<std::string>{"kiln-probes", "a.obj", "-o", "out/grid/probes/", "--grid", "2x2x2", "--bands",
+                                      "3", "--albedo", "0.5", "--up=-y", "--fill-holes", "4"}));
+  EXPECT_EQ(grid.inputs, std::vector<fs::path>{"a.obj"});
+  EXPECT_EQ(value_after(run_of(rules, "grid", "report").command, "--probes"), "out/grid/probes/");
+  EXPECT_TRUE(contains(run_of(rules, "grid", "report").inputs, "out/grid/probes/probes.json"));
+  // Points drive out a grid that is the default, and are read.
+  const StageRun& points = run_of(rules, "points", "probes");
+  EXPECT_EQ(value_after(points.command, "--points"), "at/some.txt");
+  EXPECT_EQ(value_after(points.command, "--grid"), "");
+  EXPECT_TRUE(contains(points.inputs, "at/some.txt"));
+  EXPECT_FALSE(passes(rules, "none", "probes"));
+  EXPECT_TRUE(pipeline.assets[2].budgets.empty());
+  EXPECT_NE(
+      refusal("assets:\n  a:\n    mesh: x.obj\n    probes: {grid: 2x2}\n").find("pipeline.yaml:4: '2x2' for grid"),
+      std::string::npos);
+}
+
+TEST(Stages, AreWhollyDescribed) {
+  AssetPlan plan;
+  plan.mesh = "a.obj";
+  plan.folder = "out/a";
+  for (const StageInfo* stage : all_stages()) {
+    SCOPED_TRACE(stage->name);
+    plan.settings[stage->name];
+    const StageRun run = stage->run(plan);
+    EXPECT_EQ(run.name, stage->name);
+    EXPECT_EQ(run.command.front(), "kiln-" + stage->name);
+    // The record first, in the folder that all others look for it in.
+    EXPECT_EQ(run.outputs.front(), layout::record(plan.folder, stage->name));
+    EXPECT_FALSE(stage->metrics.empty());
+    for (const auto& [one, other] : stage->rivals) {
+      EXPECT_NE(stage->options().find(one), nullptr) << one;
+      EXPECT_NE(stage->options().find(other), nullptr) << other;
+    }
+    for (const MetricGroup& group : stage->metrics) EXPECT_EQ(group.prefix.empty(), group.is_written == nullptr);
+  }
+  EXPECT_EQ(stage_names().front(), "simplify");
+  EXPECT_EQ(stage_names().back(), "report") << "it reads all others";
 }
 
 TEST(Pipeline, RefusalsNameTheLine) {

@@ -8,8 +8,9 @@ fault() { echo "FAULT: $*"; faults=1; }
 
 for folder in "$source_folder"/stages/*/; do
   stage=$(basename "$folder")
-  for other in simplify atlas normals bake compress probes report; do
-    [ "$stage" = "$other" ] && continue
+  for other in "$source_folder"/stages/*/; do
+    other=$(basename "$other")
+    if [ "$stage" = "$other" ] || [ "$other" = core ]; then continue; fi
     grep -rnE "#include \"(stages/)?$other/" "$folder" --include=*.h --include=*.cpp && fault "$stage includes $other"
   done
 done

@@ -90,7 +90,7 @@ TEST_P(Cuts, ShardsAddUpToTheSameBits) {
   };
   EXPECT_EQ(merge(folders, content.settings, 7).channels.front().values, whole().channels.front().values);
   BakeSettings by_error = content.settings;
-  by_error.max_error = "0.05";
+  by_error.max_error = parse_error_target("0.05");
   std::vector<fs::path> by_error_folders;
   for (int index : {1, 2}) {
     by_error_folders.push_back(folder / ("by_error" + std::to_string(index)));
@@ -209,6 +209,40 @@ TEST_P(Cuts, BouncesHaveTheSameBitsWhateverIsKeptOfRays) {
             values);
 }
 
+TEST_P(Cuts, ACheckpointHoldsForOtherStoring) {
+  const Checkpoints first{folder / "checkpoint", 0, false};
+  int calls = 0;
+  const auto interrupt = [&](double) {
+    if (++calls > 1) throw Interrupted();
+  };
+  EXPECT_THROW(bake(content.receivers, content.occluders, content.settings, 7, 2, first, interrupt), Interrupted);
+  Checkpoints again = first;
+  again.resume = true;
+  BakeSettings other = content.settings;
+  other.bands = 4;
+  EXPECT_THROW(bake(content.receivers, content.occluders, other, 7, 2, again), BadInput);
+  other = content.settings;
+  other.seams = SeamChoice::keep;
+  other.bits = 16;
+  const BakeResult resumed = bake(content.receivers, content.occluders, other, 7, 2, again);
+  EXPECT_LT(resumed.work.pairs, content.receivers.texels.size() * 300);  // the rest alone
+  EXPECT_EQ(resumed.channels.front().values, whole().channels.front().values);
+}
+
+TEST(BakeOptions, SayWhatTheyAffect) {
+  BakeSettings settings;
+  const OptionSet options = bake_options(settings);
+  for (const Option& option : options.options())
+    EXPECT_TRUE(option.affects) << option.name << " of the bake: sums, the plan of them, storing or the check?";
+  const auto affects = [&](const char* name) { return options.find(name)->affects; };
+  for (const char* name : {"bands", "ray-offset", "sampling", "place", "shadow-size", "buried", "weld"})
+    EXPECT_EQ(affects(name), Affects::sums) << name;
+  for (const char* name : {"seams", "bits", "bounces", "albedo", "bake-albedo", "subsurface", "subsurface-eta"})
+    EXPECT_EQ(affects(name), Affects::storing) << name;
+  EXPECT_EQ(affects("verify-texels"), Affects::verifying);
+  EXPECT_EQ(affects("backend"), Affects::plan);
+}
+
 INSTANTIATE_TEST_SUITE_P(Integration, Cuts, testing::Values(BakeBackend::egl, BakeBackend::beams, BakeBackend::embree),
                          [](const auto& backend) { return backend_name(backend.param); });
 
@@ -291,7 +325,7 @@ TEST(ErrorDriven, StopsAtAnErrorThatRaysConfirm) {
   const TransferVectors truth = bake(content.receivers, content.occluders, truth_settings, 99, 2).channels.front();
   int before = 0;
   for (const char* target : {"0.03", "0.01"}) {
-    settings.max_error = target;
+    settings.max_error = parse_error_target(target);
     const BakeResult result = bake(content.receivers, content.occluders, settings, 1, 2);
     ASSERT_TRUE(result.choice);
     EXPECT_LE(result.choice->estimated_error, std::stod(target));
@@ -304,7 +338,7 @@ TEST(ErrorDriven, StopsAtAnErrorThatRaysConfirm) {
     // It does not take far more than it needs: on the safe side by 2 at most.
     EXPECT_GT(error, 0.3 * result.choice->estimated_error);
   }
-  settings.max_error = "1e-6";
+  settings.max_error = parse_error_target("1e-6");
   settings.max_directions = 100;
   const BakeResult limited = bake(content.receivers, content.occluders, settings, 1, 2);
   EXPECT_EQ(limited.directions, 100);

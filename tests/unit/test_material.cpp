@@ -102,16 +102,19 @@ TEST(MaterialOptions, ReadOneNumberOrThree) {
   OptionSet options;
   add_material_options(options, settings);
   const auto set = [&](const std::string& text) { options.find("albedo")->set(text); };
-  EXPECT_FALSE(settings.constant());
+  EXPECT_FALSE(settings.albedo);
   set("0.8");
-  EXPECT_EQ(*settings.constant(), (std::array<float, 3>{0.8f, 0.8f, 0.8f}));
+  EXPECT_EQ(*settings.albedo, (std::array<float, 3>{0.8f, 0.8f, 0.8f}));
   for (const char* text : {"0.1,0.2,0.3", "0.1; 0.2; 0.3", "0.1, 0.2 , 0.3"}) {
     set(text);
-    EXPECT_EQ(*settings.constant(), (std::array<float, 3>{0.1f, 0.2f, 0.3f})) << text;
+    EXPECT_EQ(*settings.albedo, (std::array<float, 3>{0.1f, 0.2f, 0.3f})) << text;
   }
   for (const char* text : {"", "grey", "1.01", "-0.1", "nan", "0.1,0.2", "0.1,0.2,0.3,0.4", "0.1,,0.3", "0.1,0.2,"})
     EXPECT_THROW(set(text), WrongUsage) << text;
-  EXPECT_EQ(settings.albedo, "0.1, 0.2 , 0.3") << "what is refused changes nothing";
+  EXPECT_EQ(settings.albedo, (std::array<float, 3>{0.1f, 0.2f, 0.3f})) << "what is refused changes nothing";
+  EXPECT_EQ(options.find("albedo")->get(), "0.1, 0.2 , 0.3") << "records have it as it was given";
+  settings.albedo = {0.5f, 0.25f, 0.f};
+  EXPECT_EQ(options.find("albedo")->get(), "0.5,0.25,0");
 }
 
 TEST_F(Material, TextureLookupsAreBilinearInLinearLightAndRepeat) {
@@ -179,7 +182,7 @@ TEST_F(Material, VertexColoursAreDecodedThenInterpolated) {
   const Eigen::Vector3f raw(0.25f, 0.5f * 188 / 255.f, 0.25f * 0.2f);
   EXPECT_COLOR(load(file, {.encoding = ColorEncoding::linear}).albedo.at(0, 0.5f, 0.25f), raw, rounding);
 
-  const LoadedAlbedo given = load(file, {.albedo = "0.5"});
+  const LoadedAlbedo given = load(file, {.albedo = {{0.5f, 0.5f, 0.5f}}});
   EXPECT_TRUE(given.albedo.is_constant() && given.albedo.is_grey()) << "a number comes before the file's colours";
   EXPECT_EQ(given.albedo.at(0, 0.5f, 0.25f), Eigen::Vector3f::Constant(0.5f));
 }
@@ -432,9 +435,9 @@ TEST_F(Material, BadFilesAreNamed) {
   EXPECT_TRUE(says(message(), {"none.png", "truncated"}));
   write("a.mtl", "newmtl m\nKd 1 red 1\n");
   EXPECT_TRUE(says(message(), {"a.mtl:2", "Kd '1 red 1'"}));
-  EXPECT_EQ(message({.albedo = "0.5"}), "no error") << "a number needs none of these";
+  EXPECT_EQ(message({.albedo = {{0.5f, 0.5f, 0.5f}}}), "no error") << "a number needs none of these";
   EXPECT_TRUE(says(message({.texture = path("nothing.png").string()}), {"nothing.png", "does not exist"}));
-  EXPECT_THROW(load(file, {.albedo = "0.5", .texture = "a.png"}), WrongUsage);
+  EXPECT_THROW(load(file, {.albedo = {{0.5f, 0.5f, 0.5f}}, .texture = "a.png"}), WrongUsage);
 
   write("a.mtl", "newmtl m\nmap_Kd ramp.exr\n");
   write_ramp("ramp.exr");

@@ -7,6 +7,39 @@
 namespace kiln {
 namespace {
 
+TEST(Typed, KeepsTheTextAsLongAsTheValue) {
+  int value = 4;
+  OptionSet options;
+  options.typed<int>(
+      "doubled", value, "a number", "Twice what is kept",
+      [](const std::string& text) {
+        if (text == "odd") throw WrongUsage("doubled: found 'odd'; expected a number");
+        return std::stoi(text) / 2;
+      },
+      [](int kept) { return std::to_string(2 * kept); });
+  const Option& option = *options.find("doubled");
+  EXPECT_EQ(option.get(), Json("8"));
+  option.set("010");
+  EXPECT_EQ(value, 5);
+  EXPECT_EQ(option.get(), Json("010")) << "as it was given";
+  EXPECT_THROW(option.set("odd"), WrongUsage);
+  EXPECT_EQ(value, 5);
+  value = 6;
+  EXPECT_EQ(option.get(), Json("12")) << "the text was of another value";
+}
+
+TEST(Option, SaysNothingOfWhatItAffectsUnlessTold) {
+  int first = 1, second = 2, third = 3;
+  OptionSet inner, options;
+  inner.integer("first", first, 0, 9, "").affects(Affects::verifying).integer("second", second, 0, 9, "");
+  options.append(inner, Affects::storing).integer("third", third, 0, 9, "");
+  EXPECT_EQ(options.find("first")->affects, Affects::verifying);
+  EXPECT_EQ(options.find("second")->affects, Affects::storing);
+  EXPECT_FALSE(options.find("third")->affects);
+  options.find("second")->set("7");
+  EXPECT_EQ(second, 7);
+}
+
 TEST(Extent, IsOneNumberOrTwo) {
   Extent size = 512;
   OptionSet options;

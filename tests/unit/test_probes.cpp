@@ -132,8 +132,8 @@ TEST(Probes, PointsInsideSolidsAreNotValid) {
   ProbesSettings settings;
   settings.bands = 1;
   settings.directions = 64;
-  settings.grid = "9x3x3";
-  settings.box = "-0.9,-0.9,-0.9,3.1,0.9,0.9";
+  settings.grid = {9, 3, 3};
+  settings.box = std::array{-0.9f, -0.9f, -0.9f, 3.1f, 0.9f, 0.9f};
   const ProbesResult result = at(two, {}, settings);
   ASSERT_EQ(result.probes.positions.size(), 81u);
   for (std::size_t k = 0; k < 81; ++k) {
@@ -167,14 +167,14 @@ TEST(Probes, WhiteSurfacesKeepConstantLight) {
   for (Triangle& t : bowl.triangles) std::swap(t[1], t[2]);
   ProbesSettings settings;
   settings.bands = 2;
-  settings.bounces = "auto";
+  settings.bounces.reset();
   settings.bounce_edge = 0.1;
   const std::vector<Eigen::Vector3f> points = {{0, 0, 0}, {0.3f, -0.5f, 0.2f}, {0, -0.8f, 0}};
   const ProbesResult result = lit(bowl, {1, 1, 1}, points, settings);
   EXPECT_EQ(result.invalid(), 0u);
   EXPECT_GT(result.bounces, 3);
   ProbesSettings once = settings;
-  once.bounces = "1";
+  once.bounces = 1;
   const ProbesResult single = lit(bowl, {1, 1, 1}, points, once);
   for (std::size_t probe = 0; probe < 3; ++probe) {
     const std::span<const float> matrix = result.probes.matrix(probe, 0);
@@ -191,7 +191,7 @@ TEST(Probes, AboveAWhitePlaneTheSkyIsMirroredDiffusely) {
   ProbesSettings settings;
   settings.bands = 3;
   settings.directions = 4096;
-  settings.bounces = "2";  // the second adds nothing, as a plane does not see itself
+  settings.bounces = 2;  // the second adds nothing, as a plane does not see itself
   settings.bounce_edge = 0.2;
   const ProbesResult result = lit(shapes::plane(2, 1000), {0.5f, 0.5f, 0.5f}, {{1, 0.01f, 2}}, settings);
   EXPECT_EQ(result.probes.channels, 1);
@@ -213,7 +213,7 @@ TEST(Probes, ColouredSurfacesGiveThreeChannels) {
   ProbesSettings settings;
   settings.bands = 2;
   settings.directions = 512;
-  settings.bounces = "1";
+  settings.bounces = 1;
   settings.bounce_edge = 0.5;
   const TriangleMesh floor = shapes::plane(2, 100);
   const ProbesResult dark = at(floor, {{0, 0.1f, 0}}, settings);
@@ -231,8 +231,8 @@ TEST(Probes, ColouredSurfacesGiveThreeChannels) {
 TEST(Probes, TheSameWithAnyThreads) {
   ProbesSettings settings;
   settings.bands = 3;
-  settings.bounces = "2";
-  settings.grid = "4x3x2";
+  settings.bounces = 2;
+  settings.grid = {4, 3, 2};
   settings.directions = 300;
   std::vector<float> matrices[2];
   for (const int threads : {1, 4}) {
@@ -331,7 +331,7 @@ TEST(ProbeFiles, ReadBackWithinAStep) {
   ProbesSettings settings;
   settings.bands = 2;
   settings.directions = 256;
-  settings.grid = "3x4x2";
+  settings.grid = {3, 4, 2};
   const ProbeSet probes = at(shapes::icosphere(2), {}, settings).probes;
   const ProbeSet read = saved(scratch.folder(), probes);
   ASSERT_TRUE(read.grid);
@@ -354,7 +354,7 @@ TEST(ProbeFiles, RefuseWhatIsMalformed) {
   const Scratch scratch;
   ProbesSettings settings;
   settings.bands = 1;
-  settings.grid = "2x2x1";
+  settings.grid = {2, 2, 1};
   saved(scratch.folder(), at(shapes::icosphere(0), {}, settings).probes);
   const fs::path file = scratch.folder() / probes_name;
   const Json good = Json::parse(read_text(file));
@@ -411,6 +411,7 @@ TEST(ProbesSettings, GridsAndBoxes) {
     EXPECT_THROW(parse_grid(text), WrongUsage) << text;
   EXPECT_FALSE(parse_box("auto"));
   EXPECT_EQ((*parse_box("-1,0,1,2,3,4"))[3], 2);
+  EXPECT_EQ(parse_box("-1; 0; 1; 2; 3; 4"), parse_box("-1,0,1,2,3,4")) << "as a list of pipeline.yaml comes";
   for (const char* text : {"", "1,2,3", "1,2,3,0,3,4", "1,2,3,4,5,x", "0,0,0,1,1,inf"})
     EXPECT_THROW(parse_box(text), WrongUsage) << text;
   EXPECT_FALSE(parse_probe_bounces("auto"));

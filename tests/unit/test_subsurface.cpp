@@ -369,7 +369,8 @@ TEST(Subsurface, NamedMaterialsHaveTheirProfiles) {
   const std::vector<ScatterProfile> diffusion = subsurface_profiles(settings);
   for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(diffusion[c].total(), dipole[c].total(), 1e-12);
   EXPECT_EQ(diffusion[0], ScatterProfile::diffusion(marble.total(), 1 / 2.1921));
-  settings = {.material = "custom", .scattering = "2.19", .absorption = "0.0021", .eta = 1.5};
+  settings = {
+      .material = "custom", .scattering = {{2.19, 2.19, 2.19}}, .absorption = {{0.0021, 0.0021, 0.0021}}, .eta = 1.5};
   EXPECT_EQ(subsurface_profiles(settings), std::vector<ScatterProfile>{marble});
 }
 
@@ -379,7 +380,7 @@ TEST(Subsurface, TexelsScatterInMillimetres) {
   const TexelReceivers receivers = receivers_on_low(mesh, 100, 100, nullptr);
   std::vector<TransferVectors> even = {TransferVectors(receivers.texels.size(), 1)};
   std::fill(even[0].values.begin(), even[0].values.end(), 0.5f);
-  SubsurfaceSettings settings = {.material = "custom", .scattering = "8,4,2", .absorption = "0.4,0.2,0.1"};
+  SubsurfaceSettings settings = {.material = "custom", .scattering = {{8, 4, 2}}, .absorption = {{0.4, 0.2, 0.1}}};
   settings.mm_per_unit = 50;  // 100 mm, mean free paths under a millimetre
   std::vector<TransferVectors> channels = even;
   const SubsurfaceReport report = scatter_beneath({receivers, mesh, false, 4.8}, settings, channels);

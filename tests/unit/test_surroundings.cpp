@@ -55,11 +55,11 @@ class SurroundingsTest : public testing::Test {
 TEST_F(SurroundingsTest, NeighboursAreReadFieldByField) {
   const Neighbour plain = parse_neighbour("a b.obj");
   EXPECT_EQ(plain.file, "a b.obj");
-  EXPECT_EQ(plain.material.albedo, "auto");
+  EXPECT_FALSE(plain.material.albedo);
   const Neighbour full = parse_neighbour(
       "x.ply;place=1,2,3,90,2;albedo=0.5,0.25,0;albedo-texture=t.png;albedo-encoding=linear;fill-holes=8");
   EXPECT_TRUE(full.placement.to_scene({0, 0, 1}).isApprox(Eigen::Vector3d(3, 2, 3), 1e-12)) << "+Z turned to +X";
-  EXPECT_EQ(full.material.albedo, "0.5,0.25,0");
+  EXPECT_EQ(full.material.albedo, (std::array<float, 3>{0.5f, 0.25f, 0.f}));
   EXPECT_EQ(full.material.texture, "t.png");
   EXPECT_EQ(full.material.encoding, ColorEncoding::linear);
   EXPECT_EQ(full.import.fill_hole_edges, 8);
@@ -99,14 +99,14 @@ TEST_F(SurroundingsTest, ASphereHidesItsShareOfTheSky) {
     return std::to_string(away * std::sin(turn)) + "," + std::to_string(scale * distance * std::cos(off)) + "," +
            std::to_string(away * std::cos(turn)) + ",0," + std::to_string(scale);
   };
-  const Surroundings alone{
-      .place = "0,0,0", .ground = "none", .neighbours = {sphere().string() + ";place=" + place(1, 0)}};
+  const Surroundings alone{.place = {}, .ground = {}, .neighbours = {sphere().string() + ";place=" + place(1, 0)}};
   // 20,000 directions: the quadrature's error at a shadow's edge is some 1e-3 of the sky; the facets of 5,120 triangles
   // lie inside the sphere by 0.2 % of its radius.
   EXPECT_NEAR(constant_term(alone, Eigen::Vector3f::UnitY()), unoccluded * (1 - hidden), 0.0015);
   // The same seen by an asset that is three times as large in the scene and turned.
-  const Surroundings turned{
-      .place = "0,0,0,70,3", .ground = "none", .neighbours = {sphere().string() + ";place=" + place(3, 110)}};
+  const Surroundings turned{.place = {.azimuth_degrees = 70, .scale = 3},
+                            .ground = {},
+                            .neighbours = {sphere().string() + ";place=" + place(3, 110)}};
   EXPECT_NEAR(constant_term(turned, Eigen::Vector3f::UnitY()), unoccluded * (1 - hidden), 0.0015);
   // A normal that looks away from it sees the open sky.
   EXPECT_NEAR(constant_term(alone, Eigen::Vector3f(0, -1, 0)), unoccluded, 0.0005);
@@ -117,7 +117,7 @@ TEST_F(SurroundingsTest, TheGroundHidesItsShareOfWhatLooksDown) {
   // to an element below its corner (Howell, "A catalog of radiation heat transfer configuration factors", B-4).
   const double x = 3.0 / 1.5, root = std::sqrt(1 + x * x);
   const double hidden = 4 / (2 * std::numbers::pi) * 2 * x / root * std::atan(x / root);
-  const Surroundings ground{.place = "0,0,0", .ground = "-1.5,3", .neighbours = {}};
+  const Surroundings ground{.place = {}, .ground = GroundPlane{-1.5, 3}, .neighbours = {}};
   EXPECT_NEAR(constant_term(ground, Eigen::Vector3f(0, -1, 0)), unoccluded * (1 - hidden), 0.0015);
   EXPECT_NEAR(constant_term(ground, Eigen::Vector3f::UnitY()), unoccluded, 0.0005);
 }
@@ -125,7 +125,7 @@ TEST_F(SurroundingsTest, TheGroundHidesItsShareOfWhatLooksDown) {
 TEST_F(SurroundingsTest, HaveAnAlbedoOfTheirOwn) {
   const std::string file = sphere().string();
   const Surroundings around{.place = "0,0,0", .ground = "-2", .neighbours = {file + ";albedo=0.25", file}};
-  const std::vector<PlacedMesh> placed = load(around, true, {.albedo = "0.75"});
+  const std::vector<PlacedMesh> placed = load(around, true, {.albedo = {{0.75f, 0.75f, 0.75f}}});
   ASSERT_EQ(placed.size(), 3u);
   EXPECT_EQ(placed[0].material.albedo.at(0, 0, 0), Eigen::Vector3f::Constant(0.25f));
   EXPECT_EQ(placed[1].material.albedo.source(), SurfaceAlbedo::Source::none);
@@ -133,7 +133,7 @@ TEST_F(SurroundingsTest, HaveAnAlbedoOfTheirOwn) {
 }
 
 TEST_F(SurroundingsTest, WhatCannotBeIsSaid) {
-  EXPECT_THROW(load({.place = "0,0,0", .ground = "none", .neighbours = {"missing.obj"}}), BadInput);
+  EXPECT_THROW(load({.place = {}, .ground = {}, .neighbours = {"missing.obj"}}), BadInput);
   EXPECT_THROW(load({.place = "0,0,0", .ground = "0,-1", .neighbours = {}}), WrongUsage);
   Surroundings surroundings;
   OptionSet options;

@@ -8,6 +8,7 @@
 #include <set>
 #include <thread>
 
+#include "base/asset_layout.h"
 #include "base/errors.h"
 #include "base/outputs.h"
 #include "base/process.h"
@@ -19,6 +20,7 @@
 #include "kiln/output_lock.h"
 #include "kiln/summary.h"
 #include "kiln/text_file.h"
+#include "report/judging.h"
 
 namespace kiln {
 
@@ -31,9 +33,9 @@ constexpr int missed_budget = static_cast<int>(ExitCode::budget_missed);
 /// The metrics of an asset that has a report; else null.
 Json metrics_of_asset(const fs::path& folder) {
   std::error_code error;
-  if (!fs::is_regular_file(folder / "metrics.json", error) || !fs::is_regular_file(folder / "report.html", error))
+  if (!fs::is_regular_file(folder / report_metrics, error) || !fs::is_regular_file(folder / layout::report_page, error))
     return {};
-  const Json metrics = Json::parse(read_text(folder / "metrics.json"), nullptr, false);
+  const Json metrics = Json::parse(read_text(folder / report_metrics), nullptr, false);
   return metrics.is_object() ? metrics : Json();
 }
 
@@ -92,7 +94,7 @@ class Build {
     plans_.resize(rules_.size());
     states_.resize(rules_.size());
     for (const Asset* asset : buildable_)
-      if (const std::optional<std::size_t> last = last_rule(asset->name)) want(*last);
+      for (const std::size_t rule : rules_until(asset->name)) want(rule);
     for (std::size_t k = 0; k < rules_.size(); ++k) {
       const MakeRule& rule = rules_[k];
       plans_[k] = {rule.asset, rule.run, stamp_text(rule.run, programs), rule.state};
@@ -107,17 +109,14 @@ class Build {
     bytes_read_ = hashes.bytes_read();
   }
 
-  /// The rule of the last stage that an asset shall pass.
-  std::optional<std::size_t> last_rule(const std::string& asset) const {
-    std::optional<std::size_t> last;
-    for (std::size_t k = 0; k < rules_.size(); ++k) {
-      if (rules_[k].asset != asset) continue;
-      const auto stage = std::find_if(std::begin(all_stages), std::end(all_stages),
-                                      [&](Stage s) { return stage_name(s) == rules_[k].run.name; });
-      // What makes the mesh is no stage, and comes before all of them.
-      if (stage == std::end(all_stages) || !settings_.until || *stage <= *settings_.until) last = k;
-    }
-    return last;
+  /// The rules of the stages that an asset shall pass.
+  std::vector<std::size_t> rules_until(const std::string& asset) const {
+    const std::size_t last = stage_position(settings_.until).value_or(all_stages().size());
+    std::vector<std::size_t> rules;
+    // What makes the mesh is no stage, and comes before all of them.
+    for (std::size_t k = 0; k < rules_.size(); ++k)
+      if (rules_[k].asset == asset && stage_position(rules_[k].run.name).value_or(0) <= last) rules.push_back(k);
+    return rules;
   }
 
   /// Adds a rule to those wanted, behind all that it needs.
@@ -167,7 +166,7 @@ class Build {
     for (const std::size_t k : wanted_)
       if (must_run(k)) busy.insert(rules_[k].asset);
     for (const Asset* asset : buildable_)
-      if (const std::optional<std::size_t> last = last_rule(asset->name)) make.targets.push_back(targets[*last]);
+      for (const std::size_t rule : rules_until(asset->name)) make.targets.push_back(targets[rule]);
     // Assets side by side share the cores: within one, each stage waits for the one before.
     const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
     make.jobs = settings_.jobs > 0 ? settings_.jobs : cores;
@@ -226,7 +225,7 @@ class Build {
         return stage.state == "built" || stage.state == "current";
       });
       if (!whole || stopped || asset.stages.empty()) continue;
-      if (asset.stages.back().stage == stage_name(Stage::report))
+      if (asset.stages.back().stage == "report")
         judge(asset);
       else if (!settings_.quiet)
         std::fprintf(stderr, "[%s] built as far as %s: %s\n", asset.name.c_str(), asset.stages.back().stage.c_str(),
@@ -237,8 +236,8 @@ class Build {
   /// Says where the report is and whether it met the budgets.
   void judge(AssetOutcome& asset) {
     const fs::path folder = asset.folder;
-    const Json metrics = Json::parse(read_text(folder / "metrics.json"));
-    asset.report = (folder / "report.html").string();
+    const Json metrics = Json::parse(read_text(folder / report_metrics));
+    asset.report = (folder / layout::report_page).string();
     asset.budgets = metrics.at("report").at("budgets");
     int missed = 0;
     for (const Json& budget : asset.budgets) {
@@ -309,7 +308,7 @@ void write_index(const Pipeline& pipeline) {
     IndexEntry& entry = entries.emplace_back();
     entry.name = asset.name;
     entry.metrics = metrics_of_asset(folder / asset.name);
-    entry.has_picture = fs::is_regular_file(folder / asset.name / "report.png", error);
+    entry.has_picture = fs::is_regular_file(folder / asset.name / report_cover, error);
     any |= entry.metrics.is_object();
   }
   std::error_code error;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <optional>
+#include <string>
 #include <vector>
 
 #include "kiln/pipeline.h"
@@ -10,11 +10,11 @@
 namespace kiln {
 
 struct BuildSettings {
-  int jobs = 0;                ///< stages at a time; 0: as many as there are cores
-  bool keep_going = false;     ///< build the other assets where one fails
-  bool dry_run = false;        ///< say what would run, run and write nothing
-  bool force = false;          ///< run all stages of the assets, also those that are up to date
-  std::optional<Stage> until;  ///< the last stage to run
+  int jobs = 0;             ///< stages at a time; 0: as many as there are cores
+  bool keep_going = false;  ///< build the other assets where one fails
+  bool dry_run = false;     ///< say what would run, run and write nothing
+  bool force = false;       ///< run all stages of the assets, also those that are up to date
+  std::string until;        ///< the last stage to run; empty: all do
   bool quiet = false;
   bool json = false;  ///< the outcome as one JSON object on stdout
 };

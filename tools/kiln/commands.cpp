@@ -27,7 +27,6 @@ struct Commands::Values {
   int status = 0;
   std::vector<std::string> words;  ///< a pipeline file and assets
   BuildSettings build;
-  std::string until;
   std::vector<fs::path> meshes;
   fs::path file = "pipeline.yaml";
   fs::path plan, archive, mesh;
@@ -61,9 +60,15 @@ std::string mesh_text(const Asset& asset) {
 void list(const Pipeline& pipeline, bool as_json) {
   if (as_json) {
     Json assets = Json::array();
-    for (const Asset& asset : pipeline.assets)
-      assets.push_back(
-          {{"name", asset.name}, {"default", !asset.on_request}, {"mesh", text_of_path(mesh_text(asset))}});
+    for (const Asset& asset : pipeline.assets) {
+      Json stages = Json::array();
+      for (const std::string& stage : stage_names())
+        if (asset.settings.contains(stage)) stages.push_back(stage);
+      assets.push_back({{"name", asset.name},
+                        {"default", !asset.on_request},
+                        {"mesh", text_of_path(mesh_text(asset))},
+                        {"stages", stages}});
+    }
     std::printf("%s\n", json_text({{"assets", assets}}).c_str());
     return;
   }
@@ -101,18 +106,6 @@ void add_words(CLI::App& command, std::vector<std::string>& words, const std::st
       ->option_text("[pipeline.yaml] [asset...]");
 }
 
-std::vector<std::string> stage_words() {
-  std::vector<std::string> words;
-  for (const Stage stage : all_stages) words.push_back(stage_name(stage));
-  return words;
-}
-
-Stage stage_of(const std::string& name) {
-  for (const Stage stage : all_stages)
-    if (stage_name(stage) == name) return stage;
-  throw WrongUsage(fmt::format("until: found '{}'; expected one of {}", name, fmt::join(stage_words(), ", ")));
-}
-
 /// Runs a program that lies beside this one; gives its exit status.
 int run_sibling(const std::string& name, const std::vector<std::string>& words) {
   std::vector<std::string> arguments = {(program_folder() / name).string()};
@@ -134,12 +127,14 @@ Commands::Commands(CLI::App& app) : values_(std::make_unique<Values>()) {
   build.add_flag("-k,--keep-going", v.build.keep_going, "Build the other assets where one fails");
   build.add_flag("-n,--dry-run", v.build.dry_run, "Print what would run, run and write nothing");
   build.add_flag("--force", v.build.force, "Run all stages, also those that are up to date");
-  build.add_option("--until", v.until, fmt::format("The last stage to run: {}", fmt::join(stage_words(), ", ")))
+  build.add_option("--until", v.build.until, fmt::format("The last stage to run: {}", fmt::join(stage_names(), ", ")))
       ->type_name("STAGE");
   build.add_flag("--json", v.build.json, "Print what became of every asset as one JSON object on stdout");
   build.add_flag("--quiet", v.build.quiet, "Print errors only");
   build.callback([&v] {
-    if (!v.until.empty()) v.build.until = stage_of(v.until);
+    if (!v.build.until.empty() && find_stage(v.build.until) == nullptr)
+      throw WrongUsage(
+          fmt::format("until: found '{}'; expected one of {}", v.build.until, fmt::join(stage_names(), ", ")));
     v.status = run_build(v.words, v.build);
   });
 

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fmt/format.h>
 #include <fstream>
+#include <set>
 
 #include "kiln/stage_state.h"
 #include "kiln/step.h"
@@ -53,7 +54,7 @@ void check_mesh(const Pipeline& pipeline, const Asset& asset, std::vector<BadInp
   const fs::path source = packed ? asset.archive : asset.mesh;
   const auto fail = [&](const std::string& fault, const std::string& expected, const std::string& remedy) {
     faults.emplace_back(
-        asset.place,
+        asset.where,
         fmt::format("the {} of '{}', {}, {}", packed ? "archive" : "mesh", asset.name, source.string(), fault),
         expected, remedy);
   };
@@ -69,16 +70,23 @@ void check_mesh(const Pipeline& pipeline, const Asset& asset, std::vector<BadInp
          fmt::format("see tar --list --file {}", shell_quoted(source.string())));
 }
 
-void check_pictures(const Pipeline& pipeline, const Asset& asset, std::vector<BadInput>& faults) {
-  for (const Stage stage : {Stage::normals, Stage::bake}) {
-    const auto texture = asset.settings.at(stage).find("albedo-texture");
-    if (texture == asset.settings.at(stage).end()) continue;
-    const std::string fault = fault_of_file(pipeline.folder / texture->second);
-    if (fault.empty()) continue;
-    faults.emplace_back(asset.setting_places.at(stage).at("albedo-texture"),
-                        fmt::format("the texture of '{}', {}, {}", asset.name, texture->second, fault), "a picture",
-                        "check the path");
-    return;  // most often both stages have it from one line
+/// The files that settings name, each path once: most often all stages have a texture from one line.
+void check_named_files(const Pipeline& pipeline, const Asset& asset, std::vector<BadInput>& faults,
+                       bool textures_alone = false) {
+  std::set<std::string> seen;
+  for (const StageInfo* stage : all_stages()) {
+    const auto settings = asset.settings.find(stage->name);
+    if (settings == asset.settings.end()) continue;
+    const StageOptions options = stage->options();
+    for (const auto& [name, file] : settings->second) {
+      const bool is_texture = name == "albedo-texture";
+      if (!options.find(name)->names_file || (textures_alone && !is_texture) || !seen.insert(file).second) continue;
+      const std::string fault = fault_of_file(pipeline.folder / file);
+      if (fault.empty()) continue;
+      faults.emplace_back(asset.setting_lines.at(stage->name).at(name),
+                          fmt::format("the {} of '{}', {}, {}", is_texture ? "texture" : name, asset.name, file, fault),
+                          is_texture ? "a picture" : "a file", "check the path");
+    }
   }
 }
 
@@ -92,12 +100,12 @@ std::string fault_of_mesh(const fs::path& file) {
 std::vector<BadInput> file_faults(const Pipeline& pipeline, const Asset& asset) {
   std::vector<BadInput> faults;
   check_mesh(pipeline, asset, faults);
-  check_pictures(pipeline, asset, faults);
+  check_named_files(pipeline, asset, faults);
   if (!pipeline.places.contains(asset.name)) return faults;
   for (const Asset& other : pipeline.assets) {
     if (other.name == asset.name || !pipeline.places.contains(other.name)) continue;
     check_mesh(pipeline, other, faults);
-    if (effective_setting(asset.settings, Stage::bake, "bounces") != "0") check_pictures(pipeline, other, faults);
+    if (effective_setting(asset.settings, "bake", "bounces") != "0") check_named_files(pipeline, other, faults, true);
   }
   return faults;
 }

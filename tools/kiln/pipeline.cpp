@@ -106,7 +106,7 @@ class Reader {
     for (const fs::path& mesh : files) {
       Draft draft;
       draft.asset.name = name_of_mesh(mesh);
-      draft.asset.place = file_.place(key);
+      draft.asset.where = file_.where(key);
       draft.asset.mesh = mesh;
       draft.asset.on_request = on_request.value_or(false);
       draft.layers = layers;
@@ -134,11 +134,11 @@ class Reader {
                   "'mesh: FILE', 'mesh: {archive: FILE, member: NAME}' or 'mesh: {square: HALF-SIZE}'");
     if (mesh.IsDefined()) {
       file_.require(draft == nullptr, key,
-                    fmt::format("asset '{}', which {} has as well", name, draft == nullptr ? "" : draft->asset.place),
+                    fmt::format("asset '{}', which {} has as well", name, draft == nullptr ? "" : draft->asset.where),
                     "another name");
       draft = &drafts_.emplace_back();
       draft->asset.name = name;
-      draft->asset.place = file_.place(key);
+      draft->asset.where = file_.where(key);
       read_mesh(mesh, draft->asset);
     }
     draft->layers.insert(draft->layers.end(), layers.begin(), layers.end());
@@ -191,7 +191,7 @@ class Reader {
     layers.insert(layers.end(), draft.layers.begin(), draft.layers.end());
     MergedSettings settings = merge_layers(layers, asset.name);
     asset.settings = std::move(settings.settings);
-    asset.setting_places = std::move(settings.places);
+    asset.setting_lines = std::move(settings.lines);
     check_settings(asset);
     check_budgets(asset, settings.budgets);
     for (const auto& [metric, limits] : settings.budgets) {
@@ -215,10 +215,9 @@ class Reader {
           text += (text.empty() ? "" : ",") + file_.scalar(number, "a number");
       else
         text = file_.scalar(entry.second, "X,Y,Z[,AZIMUTH[,SCALE]]");
-      check_place(text, name, file_.place(entry.second));
+      check_place(text, name, file_.where(entry.second));
       const Asset& asset = *std::find_if(assets.begin(), assets.end(), [&](const Asset& a) { return a.name == name; });
-      if (const auto own = asset.setting_places.at(Stage::bake).find("place");
-          own != asset.setting_places.at(Stage::bake).end())
+      if (const auto own = asset.setting_lines.at("bake").find("place"); own != asset.setting_lines.at("bake").end())
         throw BadInput(own->second, fmt::format("a place of '{}', which 'scene' has as well", name), "one of them",
                        "remove one");
       result[name] = text;

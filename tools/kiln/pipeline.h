@@ -13,15 +13,15 @@ namespace kiln {
 /// One asset of pipeline.yaml. Paths are as written there: absolute, or relative to its folder.
 struct Asset {
   std::string name;
-  std::string place;              ///< "FILE:LINE" of its name
+  std::string where;              ///< "FILE:LINE" of its name
   std::filesystem::path mesh;     ///< a mesh file; empty: `member` of `archive`
   std::filesystem::path archive;  ///< a tar file, compressed or not
   std::string member;
-  std::string square;                             ///< half the side of a square, which is the mesh in place of a file
-  bool on_request = false;                        ///< built only when named
-  std::map<Stage, StageSettings> settings;        ///< a stage on request is in here where the asset passes it
-  std::map<Stage, StageSettings> setting_places;  ///< "FILE:LINE" of each
-  std::vector<std::string> budgets;               ///< "simplify.hausdorff<=0.012"
+  std::string square;       ///< half the side of a square, which is the mesh in place of a file
+  bool on_request = false;  ///< built only when named
+  AssetSettings settings;
+  AssetSettings setting_lines;       ///< "FILE:LINE" of each
+  std::vector<std::string> budgets;  ///< "simplify.hausdorff<=0.012"
 };
 
 struct Pipeline {

@@ -32,7 +32,7 @@ std::string field_text(const std::string& text) {
 /// An asset as kiln-bake's --neighbour has it.
 std::string neighbour_text(const fs::path& mesh, const std::string& place, const Asset& asset) {
   std::string text = fmt::format("{};place={}", field_text(command_word(mesh)), place);
-  const auto add = [&](Stage stage, const char* name) {
+  const auto add = [&](const char* stage, const char* name) {
     const auto settings = asset.settings.find(stage);
     if (settings == asset.settings.end()) return;
     const auto found = settings->second.find(name);
@@ -41,11 +41,11 @@ std::string neighbour_text(const fs::path& mesh, const std::string& place, const
     for (std::size_t k; (k = value.find("; ")) != std::string::npos;) value.replace(k, 2, ",");  // of a list
     text += fmt::format(";{}={}", name, field_text(value));
   };
-  for (const char* name : {"albedo", "albedo-texture", "albedo-encoding"}) add(Stage::normals, name);
+  for (const char* name : {"albedo", "albedo-texture", "albedo-encoding"}) add("normals", name);
   ImportSettings import;
   OptionSet import_options;
   add_import_options(import_options, import);
-  for (const Option& option : import_options.options()) add(Stage::simplify, option.name.c_str());
+  for (const Option& option : import_options.options()) add("simplify", option.name.c_str());
   return text;
 }
 
@@ -81,14 +81,13 @@ std::vector<MakeRule> make_rules(const Pipeline& pipeline) {
     const AssetPlan plan = plan_of(pipeline, asset);
     std::vector<StageRun> runs;
     if (!asset.square.empty())
-      runs.push_back({"square", {"kiln", "square", asset.square, "-o", plan.mesh.string()}, {}, {}, {plan.mesh}, {}});
+      runs.push_back({"square", {"kiln", "square", asset.square, "-o", plan.mesh.string()}, {}, {}, {plan.mesh}});
     if (!asset.archive.empty())
       runs.push_back({"extract",
                       {"kiln", "extract", "-o", plan.mesh.string(), "--", asset.archive.string(), asset.member},
                       {},
                       {asset.archive},
-                      {plan.mesh},
-                      {}});
+                      {plan.mesh}});
     for (StageRun& run : stage_runs(plan)) runs.push_back(std::move(run));
     const fs::path notes = pipeline.output / ".kiln" / asset.name;
     for (StageRun& run : runs) {

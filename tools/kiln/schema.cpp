@@ -72,13 +72,13 @@ Json option_schema(const Option& option) {
   return schema;
 }
 
-Json stage_schema(Stage stage) {
-  const StageOptions options(stage);
+Json stage_schema(const StageInfo& stage) {
+  const StageOptions options = stage.options();
   Json properties = Json::object();
   for (const Option& option : options.all()) properties[option.name] = option_schema(option);
   Json schema = object_of(properties);
-  if (!is_on_request(stage)) schema["type"] = {"object", "null"};
-  if (is_on_request(stage)) schema["type"] = {"object", "boolean", "null"};
+  schema["type"] = {"object", "null"};
+  if (stage.on_request) schema["type"] = {"object", "boolean", "null"};
   return schema;
 }
 
@@ -93,7 +93,7 @@ Json import_schema() {
 
 /// The names that `material` has for settings of the normals stage.
 Json material_schema() {
-  const StageOptions options(Stage::normals);
+  const StageOptions options = stage_info("normals").options();
   Json properties = {{"albedo", option_schema(*options.find("albedo"))},
                      {"texture", option_schema(*options.find("albedo-texture"))},
                      {"encoding", option_schema(*options.find("albedo-encoding"))}};
@@ -107,14 +107,14 @@ Json reference(const std::string& name) { return {{"$ref", "#/$defs/" + name}}; 
 /// The blocks that `defaults` and assets have.
 Json block_references() {
   Json blocks = {{"import", reference("import")}, {"material", reference("material")}};
-  for (const Stage stage : all_stages) blocks[stage_name(stage)] = reference(stage_name(stage));
+  for (const std::string& stage : stage_names()) blocks[stage] = reference(stage);
   return blocks;
 }
 
 Json definitions() {
   const Json number = {{"type", "number"}};
   Json defs = {{"import", import_schema()}, {"material", material_schema()}};
-  for (const Stage stage : all_stages) defs[stage_name(stage)] = stage_schema(stage);
+  for (const StageInfo* stage : all_stages()) defs[stage->name] = stage_schema(*stage);
   Json limits = object_of({{"min", number}, {"max", number}});
   limits["minProperties"] = 1;
   defs["budgets"] = {{"type", "object"},

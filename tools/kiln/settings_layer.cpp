@@ -17,28 +17,22 @@ namespace {
 
 constexpr int deepest_include = 16;
 
-std::vector<std::string> stage_names() {
-  std::vector<std::string> names;
-  for (const Stage stage : all_stages) names.push_back(stage_name(stage));
-  return names;
-}
-
 /// Reads the blocks of one mapping of one file.
 class BlockReader {
  public:
   BlockReader(const YamlFile& file, const fs::path& prefix) : file_(file), prefix_(prefix) {}
 
   void read(const YAML::Node& map, SettingsLayer& layer) const {
-    for (const Stage stage : all_stages) {
-      const YAML::Node block = map[stage_name(stage)];
+    for (const StageInfo* stage : all_stages()) {
+      const YAML::Node block = map[stage->name];
       if (!block.IsDefined()) continue;
-      const bool is_switch = is_on_request(stage) && block.IsScalar();
+      const bool is_switch = stage->on_request && block.IsScalar();
       file_.require(!is_switch || block.Scalar() == "true" || block.Scalar() == "false", block,
                     is_switch ? fmt::format("'{}'", block.Scalar()) : "",
-                    fmt::format("true, false or settings of {}", stage_name(stage)));
-      StageBlock& entry = layer.blocks[stage];
+                    fmt::format("true, false or settings of {}", stage->name));
+      StageBlock& entry = layer.blocks[stage->name];
       entry.on = !is_switch || block.Scalar() == "true";
-      if (!is_switch && !block.IsNull()) entry.settings = stage_settings(stage, block);
+      if (!is_switch && !block.IsNull()) entry.settings = stage_settings(*stage, block);
     }
     if (const YAML::Node material = map["material"]) add_material(material, layer);
     if (const YAML::Node block = map["import"]) add_import(block, layer);
@@ -54,10 +48,10 @@ class BlockReader {
     for (const Option& option : options.options()) names.push_back(option.name);
     file_.check_keys(block, names);
     // Settings of the stage itself come first.
-    if (block.size() > 0) layer.blocks[Stage::simplify].settings.merge(stage_settings(Stage::simplify, block));
+    if (block.size() > 0) layer.blocks["simplify"].settings.merge(stage_settings(stage_info("simplify"), block));
   }
 
-  /// What a surface reflects is for the normals stage, which makes a map of it, and for light that bounces in the bake.
+  /// What a surface reflects is for every stage that has a use for it.
   void add_material(const YAML::Node& block, SettingsLayer& layer) const {
     static const std::map<std::string, std::string> names = {
         {"albedo", "albedo"}, {"texture", "albedo-texture"}, {"encoding", "albedo-encoding"}};
@@ -65,16 +59,17 @@ class BlockReader {
     if (block.size() == 0) return;
     file_.require(!block["albedo"].IsDefined() || !block["texture"].IsDefined(), block, "both albedo and texture",
                   "one of them");
-    for (const Stage stage : {Stage::normals, Stage::bake}) {
+    for (const StageInfo* stage : all_stages()) {
+      if (stage->options().find("albedo-texture") == nullptr) continue;
       YAML::Node renamed;
       for (const auto& entry : block) renamed[names.at(entry.first.Scalar())] = entry.second;
       // Settings of the stage itself come first.
-      layer.blocks[stage].settings.merge(stage_settings(stage, renamed));
+      layer.blocks[stage->name].settings.merge(stage_settings(*stage, renamed));
     }
   }
 
-  std::map<std::string, WrittenSetting> stage_settings(Stage stage, const YAML::Node& block) const {
-    const StageOptions options(stage);
+  std::map<std::string, WrittenSetting> stage_settings(const StageInfo& stage, const YAML::Node& block) const {
+    const StageOptions options = stage.options();
     std::vector<std::string> known;
     for (const Option& option : options.all()) known.push_back(option.name);
     file_.check_keys(block, known);
@@ -85,24 +80,23 @@ class BlockReader {
       try {
         option.set(text);
       } catch (const WrongUsage&) {
-        throw BadInput(file_.place(entry.second),
-                       fmt::format("'{}' for {} of {}", text, option.name, stage_name(stage)),
+        throw BadInput(file_.where(entry.second), fmt::format("'{}' for {} of {}", text, option.name, stage.name),
                        option.is_switch ? "true or false" : option.value_range,
-                       fmt::format("see kiln-{} --help", stage_name(stage)));
+                       fmt::format("see kiln-{} --help", stage.name));
       }
-      result[option.name] = {text, file_.place(entry.second)};
+      result[option.name] = {text, file_.where(entry.second)};
     }
     for (const auto& [name, setting] : result) {
-      const std::string rival = rival_of(stage, name);
-      if (rival.empty() || !result.contains(rival)) continue;
-      throw BadInput(setting.place, fmt::format("both {} and {}", name, rival), "one of them", "remove the other");
+      for (const std::string& rival : stage.rivals_of(name))
+        if (result.contains(rival))
+          throw BadInput(setting.where, fmt::format("both {} and {}", name, rival), "one of them", "remove the other");
     }
     return result;
   }
 
   /// A list becomes one text, with semicolons, as the command line has it.
   std::string setting_text(const Option& option, const YAML::Node& node) const {
-    if (names_a_file(option.name)) return (prefix_ / file_.path(node)).lexically_normal().string();
+    if (option.names_file) return (prefix_ / file_.path(node)).lexically_normal().string();
     if (!node.IsSequence())
       return file_.scalar(node, option.value_range.empty() ? "true or false" : option.value_range);
     std::string text;
@@ -174,7 +168,7 @@ void add_budgets(const YamlFile& file, const YAML::Node& block, SettingsLayer& l
     file.check_keys(entry.second, {"max", "min"});
     file.require(entry.second.size() > 0, entry.second, "no limit", "max, min or both");
     layer.budgets[metric] = {file.number(entry.second["min"]), file.number(entry.second["max"]),
-                             file.place(entry.first)};
+                             file.where(entry.first)};
   }
 }
 
@@ -184,33 +178,29 @@ std::vector<SettingsLayer> included_layers(const YamlFile& file, const YAML::Nod
 
 MergedSettings merge_layers(const std::vector<SettingsLayer>& layers, const std::string& asset) {
   MergedSettings merged;
-  for (const Stage stage : all_stages) {
-    bool passes = !is_on_request(stage);
-    StageSettings settings, places;
+  for (const StageInfo* stage : all_stages()) {
+    bool passes = !stage->on_request;
+    StageSettings settings, lines;
     for (const SettingsLayer& layer : layers) {
-      const auto block = layer.blocks.find(stage);
+      const auto block = layer.blocks.find(stage->name);
       if (block == layer.blocks.end()) continue;
-      if (is_on_request(stage)) passes = block->second.on.value_or(passes);
+      if (stage->on_request) passes = block->second.on.value_or(passes);
       for (const auto& [name, setting] : block->second.settings) {
-        settings.erase(rival_of(stage, name));
+        for (const std::string& rival : stage->rivals_of(name)) settings.erase(rival);
         settings[name] = setting.text;
-        places[name] = setting.place;
+        lines[name] = setting.where;
       }
     }
     if (!passes) continue;
-    merged.settings[stage] = std::move(settings);
-    merged.places[stage] = std::move(places);
+    merged.settings[stage->name] = std::move(settings);
+    merged.lines[stage->name] = std::move(lines);
   }
-  const auto passes_stage_of = [&](const std::string& metric) {
-    return std::any_of(merged.settings.begin(), merged.settings.end(),
-                       [&](const auto& entry) { return stage_name(entry.first) == stage_of_metric(metric); });
-  };
   for (const SettingsLayer& layer : layers)
     for (const auto& [metric, limits] : layer.budgets) {
-      if (!passes_stage_of(metric)) {
+      if (!merged.settings.contains(stage_of_metric(metric))) {
         if (layer.is_shared) continue;
         const std::string stage = stage_of_metric(metric);
-        throw BadInput(limits.place, fmt::format("a budget for '{}', and no {} of asset '{}'", metric, stage, asset),
+        throw BadInput(limits.where, fmt::format("a budget for '{}', and no {} of asset '{}'", metric, stage, asset),
                        fmt::format("'{}: true' or its settings beside it", stage), "change the line");
       }
       merged.budgets[metric] = limits;

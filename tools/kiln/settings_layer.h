@@ -12,10 +12,10 @@
 
 namespace kiln {
 
-/// A setting's text, and the "FILE:LINE" where it stands.
+/// A setting's text, and where it stands: "FILE:LINE".
 struct WrittenSetting {
   std::string text;
-  std::string place;
+  std::string where;
 };
 
 /// What one mapping of a file says of one stage.
@@ -27,21 +27,21 @@ struct StageBlock {
 /// The lowest and highest that a metric may be, as texts, empty for none.
 struct Limits {
   std::string lowest, highest;
-  std::string place;
+  std::string where;
 };
 
 /// Settings and budgets that stand together: the defaults of a pipeline, a file that is included, one asset's own.
 struct SettingsLayer {
-  std::map<Stage, StageBlock> blocks;
-  std::map<std::string, Limits> budgets;  ///< by "STAGE.METRIC"
-  bool is_shared = false;                 ///< by assets, which need not pass the stages of its budgets
+  std::map<std::string, StageBlock> blocks;  ///< by stage
+  std::map<std::string, Limits> budgets;     ///< by "STAGE.METRIC"
+  bool is_shared = false;                    ///< by assets, which need not pass the stages of its budgets
 };
 
 /// Settings after all layers, the defaults left out.
 struct MergedSettings {
-  std::map<Stage, StageSettings> settings;  ///< a stage on request is in here where the asset passes it
-  std::map<Stage, StageSettings> places;    ///< where each of them stands
-  std::map<std::string, Limits> budgets;    ///< without those that are for all assets and of a stage not passed
+  AssetSettings settings;
+  AssetSettings lines;                    ///< where each of them stands
+  std::map<std::string, Limits> budgets;  ///< without those that are for all assets and of a stage not passed
 };
 
 /// The keys of a mapping that add_blocks() reads: the stages, material and import.

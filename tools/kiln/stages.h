@@ -1,87 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <filesystem>
-#include <map>
-#include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "base/options.h"
+#include "base/stage_info.h"
 
 namespace kiln {
 
-/// The stages that an asset passes, in this order.
-enum class Stage { simplify, atlas, normals, bake, compress, report };
+/// The stages that an asset passes, in this order. The list is that of CMake, KILN_STAGES.
+std::span<const StageInfo* const> all_stages();
 
-inline constexpr Stage all_stages[] = {Stage::simplify, Stage::atlas,    Stage::normals,
-                                       Stage::bake,     Stage::compress, Stage::report};
+std::vector<std::string> stage_names();
 
-/// Whether an asset passes the stage only where pipeline.yaml has a block for it.
-bool is_on_request(Stage stage);
+/// The stage of that name, or null.
+const StageInfo* find_stage(const std::string& name);
 
-/// As pipeline.yaml and the executables call it.
-std::string stage_name(Stage stage);
+/// The same of a name that is known. Throws std::logic_error for others.
+const StageInfo& stage_info(const std::string& name);
 
-/// What pipeline.yaml says of one stage: the text of each setting by its name, the defaults left out.
-using StageSettings = std::map<std::string, std::string>;
-
-/// The settings of a stage as its executable knows them, with their defaults, and --seed.
-class StageOptions {
- public:
-  explicit StageOptions(Stage stage);
-
-  const std::vector<Option>& all() const { return options_.options(); }
-  const Option* find(const std::string& name) const { return options_.find(name); }
-
- private:
-  std::shared_ptr<void> storage_;  // what options_ is bound to
-  OptionSet options_;
-};
-
-/// Settings of which a stage takes one: with both given, the more specific place wins. Empty where there is no rival.
-std::string rival_of(Stage stage, const std::string& setting);
-
-/// Whether a setting's text is the path of a file.
-bool names_a_file(const std::string& setting);
+/// Where a stage stands among all; nothing for what is none, such as the making of a mesh.
+std::optional<std::size_t> stage_position(const std::string& name);
 
 /// What a setting is: the text that is given, or the default.
-Json effective_setting(const std::map<Stage, StageSettings>& settings, Stage stage, const std::string& setting);
+Json effective_setting(const AssetSettings& settings, const std::string& stage, const std::string& setting);
 
-/// A path as a word of a command that does not look like an option.
-std::string command_word(const std::filesystem::path& path);
-
-/// One stage of one asset as make runs it. Paths are as the command has them.
-struct StageRun {
-  std::string name;                  ///< of the stage
-  std::vector<std::string> command;  ///< program (a bare name, found beside kiln) and arguments
-  std::vector<std::string> helpers;  ///< further programs it runs
-  std::vector<std::filesystem::path> inputs;
-  std::vector<std::filesystem::path> outputs;  ///< the record, <stage>.json, first
-  std::filesystem::path checkpoint;            ///< a folder; where it is there, the stage goes on with --resume
-  std::vector<std::string> limits = {};        ///< more arguments, the budgets of a report: others alone judge it anew
-
-  /// `command` and `limits`.
-  std::vector<std::string> whole_command() const;
-};
-
-/// Another asset of the scene, as the bake of one is told of it.
-struct PlanNeighbour {
-  std::filesystem::path mesh;
-  std::string text;  ///< the value of kiln-bake's --neighbour
-};
-
-/// What one asset is made of and how.
-struct AssetPlan {
-  std::filesystem::path mesh;               ///< the high mesh
-  std::filesystem::path folder;             ///< the asset's, in the output folder
-  std::map<Stage, StageSettings> settings;  ///< a stage on request runs where it is in here
-  std::vector<std::string> budgets;         ///< as kiln-report takes them: "simplify.hausdorff<=0.012"
-  std::string place;                        ///< in the scene; empty: it stands alone
-  std::vector<PlanNeighbour> neighbours;    ///< in that scene
-};
-
-/// The runs of the stages, in order.
+/// The runs of the stages that the asset passes, in order.
 std::vector<StageRun> stage_runs(const AssetPlan& plan);
 
 }  // namespace kiln

@@ -43,7 +43,7 @@ YamlFile::YamlFile(fs::path file) : file_(std::move(file)) {
     if (tab > 0)
       throw BadInput(fmt::format("{}:{}", file_.string(), tab), "a tab that indents", "blanks, which YAML indents with",
                      "put blanks in its place");
-    throw BadInput(place(error.mark), error.msg, "YAML", "mend the line");
+    throw BadInput(where(error.mark), error.msg, "YAML", "mend the line");
   }
 }
 
@@ -66,12 +66,12 @@ YAML::Node YamlFile::only_document(const std::string& text) const {
   return documents[0];
 }
 
-std::string YamlFile::place(const YAML::Mark& mark) const {
+std::string YamlFile::where(const YAML::Mark& mark) const {
   return mark.is_null() ? file_.string() : fmt::format("{}:{}", file_.string(), mark.line + 1);
 }
 
 void YamlFile::require(bool good, const YAML::Node& node, const std::string& found, const std::string& expected) const {
-  if (!good) throw BadInput(place(node), found, expected, "change the line");
+  if (!good) throw BadInput(where(node), found, expected, "change the line");
 }
 
 void YamlFile::check_keys(const YAML::Node& map, const std::vector<std::string>& known) const {

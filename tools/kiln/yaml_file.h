@@ -18,8 +18,8 @@ class YamlFile {
   const YAML::Node& root() const { return root_; }
 
   /// "FILE:LINE" of a node.
-  std::string place(const YAML::Node& node) const { return place(node.Mark()); }
-  std::string place(const YAML::Mark& mark) const;
+  std::string where(const YAML::Node& node) const { return where(node.Mark()); }
+  std::string where(const YAML::Mark& mark) const;
 
   /// Throws BadInput at the node where `good` does not hold.
   void require(bool good, const YAML::Node& node, const std::string& found, const std::string& expected) const;

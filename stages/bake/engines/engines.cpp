@@ -23,7 +23,7 @@ constexpr int enough_for_beams = 192;
 BakeBackend choose_backend(const BakeSettings& settings) {
   if (settings.backend != BakeBackend::automatic) return settings.backend;
   if (has_hardware_egl(settings.gl_device)) return BakeBackend::egl;
-  const bool is_few = settings.directions < enough_for_beams && settings.max_error == "none";
+  const bool is_few = settings.directions < enough_for_beams && !settings.max_error.wanted;
   return is_few ? BakeBackend::embree : BakeBackend::beams;
 }
 

@@ -46,16 +46,6 @@ double half_difference(const TransferSums& first, const TransferSums& all) {
 
 }  // namespace
 
-ErrorTarget parse_error_target(const std::string& text) {
-  if (text == "none") return {};
-  if (text == "auto") return {.wanted = true, .floor = true, .error = 0};
-  double error = 0;
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), error);
-  if (failure != std::errc{} || end != text.data() + text.size() || !(error > 0 && error < 1))
-    throw WrongUsage("max-error: found '" + text + "'; expected none, auto or a number above 0 and below 1");
-  return {.wanted = true, .floor = false, .error = error};
-}
-
 double quantisation_floor(const TransferVectors& transfer, int bits) {
   return quantisation_floor(std::span(&transfer, 1), bits);
 }

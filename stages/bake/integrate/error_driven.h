@@ -9,16 +9,6 @@
 
 namespace kiln {
 
-/// The error that decides how many directions a bake takes.
-struct ErrorTarget {
-  bool wanted = false;  ///< not so: settings.directions decides
-  bool floor = false;   ///< the error of range compression at the chosen bits
-  double error = 0;     ///< relative L2 of transfer vectors, where it is not the floor
-};
-
-/// Of --max-error: "none", "auto" or a number above 0 and below 1. Throws WrongUsage.
-ErrorTarget parse_error_target(const std::string& text);
-
 /// Relative L2 that storing `transfer` costs: each plane's values are rounded to 2^bits - 1 steps of its range, an
 /// error of variance step^2 / 12.
 double quantisation_floor(const TransferVectors& transfer, int bits);

@@ -89,7 +89,7 @@ Integration::Integration(const Receivers& receivers, const Occluders& occluders,
 
   // Step 2: the directions. Half of a sample's against the other half does not see an error of visibility, so rays may
   // decide for a software renderer, which would draw all the depth maps for a few thousand receivers.
-  const ErrorTarget target = parse_error_target(settings.max_error);
+  const ErrorTarget target = settings.max_error;
   int count = settings.directions;
   if (target.wanted) {
     sampling_ = Sampling::progressive;
@@ -148,14 +148,11 @@ Integration::Slab Integration::gather(std::size_t slab) const {
 Json Integration::key(const Shard& shard, const std::string& renderer) const {
   BakeSettings settings = settings_;
   settings.sampling = sampling_;
-  Json relevant = bake_options(settings).to_json();
-  for (const char* name : {"bits", "size", "directions", "max-error", "max-directions", "verify-directions",
-                           "verify-texels", "backend", "gl-device", "bounces", "bounce-edge", "bounce-memory",
-                           "bake-albedo", "albedo", "albedo-texture", "albedo-encoding"})
-    relevant.erase(name);
-  OptionSet after;  // what is done with the transfer afterwards
-  add_subsurface_options(after, settings.subsurface);
-  for (const Option& option : after.options()) relevant.erase(option.name);
+  if (shadow_choice_) settings.shadow_size = shadow_choice_->size_texels;
+  Json relevant = Json::object();
+  const OptionSet options = bake_options(settings);
+  for (const Option& option : options.options())
+    if (option.affects.value_or(Affects::sums) == Affects::sums) relevant[option.name] = option.get();
   return {{"receivers", receivers_hash_},
           {"occluders", occluders_hash_},
           {"settings", relevant},

@@ -35,9 +35,16 @@ constexpr NumberText absorption_text{"subsurface-absorption", "0 to 1e6 per mm",
 constexpr NumberText albedo_text{"subsurface-albedo", "0 to 1", 0, 1};
 constexpr NumberText path_text{"subsurface-mean-free-path", "1e-6 to 1e6 mm", 1e-6, 1e6};
 
-void add_text(OptionSet& options, const NumberText& text, std::string& value, const std::string& help) {
-  options.checked_text(text.name, value, std::string("one number or R,G,B, each ") + text.range, help,
-                       [text](const std::string& given) { text.parse(given); });
+std::string text_of(const GivenColours& given) {
+  if (!given) return "";
+  const auto [red, green, blue] = *given;
+  return red == green && green == blue ? numbers_text({red}) : numbers_text({red, green, blue});
+}
+
+void add_text(OptionSet& options, const NumberText& text, GivenColours& value, const std::string& help) {
+  options.typed<GivenColours>(
+      text.name, value, std::string("one number or R,G,B, each ") + text.range, help,
+      [text](const std::string& given) { return text.parse(given); }, text_of);
 }
 
 /// The wrong usage of one option beside what `material` and `model` are.
@@ -49,18 +56,18 @@ void refuse_unused(const SubsurfaceSettings& settings, bool custom_dipole, bool 
                        (settings.model == SubsurfaceModel::dipole ? "dipole" : "diffusion") +
                        "; expected --subsurface custom and --subsurface-model " + user + ", or none of it");
   };
-  refuse(scattering_text.name, !settings.scattering.empty(), custom_dipole, "dipole");
-  refuse(absorption_text.name, !settings.absorption.empty(), custom_dipole, "dipole");
+  refuse(scattering_text.name, settings.scattering.has_value(), custom_dipole, "dipole");
+  refuse(absorption_text.name, settings.absorption.has_value(), custom_dipole, "dipole");
   refuse("subsurface-eta", settings.eta != SubsurfaceSettings().eta, custom_dipole, "dipole");
-  refuse(albedo_text.name, !settings.albedo.empty(), custom_diffusion, "diffusion");
-  refuse(path_text.name, !settings.mean_free_path.empty(), custom_diffusion, "diffusion");
+  refuse(albedo_text.name, settings.albedo.has_value(), custom_diffusion, "diffusion");
+  refuse(path_text.name, settings.mean_free_path.has_value(), custom_diffusion, "diffusion");
 }
 
-Colours required(const NumberText& text, const std::string& value) {
-  if (value.empty())
+Colours required(const NumberText& text, const GivenColours& value) {
+  if (!value)
     throw WrongUsage(std::string("subsurface custom: found no --") + text.name +
                      "; expected one number or R,G,B, each " + text.range);
-  return text.parse(value);
+  return *value;
 }
 
 }  // namespace

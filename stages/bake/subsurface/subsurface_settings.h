@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,16 +13,19 @@ namespace kiln {
 
 enum class SubsurfaceModel { dipole, diffusion };
 
+/// Of red, green and blue; nothing where it is not given.
+using GivenColours = std::optional<std::array<double, 3>>;
+
 struct SubsurfaceSettings {
   std::string material = "none";  ///< none, custom or the name of a measured material
   SubsurfaceModel model = SubsurfaceModel::dipole;
-  std::string scattering = {};      ///< custom, dipole: sigma_s', 1/mm; one number or R,G,B
-  std::string absorption = {};      ///< custom, dipole: sigma_a, 1/mm
-  double eta = 1.3;                 ///< custom, dipole
-  std::string albedo = {};          ///< custom, diffusion: of the surface, 0 to 1
-  std::string mean_free_path = {};  ///< custom, diffusion: mm
-  double mm_per_unit = 1000;        ///< object units are metres unless told otherwise
-  double solid_angle = 0.05;        ///< ScatteringSettings has it
+  GivenColours scattering = {};      ///< custom, dipole: sigma_s', 1/mm
+  GivenColours absorption = {};      ///< custom, dipole: sigma_a, 1/mm
+  double eta = 1.3;                  ///< custom, dipole
+  GivenColours albedo = {};          ///< custom, diffusion: of the surface, 0 to 1
+  GivenColours mean_free_path = {};  ///< custom, diffusion: mm
+  double mm_per_unit = 1000;         ///< object units are metres unless told otherwise
+  double solid_angle = 0.05;         ///< ScatteringSettings has it
 
   bool wanted() const { return material != "none"; }
 };

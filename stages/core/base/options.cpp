@@ -49,6 +49,17 @@ std::optional<std::array<double, 3>> parse_colours(const std::string& text) {
   return std::array<double, 3>{values[0], values[1], values[2]};
 }
 
+std::string numbers_text(std::initializer_list<double> numbers) {
+  std::string text;
+  for (const double number : numbers) text += (text.empty() ? "" : ",") + fmt::format("{}", number);
+  return text;
+}
+
+std::string colour_text(const std::array<float, 3>& colour) {
+  const auto [red, green, blue] = colour;
+  return red == green && green == blue ? fmt::format("{}", red) : fmt::format("{},{},{}", red, green, blue);
+}
+
 OptionSet& OptionSet::integer(std::string name, int& value, int lowest, int highest, std::string help) {
   const std::string range = fmt::format("{} to {}", lowest, highest);
   auto set = [=, &value](const std::string& text) {
@@ -135,6 +146,12 @@ OptionSet& OptionSet::text(std::string name, std::string& value, std::string hel
   return *this;
 }
 
+OptionSet& OptionSet::file(std::string name, std::string& value, std::string help) {
+  text(std::move(name), value, std::move(help));
+  options_.back().names_file = true;
+  return *this;
+}
+
 OptionSet& OptionSet::checked_text(std::string name, std::string& value, std::string value_range, std::string help,
                                    std::function<void(const std::string&)> check) {
   auto set = [&value, check = std::move(check)](const std::string& text) {
@@ -150,6 +167,19 @@ OptionSet& OptionSet::parsed(std::string name, std::string value_range, std::str
                              std::function<void(const std::string&)> set, std::function<std::string()> print) {
   options_.push_back({std::move(name), std::move(help), std::move(value_range), false, std::move(set),
                       [print = std::move(print)] { return Json(print()); }});
+  return *this;
+}
+
+OptionSet& OptionSet::affects(Affects what) {
+  options_.back().affects = what;
+  return *this;
+}
+
+OptionSet& OptionSet::append(OptionSet others, Affects what) {
+  for (Option& option : others.options_) {
+    option.affects = option.affects.value_or(what);
+    options_.push_back(std::move(option));
+  }
   return *this;
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -30,6 +31,19 @@ struct Extent {
 /// pipeline.yaml becomes; numbers are finite. Nothing for other text.
 std::optional<std::array<double, 3>> parse_colours(const std::string& text);
 
+/// Numbers between commas, each as short as it reads back.
+std::string numbers_text(std::initializer_list<double> numbers);
+std::string colour_text(const std::array<float, 3>& colour);
+
+/// What a setting has a say in, where a stage keeps its work half done: sums of integration, which later settings only
+/// store.
+enum class Affects {
+  sums,      ///< what is added up; the safe word, which holds for an option that says nothing
+  plan,      ///< how it is gone about, which sums are told apart by themselves: receivers, directions, engine
+  storing,   ///< what is done with the sums afterwards
+  verifying  ///< the check alone
+};
+
 /// Setting as the command line, pipeline.yaml and the reports know it.
 struct Option {
   std::string name;                             ///< as in `--name`
@@ -38,6 +52,8 @@ struct Option {
   bool is_switch = false;                       ///< takes no value on the command line; true or false in pipeline.yaml
   std::function<void(const std::string&)> set;  ///< throws WrongUsage that says what was found and expected
   std::function<Json()> get;
+  bool names_file = false;              ///< the text is the path of a file that the stage reads
+  std::optional<Affects> affects = {};  ///< nothing where it does not say
 };
 
 /// Settings of one stage, bound to its settings struct, which must outlive the set. The struct's values when they are
@@ -67,6 +83,9 @@ class OptionSet {
   /// Adds any text.
   OptionSet& text(std::string name, std::string& value, std::string help);
 
+  /// The path of a file that the stage reads.
+  OptionSet& file(std::string name, std::string& value, std::string help);
+
   /// Adds a text for which `check` throws WrongUsage where it is not valid; `value_range` says what is.
   OptionSet& checked_text(std::string name, std::string& value, std::string value_range, std::string help,
                           std::function<void(const std::string&)> check);
@@ -75,6 +94,29 @@ class OptionSet {
   /// text.
   OptionSet& parsed(std::string name, std::string value_range, std::string help,
                     std::function<void(const std::string&)> set, std::function<std::string()> print);
+
+  /// A value of any type with ==: `parse` throws WrongUsage for what it does not understand, `print` gives a text that
+  /// it does. As long as the value is the one given, its text is as it was given.
+  template <class T>
+  OptionSet& typed(std::string name, T& value, std::string value_range, std::string help,
+                   std::function<T(const std::string&)> parse, std::function<std::string(const T&)> print) {
+    auto given = std::make_shared<std::optional<std::pair<T, std::string>>>();
+    return parsed(
+        std::move(name), std::move(value_range), std::move(help),
+        [&value, given, parse = std::move(parse)](const std::string& text) {
+          value = parse(text);
+          *given = {value, text};
+        },
+        [&value, given, print = std::move(print)] {
+          return *given && (*given)->first == value ? (*given)->second : print(value);
+        });
+  }
+
+  /// Says what the option added last has a say in.
+  OptionSet& affects(Affects what);
+
+  /// Adds options that say together what they have a say in.
+  OptionSet& append(OptionSet others, Affects what);
 
   /// Adds one of several words, each standing for a value of an enumeration.
   template <class Enum>

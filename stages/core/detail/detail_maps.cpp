@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/asset_layout.h"
 #include "base/errors.h"
 #include "base/json.h"
 #include "base/outputs.h"
@@ -83,20 +84,20 @@ std::string size_text(const Image<T>& image) {
 void read_albedo(const std::filesystem::path& folder, const Json& record, DetailMaps& maps) {
   const Json albedo = record.value("albedo", Json::object());
   if (!albedo.is_object() || (!albedo.empty() && !albedo.contains("source")))
-    refuse(folder / "normals.json", "albedo " + albedo.dump(), "the result of kiln-normals");
+    refuse(layout::record_in(folder, "normals"), "albedo " + albedo.dump(), "the result of kiln-normals");
   if (albedo.empty()) return;
   maps.albedo_known = albedo["source"] != "none";
   if (albedo.contains("constant")) {
     const Json& values = albedo["constant"];
     const auto is_share = [](const Json& v) { return v.is_number() && v >= 0 && v <= 1; };
     if (!values.is_array() || values.size() != 3 || !std::all_of(values.begin(), values.end(), is_share))
-      refuse(folder / "normals.json", "a constant albedo of " + values.dump(), "three numbers of 0 to 1");
+      refuse(layout::record_in(folder, "normals"), "a constant albedo of " + values.dump(), "three numbers of 0 to 1");
     for (int c = 0; c < 3; ++c) maps.constant_albedo[c] = values[static_cast<std::size_t>(c)];
     return;
   }
-  const Image<std::uint8_t> encoded = read_png8(folder / "albedo.png");
+  const Image<std::uint8_t> encoded = read_png8(folder / layout::albedo_map);
   if (encoded.width() != maps.width || encoded.height() != maps.height || encoded.channels() != 3)
-    refuse(folder / "albedo.png", size_text(encoded),
+    refuse(folder / layout::albedo_map, size_text(encoded),
            std::to_string(maps.width) + " x " + std::to_string(maps.height) + " texels of 3 channels");
   maps.albedo = linear_from_srgb_bytes(encoded);
 }
@@ -160,24 +161,24 @@ Image<float> decode_normals(const Image<std::uint16_t>& encoded, NormalSpace spa
 DetailMaps load_detail_maps(const std::filesystem::path& folder, const TriangleMesh& atlas) {
   if (!std::filesystem::is_directory(folder))
     throw BadInput(folder.string(), "no such folder", "the output folder of kiln-normals", "check the path");
-  const std::filesystem::path record_file = folder / "normals.json";
+  const std::filesystem::path record_file = layout::record_in(folder, "normals");
   const Json record = Json::parse(read_text(record_file), nullptr, false);
   const NormalSpace space = read_space(record_file, record);
-  const Image<std::uint8_t> coverage = read_png8(folder / "coverage.png");
-  const Image<std::uint16_t> encoded = read_png16(folder / "normal.png");
+  const Image<std::uint8_t> coverage = read_png8(folder / layout::coverage_map);
+  const Image<std::uint16_t> encoded = read_png16(folder / layout::normal_map);
   DetailMaps maps;
-  maps.position = read_float_image(folder / "position.exr");
+  maps.position = read_float_image(folder / layout::position_map);
   maps.width = coverage.width();
   maps.height = coverage.height();
 
-  // Check that all maps have one size.
-  if (coverage.channels() != 1) refuse(folder / "coverage.png", size_text(coverage), "a grey picture");
+  // One size for all.
+  if (coverage.channels() != 1) refuse(folder / layout::coverage_map, size_text(coverage), "a grey picture");
   const std::string expected = std::to_string(maps.width) + " x " + std::to_string(maps.height) +
                                " texels of 3 channels, as coverage.png has texels";
   if (encoded.width() != maps.width || encoded.height() != maps.height || encoded.channels() != 3)
-    refuse(folder / "normal.png", size_text(encoded), expected);
+    refuse(folder / layout::normal_map, size_text(encoded), expected);
   if (maps.position.width() != maps.width || maps.position.height() != maps.height || maps.position.channels() != 3)
-    refuse(folder / "position.exr", size_text(maps.position), expected);
+    refuse(folder / layout::position_map, size_text(maps.position), expected);
 
   maps.normal_space = space;
   read_albedo(folder, record, maps);
@@ -189,14 +190,14 @@ DetailMaps load_detail_maps(const std::filesystem::path& folder, const TriangleM
   maps.covered = coverage_of(raster);
   for (std::size_t k = 0; k < maps.covered.size(); ++k)
     if ((coverage.values()[k] != 0) != (maps.covered[k] != 0))
-      refuse(folder / "coverage.png", "a coverage that is not the atlas mesh's", "maps made from the same atlas");
+      refuse(folder / layout::coverage_map, "a coverage that is not the atlas mesh's", "maps made from the same atlas");
 
   maps.normal_object = decode_normals(encoded, space, atlas, raster);
   if (atlas.frame.exponent != 0)
     for (float& value : maps.position.values()) value = static_cast<float>(value / atlas.frame.unit());
   if (!std::all_of(maps.position.values().begin(), maps.position.values().end(),
                    [](float v) { return std::isfinite(v); }))
-    refuse(folder / "position.exr", "positions that are not finite", "finite positions");
+    refuse(folder / layout::position_map, "positions that are not finite", "finite positions");
   return maps;
 }
 

@@ -138,7 +138,7 @@ std::vector<std::string> LoadedAlbedo::warnings() const {
 }
 
 LoadedAlbedo load_albedo(const ImportedMesh& mesh, const MaterialSettings& settings) {
-  const auto given = settings.constant();
+  const auto given = settings.albedo;
   if (given && !settings.texture.empty())
     throw WrongUsage("found both --albedo and --albedo-texture; expected one of them");
   LoadedAlbedo loaded;

@@ -21,14 +21,13 @@ std::optional<std::array<float, 3>> parse_albedo(const std::string& text) {
 
 }  // namespace
 
-std::optional<std::array<float, 3>> MaterialSettings::constant() const { return parse_albedo(albedo); }
-
 void add_material_options(OptionSet& options, MaterialSettings& settings) {
-  options.checked_text("albedo", settings.albedo, "auto, one number or R,G,B, each 0 to 1",
-                       "Share of light that the high mesh's surface reflects, in linear light; auto: its file's own "
-                       "materials or colours of vertices, or 1 where it has none",
-                       [](const std::string& text) { parse_albedo(text); });
-  options.text("albedo-texture", settings.texture,
+  options.typed<std::optional<std::array<float, 3>>>(
+      "albedo", settings.albedo, "auto, one number or R,G,B, each 0 to 1",
+      "Share of light that the high mesh's surface reflects, in linear light; auto: its file's own "
+      "materials or colours of vertices, or 1 where it has none",
+      parse_albedo, [](const auto& albedo) { return albedo ? colour_text(*albedo) : "auto"; });
+  options.file("albedo-texture", settings.texture,
                "A picture looked up with the high mesh's texture coordinates, in place of its file's materials (PNG, "
                "JPEG, EXR)");
   options.choice<ColorEncoding>("albedo-encoding", settings.encoding,

@@ -14,12 +14,9 @@ enum class ColorEncoding { srgb, linear };
 
 /// Source of the reflectance of a mesh's surface.
 struct MaterialSettings {
-  std::string albedo = "auto";  ///< auto: from the mesh file; else one number or R,G,B, linear, 0 to 1
-  std::string texture = {};     ///< a picture looked up with the mesh's uvs, instead of its own materials
-  ColorEncoding encoding = ColorEncoding::srgb;  ///< encoding of vertex colours, Kd and integer pictures
-
-  /// Returns the linear colour that `albedo` gives; nothing for auto. Throws WrongUsage for other text.
-  std::optional<std::array<float, 3>> constant() const;
+  std::optional<std::array<float, 3>> albedo = {};  ///< linear, 0 to 1; nothing: what the mesh file says
+  std::string texture = {};  ///< a picture looked up with the mesh's uvs, in place of its own materials
+  ColorEncoding encoding = ColorEncoding::srgb;  ///< of vertex colours, Kd and pictures of integers
 };
 
 /// Adds `albedo`, `albedo-texture` and `albedo-encoding` to a stage's options.

@@ -50,6 +50,14 @@ std::vector<std::string> parts_of(const std::string& text) {
   return parts;
 }
 
+Placement placement_of(const ScenePlace& place) {
+  Placement placement;
+  placement.translation = Eigen::Vector3d(place.position.data());
+  placement.rotation = turn_about_y(place.azimuth_degrees);
+  placement.scale = place.scale;
+  return placement;
+}
+
 }  // namespace
 
 Neighbour parse_neighbour(const std::string& text) {
@@ -82,7 +90,7 @@ Neighbour parse_neighbour(const std::string& text) {
 
 std::vector<PlacedMesh> load_surroundings(const Surroundings& surroundings, const BoundingBox& own,
                                           const MaterialSettings& material, bool with_albedo, const MeshFrame& frame) {
-  const Placement asset = parse_placement("place", surroundings.place);
+  const Placement asset = placement_of(surroundings.place);
   std::vector<PlacedMesh> placed;
   for (const std::string& text : surroundings.neighbours) {
     const Neighbour neighbour = parse_neighbour(text);
@@ -97,21 +105,17 @@ std::vector<PlacedMesh> load_surroundings(const Surroundings& surroundings, cons
     mesh.mesh = std::move(imported.mesh);
     move_to_asset(mesh.mesh, neighbour.placement, asset, frame);
   }
-  if (surroundings.ground == "none") return placed;
+  if (!surroundings.ground) return placed;
 
-  const std::vector<double> numbers = parse_numbers("ground", surroundings.ground, -1e6, 1e6);
   Eigen::Vector3d centre = asset.to_scene(frame.to_file(own.centre().cast<double>()));
-  centre.y() = numbers[0];
-  const double half_size = numbers.size() > 1 ? numbers[1]
-                                              : ground_half_size_diagonals * asset.scale * frame.unit() *
-                                                    static_cast<double>(own.diagonal());
-  if (!(half_size > 0))
-    throw WrongUsage("ground: found '" + surroundings.ground + "'; expected HEIGHT[,HALF-SIZE], a size above 0");
+  centre.y() = surroundings.ground->height;
+  const double half_size = surroundings.ground->half_size.value_or(ground_half_size_diagonals * asset.scale *
+                                                                   frame.unit() * static_cast<double>(own.diagonal()));
   PlacedMesh& ground = placed.emplace_back();
   ground.name = "the ground";
   ground.mesh = ground_square(centre, half_size);
   move_to_asset(ground.mesh, {}, asset, frame);
-  if (const auto constant = material.constant())
+  if (const auto constant = material.albedo)
     ground.material.albedo = SurfaceAlbedo::constant({(*constant)[0], (*constant)[1], (*constant)[2]});
   return placed;
 }

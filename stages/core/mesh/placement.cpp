@@ -16,6 +16,11 @@ Eigen::Matrix4d Placement::matrix() const {
   return m;
 }
 
+Eigen::Matrix3d turn_about_y(double degrees) {
+  if (degrees == 0) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(degrees * std::numbers::pi / 180, Eigen::Vector3d::UnitY()).toRotationMatrix();
+}
+
 Placement parse_placement(std::string_view name, std::string_view text) {
   const std::vector<double> numbers = parse_numbers(name, text, -1e6, 1e6);
   const auto fail = [&] {
@@ -25,9 +30,7 @@ Placement parse_placement(std::string_view name, std::string_view text) {
   if (numbers.size() < 3 || numbers.size() > 5) fail();
   Placement placement;
   placement.translation = {numbers[0], numbers[1], numbers[2]};
-  if (numbers.size() > 3)
-    placement.rotation =
-        Eigen::AngleAxisd(numbers[3] * std::numbers::pi / 180, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  if (numbers.size() > 3) placement.rotation = turn_about_y(numbers[3]);
   if (numbers.size() > 4) placement.scale = numbers[4];
   if (!(placement.scale > 0)) fail();
   return placement;

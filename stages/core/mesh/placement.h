@@ -31,7 +31,10 @@ struct Placement {
 /// +X), and its scale. Throws WrongUsage, whose message calls the value `name`.
 Placement parse_placement(std::string_view name, std::string_view text);
 
-/// Returns the box around a placed box.
+/// A turn about +Y, which turns +Z towards +X.
+Eigen::Matrix3d turn_about_y(double degrees);
+
+/// The box around a placed box.
 BoundingBox placed_box(const BoundingBox& box, const Placement& placement);
 
 }  // namespace kiln

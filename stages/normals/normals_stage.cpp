@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "normals/normals_stage.h"
+
+#include "base/asset_layout.h"
+#include "normals/normals_settings.h"
+
+namespace kiln {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// The last six where the surface has an albedo that varies.
+constexpr const char* metric_names =
+    "width height covered_texels found_by_ray_outwards found_by_ray_inwards found_by_nearest_point disagreeing "
+    "buried_texels cage_distance mean_distance largest_distance normal_deviation_degrees_mean "
+    "normal_deviation_degrees_largest "
+    "quantisation_degrees_largest map_error_degrees_mean map_error_degrees_p95 map_error_degrees_max seam_edges "
+    "seam_mismatch_degrees_mean_before seam_mismatch_degrees_max_before seam_mismatch_degrees_mean "
+    "seam_mismatch_degrees_max seam_change_degrees_rms measuring_seconds albedo.error_rms albedo.error_p95 "
+    "albedo.seam_mismatch_mean_before albedo.seam_mismatch_max_before albedo.seam_mismatch_mean "
+    "albedo.seam_mismatch_max";
+
+StageOptions options() { return StageOptions::of(normals_options); }
+
+StageRun run(const AssetPlan& plan) {
+  const fs::path folder = layout::stage_folder(plan.folder, "normals"), atlas = plan.folder / layout::atlas_mesh;
+  StageRun run{"normals", {"kiln-normals", command_word(plan.mesh), atlas.string(), "-o", folder_word(folder)}};
+  run.inputs = {plan.mesh, layout::record(plan.folder, "simplify"), layout::record(plan.folder, "atlas"), atlas};
+  run.outputs = {layout::record(plan.folder, "normals")};
+  for (const char* name : {layout::normal_map, layout::position_map, layout::coverage_map, layout::match_map})
+    run.outputs.push_back(folder / name);
+  run.add_settings(options(), plan.settings_of("normals"));
+  return run;
+}
+
+}  // namespace
+
+const StageInfo& normals_stage() {
+  static const StageInfo info = {.name = "normals",
+                                 .options = options,
+                                 .rivals = {{"albedo", "albedo-texture"}},
+                                 .metrics = {{metric_names}},
+                                 .run = run};
+  return info;
+}
+
+}  // namespace kiln

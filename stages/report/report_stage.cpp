@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/report_stage.h"
+
+#include "base/asset_layout.h"
+#include "report/judging.h"
+#include "report/report_settings.h"
+
+namespace kiln {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// What is known when budgets are judged: the report's memory is not.
+constexpr const char* metric_names =
+    "relative_l2 root_mean_square silhouette_difference compared_pixels software_renderer render_seconds "
+    "reference_seconds seconds";
+
+StageOptions options() { return StageOptions::of(report_options); }
+
+StageRun run(const AssetPlan& plan) {
+  const fs::path& folder = plan.folder;
+  const fs::path page = folder / layout::report_page;
+  StageRun run{"report", {"kiln-report", folder.string(), "-o", page.string(), "--high", command_word(plan.mesh)}};
+  run.helpers = {"kiln-render"};
+  run.inputs = {plan.mesh};
+  for (const char* stage : {"simplify", "atlas", "normals", "bake"})
+    run.inputs.push_back(layout::record(folder, stage));
+  run.outputs = {folder / report_record, page, folder / report_metrics, folder / report_cover};
+  if (plan.passes("compress")) {
+    run.add({"--compressed", folder_word(layout::stage_folder(folder, "compress"))});
+    run.inputs.push_back(layout::record(folder, "compress"));
+  }
+  if (plan.passes("probes")) {
+    run.add({"--probes", folder_word(layout::stage_folder(folder, "probes"))});
+    run.inputs.push_back(layout::record(folder, "probes"));
+  }
+  run.add_settings(options(), plan.settings_of("report"));
+  for (const std::string& budget : plan.budgets) run.limits.insert(run.limits.end(), {"--budget", budget});
+  return run;
+}
+
+}  // namespace
+
+const StageInfo& report_stage() {
+  static const StageInfo info = {.name = "report",
+                                 .options = options,
+                                 .metrics = {{metric_names},
+                                             {"compressed_relative_l2", "compressed_", "compress",
+                                              [](const AssetSettings& all) { return all.contains("compress"); }}},
+                                 .run = run};
+  return info;
+}
+
+}  // namespace kiln
