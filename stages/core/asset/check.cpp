@@ -33,7 +33,7 @@ class FileCheck {
 
   void run() {
     if (!asset_.mesh_file.empty()) asset_.vertices > 0 ? check_vertices() : check_atlas();
-    if (asset_.width == 0 || asset_.height == 0) return;  // no sizes to hold pictures against
+    if (asset_.width == 0 || asset_.height == 0) return;  // without the asset's sizes, pictures cannot be checked
     faults_.guard([&] { read_albedo_picture(folder_, asset_); });
     if (!asset_.normals_file.empty()) check_normals();
     check_planes();
@@ -77,7 +77,7 @@ class FileCheck {
   void check_planes() {
     std::set<std::string> files;
     for (const PrtPlane& plane : asset_.planes) {
-      if (plane.file.empty()) continue;  // told of already
+      if (plane.file.empty()) continue;  // this fault has been reported already
       if (!files.insert(plane.file).second)
         faults_.tell(BadInput(asset_.ranges_file.string(), "names " + plane.file + " twice",
                               "a picture of its own for every plane", remedy_));
@@ -90,7 +90,7 @@ class FileCheck {
     }
   }
 
-  /// Leaves out tables whose sizes are not known.
+  /// Checks the tables of a compressed asset, except those whose sizes are unknown.
   void check_tables(const PcaTables& tables) {
     const bool has_vectors = !tables.vectors_file.empty() && !tables.coefficient_scales.empty() &&
                              tables.vector_ranges.size() == asset_.planes.size() + 1;
@@ -104,7 +104,7 @@ class FileCheck {
   std::string remedy_;
 };
 
-/// What a folder requires must be what it uses, no less and no more.
+/// Checks that `requires` lists exactly what the folder uses.
 void check_requirements(const PrtDescription& asset, const FormatHead& head, Faults& faults) {
   if (head.version < 2) return;
   const std::vector<std::string> used = requirements(asset);
@@ -135,7 +135,7 @@ CheckedFolder check_probes(const fs::path& folder) {
   return {folder, probes_format, version, faults.found()};
 }
 
-/// Checks one folder, by whichever description it has.
+/// Checks one folder by the description that it has: ranges.json, pca.json or matrices.json.
 CheckedFolder check_one(const fs::path& folder) {
   if (is_there(folder / probes_name)) return check_probes(folder);
   CheckedFolder checked = check_description(description_file(folder));

@@ -9,16 +9,16 @@
 
 namespace kiln {
 
-/// A folder of the asset format, and what is wrong with it.
+/// One folder of the asset format, and its faults.
 struct CheckedFolder {
   std::filesystem::path folder;
-  std::string format;            ///< "kiln-prt", "kiln-prt-pca" or "kiln-probes"; empty: there is none of them
-  int version = 0;               ///< of the format; 0: not known
-  std::vector<BadInput> faults;  ///< all of them; of a file that is damaged the first
+  std::string format;            ///< "kiln-prt", "kiln-prt-pca" or "kiln-probes"; empty if the folder has none of these
+  int version = 0;               ///< version of the format; 0 if unknown
+  std::vector<BadInput> faults;  ///< all faults; for a damaged file only the first
 };
 
-/// Checks all that docs/format.md asks for: of `folder`, or where it is no folder of the format itself of those in it
-/// that are, by name, as of an asset's folder with prt/ and small/. There is at least one.
+/// Checks `folder` against docs/format.md. A folder that has no description of its own, such as an asset's folder with
+/// prt/ and small/, stands for the folders in it that have one, sorted by name. Returns at least one result.
 std::vector<CheckedFolder> check_folder(const std::filesystem::path& folder);
 
 }  // namespace kiln

@@ -24,7 +24,8 @@ void recover_picture(const std::filesystem::path& file, const PrtDescription& as
 void decode_transfer(const PrtAsset& asset, std::span<const std::uint32_t> texels, std::span<float> vectors) {
   const std::size_t length = asset.vector_length();
   const auto decode = [&](const auto& pictures) {
-    // In groups that stay in the first cache while plane after plane is read.
+    // Texels decoded at a time: few enough that their vectors stay in the first-level cache while plane after plane is
+    // read.
     constexpr std::size_t group = 64;
     for (std::size_t first = 0; first < texels.size(); first += group) {
       const std::size_t last = std::min(first + group, texels.size());

@@ -8,7 +8,7 @@
 
 namespace kiln {
 
-/// Where readers tell of faults: either the first one is thrown, or all of them are kept.
+/// Collects the faults that readers report: throws the first, or keeps all of them.
 class Faults {
  public:
   enum class Mode { throw_first, keep_all };
@@ -20,7 +20,7 @@ class Faults {
     found_.push_back(fault);
   }
 
-  /// Runs `read`, and tells of the BadInput that it throws, if it does. Gives whether it threw none.
+  /// Runs `read` and reports the BadInput that it throws, if any. Returns whether it threw none.
   template <class Read>
   bool guard(Read&& read) {
     try {

@@ -24,7 +24,7 @@ Fields Fields::child(const char* key, std::size_t index, const Json& object) con
 
 const Json* Fields::find(const char* key, const std::string& expected) const {
   if (has(key)) return &object_[key];
-  // What is no object has been told of.
+  // A value that is no object has been reported already.
   if (object_.is_object()) tell(BadInput(file_, "has no " + path(key), expected, remedy_));
   return nullptr;
 }

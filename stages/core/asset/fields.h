@@ -11,49 +11,49 @@
 
 namespace kiln {
 
-/// The keys of a JSON object, each fetched with its type and range checked. Faults name the file and the key; without
-/// a place to tell of them the first is thrown. Where they are kept, a key at fault reads as the value that each
-/// function names.
+/// Keys of a JSON object, each fetched with its type and range checked. Messages name the file and the key. Without
+/// `faults` the first fault is thrown; with it faults are collected, and a faulty key reads as the fallback that each
+/// function states.
 class Fields {
  public:
-  /// `where` is the place of the object in the file, such as "planes[3]"; empty: the whole. The object, and `faults`,
-  /// must outlive these fields.
+  /// Wraps `object`, which stands at `where` in the file, such as "planes[3]"; empty for the whole file. `object` and
+  /// `faults` must outlive this.
   Fields(std::string file, std::string where, const Json& object, std::string remedy, Faults* faults = nullptr);
 
-  /// An object of the same file, under `key` or, with an index, in the list there.
+  /// Wraps an object of the same file: the value of `key` or, with an index, an entry of the list there.
   Fields child(const char* key, const Json& object) const;
   Fields child(const char* key, std::size_t index, const Json& object) const;
 
   bool has(const char* key) const { return object_.is_object() && object_.contains(key); }
 
-  /// Null where the key is not there, which is a fault.
+  /// Returns the value of `key`; null, and a fault, if there is none.
   const Json* find(const char* key, const std::string& expected) const;
 
-  /// `otherwise` where it is at fault.
+  /// Reads a whole number; `otherwise` if faulty.
   int integer(const char* key, int lowest, int highest, int otherwise = 0) const;
 
-  /// 8 or 16; 8 where it is at fault.
+  /// Reads a number of bits, 8 or 16; 8 if faulty.
   int bits(const char* key) const;
 
-  /// A number that a float can hold; no number (NaN) where it is at fault.
+  /// Reads a number that fits a float; NaN if faulty.
   double number(const char* key) const;
 
-  /// Text; empty where it is at fault.
+  /// Reads text; empty if faulty.
   std::string text(const char* key, const std::string& expected) const;
 
-  /// Tells of a fault unless the text is `expected`.
+  /// Reports a fault unless the text is `expected`.
   void constant(const char* key, const std::string& expected) const;
 
-  /// A path that stays inside the folder of the file; empty where it is at fault.
+  /// Reads a path that stays inside the file's folder; empty if faulty.
   std::string safe_path(const char* key) const;
 
-  /// The list under `key`, of `count` entries, any number of them where that is nothing; null where it is at fault.
+  /// Returns the list under `key`, of `count` entries (of any number without `count`); null if faulty.
   const Json* list(const char* key, std::optional<std::size_t> count, const std::string& what) const;
 
-  /// The list of `count` finite numbers under `key`; empty where it is at fault.
+  /// Reads the list of `count` finite numbers under `key`; empty if faulty.
   std::vector<double> numbers(const char* key, std::size_t count) const;
 
-  /// Tells that `what` is `found`.
+  /// Reports that `what` is `found` instead of `expected`.
   void fail(const std::string& what, const std::string& found, const std::string& expected) const;
 
   void tell(const BadInput& fault) const;
@@ -63,7 +63,7 @@ class Fields {
 
   std::string path(const char* key) const { return where_.empty() ? key : where_ + "." + key; }
 
-  /// JSON text of a value for a message, cut where it is long.
+  /// Formats a value as JSON text for a message, shortened if it is long.
   static std::string shown(const Json& value);
 
  private:
@@ -74,10 +74,10 @@ class Fields {
   Faults* faults_;
 };
 
-/// Whether a value is a number that is finite as a float.
+/// Tests whether a value is a number that is finite as a float.
 bool is_finite_float(const Json& value);
 
-/// Throws BadInput where `file` is no whole JSON; `writer` is the program that writes such files.
+/// Parses a JSON file. Throws BadInput if `file` is no valid JSON; `writer` is the program that writes such files.
 Json parse_json(const std::filesystem::path& file, const std::string& writer, const std::string& remedy);
 
 }  // namespace kiln

@@ -7,26 +7,26 @@
 #include <span>
 #include <string>
 
-/// Names, keys and numbers of the asset format. docs/format.md is the specification; nothing else of Kiln spells them.
+/// Names, keys and numbers of the asset format. docs/format.md is the specification; no other code spells them.
 namespace kiln {
 
-/// Versions that are read, the newest of which is written. A file of a later version is refused; what an earlier reader
-/// would get wrong in a file of this version is listed under `requires` instead.
+/// Versions that Kiln reads; it writes the newest. A file of a later version is refused. Features that a reader of the
+/// same version might not know are listed under `requires`.
 inline constexpr int oldest_format_version = 1;
 inline constexpr int format_version = 2;
 
-/// The values of the keys `format` and `basis`.
+/// Values of the keys `format` and `basis`.
 inline constexpr const char* prt_format = "kiln-prt";
 inline constexpr const char* pca_format = "kiln-prt-pca";
 inline constexpr const char* probes_format = "kiln-probes";
-inline constexpr const char* basis_name = "real-sh-orthonormal";  ///< sh/basis.h
+inline constexpr const char* basis_name = "real-sh-orthonormal";  ///< the basis of sh/basis.h
 
 /// Files that describe a folder.
-inline constexpr const char* ranges_name = "ranges.json";    ///< of a baked one
-inline constexpr const char* pca_name = "pca.json";          ///< of a compressed one
-inline constexpr const char* probes_name = "matrices.json";  ///< of one of probes
+inline constexpr const char* ranges_name = "ranges.json";    ///< of a baked folder
+inline constexpr const char* pca_name = "pca.json";          ///< of a compressed folder
+inline constexpr const char* probes_name = "matrices.json";  ///< of a folder of probes
 
-/// Files that these name, as Kiln calls them; a reader goes by what the JSON says.
+/// Files named by a description, with the names that Kiln gives them; a reader takes the names from the JSON.
 inline constexpr const char* atlas_mesh_name = "atlas.drc";
 inline constexpr const char* vertex_mesh_name = "vertices.drc";
 inline constexpr const char* normal_map_name = "normal.png";
@@ -35,17 +35,18 @@ inline constexpr const char* vectors_name = "vectors.png";
 inline constexpr const char* cluster_ids_name = "clusters.png";
 inline constexpr const char* matrices_name = "matrices.png";
 
-/// "coeff_0_07.png": coefficient 7 of channel 0.
+/// Makes the name of a coefficient's picture: "coeff_0_07.png" is coefficient 7 of channel 0.
 std::string plane_file(int channel, int coefficient);
 
-/// "weight_03.png": the weights of basis vector 3 of a compressed asset.
+/// Makes the name of a picture of weights: "weight_03.png" holds those of basis vector 3 of a compressed asset.
 std::string weight_file(int component);
 
-/// "kiln-prt-0-1": the attribute that has coefficients 4 to 7 of channel 0 of an asset baked per vertex.
+/// Makes the name of a vertex attribute: "kiln-prt-0-1" holds coefficients 4 to 7 of channel 0 of an asset baked per
+/// vertex.
 std::string plane_attribute(int channel, int group);
-inline constexpr int attribute_components = 4;  ///< coefficients of one attribute: a shader's vec4
+inline constexpr int attribute_components = 4;  ///< coefficients per attribute: a shader's vec4
 
-/// Whether Kiln calls a file of planes, weights or tables so, whichever run of it wrote the file.
+/// Tests whether `name` is one that Kiln gives to planes, weights or tables, in any run.
 bool is_plane_name(const std::string& name);
 
 /// Keys of the JSON files.
@@ -90,15 +91,15 @@ inline constexpr const char* matrices_file = "matrices_file";
 inline constexpr const char* ranges = "ranges";
 }  // namespace key
 
-/// Entries of `requires`: what a reader of the base form (textured planes, normals in object space, no albedo) would
-/// get wrong without knowing it.
+/// Entries of `requires`: features that a reader of the base form (textured planes, normals in object space, no albedo)
+/// would misread without knowing them.
 namespace requirement {
 inline constexpr const char* albedo = "albedo";
 inline constexpr const char* tangent_normals = "tangent_normals";
 inline constexpr const char* vertices = "vertices";
 }  // namespace requirement
 
-/// The least and the largest value of each number in the files.
+/// Bounds of the numbers in the files.
 inline constexpr int most_asset_bands = 24;
 inline constexpr int most_asset_channels = 64;
 inline constexpr int largest_asset_side = 16384;
@@ -108,36 +109,36 @@ inline constexpr int most_probe_bands = 8;
 inline constexpr std::size_t most_probes = 1u << 18;
 inline constexpr int largest_probe_grid = 1024;
 
-/// Range compression of the values of a plane: stored = round((x - lowest) / (highest - lowest) * (2^bits - 1)); where
-/// both are equal every stored value is 0 (Chapter 2010, 4.2.7).
+/// Range compression of a plane's values: stored = round((x - lowest) / (highest - lowest) * (2^bits - 1)); if both
+/// bounds are equal, every stored value is 0 ([Chapter 2010], 4.2.7).
 struct PlaneRange {
   double lowest = 0;
   double highest = 0;
 
-  /// The range whose stored values of `bits` are `step` apart.
+  /// Makes the range whose neighbouring stored values of `bits` are `step` apart.
   static PlaneRange of_steps(double lowest, double step, int bits) {
     return {lowest, lowest + step * largest_stored(bits)};
   }
 
   double width() const { return highest - lowest; }
 
-  /// The distance between what neighbouring stored values stand for.
+  /// Returns the difference between the values of neighbouring stored numbers.
   double step(int bits) const { return width() / largest_stored(bits); }
 
-  /// The stored value of `value`, which is clamped to the range.
+  /// Returns the stored number of `value`, which is clamped to the range.
   std::uint32_t store(double value, int bits) const {
     if (!(highest > lowest)) return 0;
     const double place = (value - lowest) / width();
     return static_cast<std::uint32_t>(std::lround(std::clamp(place, 0.0, 1.0) * largest_stored(bits)));
   }
 
-  /// What a stored value of 0 to 2^bits - 1 stands for.
+  /// Returns the value of a stored number, 0 to 2^bits - 1.
   double recover(std::uint32_t stored, int bits) const { return lowest + stored / largest_stored(bits) * width(); }
 
   static double largest_stored(int bits) { return (1u << bits) - 1; }
 };
 
-/// The range of values, of which there is at least one.
+/// Finds the range of at least one value.
 PlaneRange range_of(std::span<const float> values);
 
 }  // namespace kiln

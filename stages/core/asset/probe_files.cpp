@@ -16,7 +16,7 @@ namespace {
 constexpr const char* remedy = "make the probes again with kiln-probes";
 constexpr int stored_bits = 16;
 
-/// The range of every entry over all valid points.
+/// Finds the range of every matrix entry over all valid points.
 std::vector<PlaneRange> entry_ranges(const ProbeSet& probes) {
   const std::size_t entries = probes.entries();
   std::vector<PlaneRange> ranges(entries);
@@ -43,7 +43,7 @@ Image<std::uint16_t> stored_matrices(const ProbeSet& probes, const std::vector<P
   return stored;
 }
 
-/// Three finite numbers; zeros where they are at fault.
+/// Reads three finite numbers; zeros if faulty.
 Eigen::Vector3f read_vector(const Fields& fields, const Json& value, const std::string& what) {
   if (value.is_array() && value.size() == 3 && std::all_of(value.begin(), value.end(), is_finite_float))
     return {value[0].get<float>(), value[1].get<float>(), value[2].get<float>()};
@@ -56,7 +56,7 @@ Eigen::Vector3f read_vector(const Fields& fields, const char* name) {
   return value != nullptr ? read_vector(fields, *value, fields.path(name)) : Eigen::Vector3f(0, 0, 0);
 }
 
-/// Nothing where it is at fault.
+/// Reads the grid; nothing if there is none or it is faulty.
 std::optional<ProbeGrid> read_grid(const Fields& fields) {
   ProbeGrid grid;
   const auto is_count = [](const Json& n) {
@@ -116,7 +116,7 @@ void read_matrices(const fs::path& file, const std::vector<PlaneRange>& ranges, 
           ranges[e].recover(stored.at(static_cast<int>(e), static_cast<int>(count - 1 - k)), stored_bits));
 }
 
-/// All that matrices.json says but its head, and the matrices.
+/// Reads everything in matrices.json except its head and the matrices.
 ProbeSet read_set(const fs::path& folder, const Json& document, const Fields& fields, Faults& faults) {
   ProbeSet probes;
   probes.bands = fields.integer(key::bands, 1, most_probe_bands);
@@ -131,7 +131,7 @@ ProbeSet read_set(const fs::path& folder, const Json& document, const Fields& fi
   }
   const std::string matrices = fields.safe_path(key::matrices_file);
   const std::size_t entries = probes.entries();
-  if (probes.positions.empty() || entries == 0) return probes;  // no sizes follow from what is at fault
+  if (probes.positions.empty() || entries == 0) return probes;  // faulty sizes say nothing about the matrices
   probes.valid = read_valid(fields, probes.positions.size());
   std::vector<PlaneRange> ranges;
   const Json* list = fields.list(key::ranges, entries, "ranges");

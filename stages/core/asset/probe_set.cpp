@@ -22,7 +22,7 @@ void normalise(Weights& weights) {
 Weights grid_weights(const ProbeSet& probes, const Eigen::Vector3f& position) {
   const ProbeGrid& grid = *probes.grid;
   std::array<int, 3> cell{};
-  Eigen::Vector3f within = Eigen::Vector3f::Zero();  // 0 at the cell's lower corner, 1 at its upper one
+  Eigen::Vector3f within = Eigen::Vector3f::Zero();  // position in the cell: 0 at its lower corner, 1 at its upper one
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     const float length = grid.upper[axis] - grid.lower[axis];
@@ -43,7 +43,7 @@ Weights grid_weights(const ProbeSet& probes, const Eigen::Vector3f& position) {
       index += stride * static_cast<std::size_t>(cell[a] + up);
       stride *= static_cast<std::size_t>(grid.size[a]);
     }
-    // The upper corner of an axis of one point weighs nothing, and is not there.
+    // Skips corners of weight 0: an axis of one point has no upper corner.
     if (weight > 0 && probes.valid[index] != 0) weights.emplace_back(index, weight);
   }
   return weights;
@@ -62,7 +62,7 @@ Weights nearest_weights(const ProbeSet& probes, const Eigen::Vector3f& position,
   }
   if (nearest.empty()) return nearest;
   if (nearest.front().second == 0) return {{nearest.front().first, 1.f}};
-  const float least = nearest.front().second;  // so that no weight overflows
+  const float least = nearest.front().second;  // dividing by the smallest keeps every weight from overflowing
   for (auto& [probe, weight] : nearest) weight = least / weight;
   return nearest;
 }

@@ -18,25 +18,25 @@
 
 namespace kiln {
 
-/// Points at the corners of equal cells, borders included. Along an axis of one point it lies in the middle.
+/// Points at the corners of equal cells, the grid's border included. An axis with a single point has it in the middle.
 struct ProbeGrid {
   std::array<int, 3> size = {1, 1, 1};
   Eigen::Vector3f lower = Eigen::Vector3f::Zero(), upper = Eigen::Vector3f::Zero();  ///< object units
 
   std::size_t count() const { return static_cast<std::size_t>(size[0]) * size[1] * size[2]; }
-  /// x runs fastest, then y, then z.
+  /// Returns the position of a point; x runs fastest, then y, then z.
   Eigen::Vector3f position(std::size_t index) const;
 };
 
-/// What becomes of distant light on its way to points in space, past and off the meshes that stand there: of each point
-/// a matrix M for each channel, L'_i = sum over j of M_ij L_j, L the coefficients of the light far away and L' those of
-/// the light that comes in at the point.
+/// Transfer of distant light to points in space, past the meshes around them and reflected by them. Each point has a
+/// matrix M per channel: L'_i = sum over j of M_ij L_j, where L are the coefficients of the distant light and L' those
+/// of the light that arrives at the point.
 struct ProbeSet {
   int bands = 0;
   int channels = 1;                        ///< 1: the same for all colours; 3: red, green and blue
-  std::optional<ProbeGrid> grid;           ///< none: points anywhere
-  std::vector<Eigen::Vector3f> positions;  ///< object units; of a grid in its order
-  std::vector<std::uint8_t> valid;         ///< 0: inside of something solid, its matrices mean nothing
+  std::optional<ProbeGrid> grid;           ///< empty if the points are arbitrary
+  std::vector<Eigen::Vector3f> positions;  ///< object units; those of a grid in its order
+  std::vector<std::uint8_t> valid;         ///< 0: inside something solid, its matrices are meaningless
   std::vector<float> matrices;             ///< point after point, channel after channel, row after row
 
   int coefficients() const { return bands * bands; }
@@ -48,27 +48,27 @@ struct ProbeSet {
   }
 };
 
-/// Writes matrices.json and matrices.png (docs/format.md). Values are rounded to 65,535 steps of the range that their
-/// entry has over all valid points.
+/// Writes matrices.json and matrices.png (docs/format.md). Each matrix entry is stored in 65,535 steps of its range
+/// over all valid points.
 void save_probes(OutputSet& outputs, const ProbeSet& probes);
 
-/// Reads what save_probes wrote. Throws BadInput where a file is missing, damaged or not of that format.
+/// Reads what save_probes wrote. Throws BadInput if a file is missing, damaged or of another format.
 ProbeSet load_probes(const std::filesystem::path& folder);
 
-/// The same with all faults told of, and the version of the format, 0 where that is at fault. What is at fault is left
-/// out of the set.
+/// Reads probes like load_probes, but reports all faults to `faults`. Returns the probes without their faulty parts,
+/// and the version of the format, 0 if faulty.
 std::pair<ProbeSet, int> read_probes(const std::filesystem::path& folder, Faults& faults);
 
-/// Which probes make up the light at `position`, with weights that add up to 1. Of a grid the corners of the cell
-/// around it, trilinear, `position` clamped to the grid; of other points the eight nearest, by the inverse of the
-/// squared distance (Shepard 1968). Points that are not valid are left out, and where all of these are it is the
-/// nearest that is. Empty where none is valid.
+/// Finds the probes that make up the light at `position`, with weights that add up to 1. On a grid these are the
+/// corners of the cell around it, weighted trilinearly, with `position` clamped to the grid; otherwise the eight
+/// nearest points, weighted by inverse squared distance [Shepard 1968]. Invalid points are left out; if all of these
+/// are invalid, the nearest valid point counts alone. Empty if no point is valid.
 std::vector<std::pair<std::size_t, float>> probe_weights(const ProbeSet& probes, const Eigen::Vector3f& position);
 
-/// The light at `position` when `source` is the light far away, for drawing any other asset there with its own
-/// transfer: probes.bands bands (bands that `source` lacks are 0), as many channels as the one of both that has more.
-/// With no valid probe it is the source's. Throws std::invalid_argument where the channels do not fit: neither the same
-/// nor one.
+/// Computes the light at `position` from the distant light `source`, for drawing another asset there with its own
+/// transfer. Has probes.bands bands (bands that `source` lacks are 0) and as many channels as the larger of `probes`
+/// and `source`. Returns `source` if no probe is valid. Throws std::invalid_argument if the numbers of channels are
+/// neither equal nor one of them 1.
 LightCoefficients light_at(const ProbeSet& probes, const Eigen::Vector3f& position, const LightCoefficients& source);
 
 }  // namespace kiln

@@ -14,8 +14,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Spreads the values of a plane of weights that uses few of the 256 over all of them. It means the same; GPUs (and
-/// drivers in software) that filter 8-bit textures in 8 bits then round to less than a step of the weights.
+/// Stretches a plane of weights that uses few of the 256 stored values over all of them, which changes no weight. GPUs
+/// (and software drivers) that filter 8-bit textures in 8 bits then round to less than a step of the weights.
 void spread(Image<std::uint8_t>& picture, PlaneRange& range) {
   const int largest = *std::max_element(picture.values().begin(), picture.values().end());
   if (largest == 0) return;
@@ -24,7 +24,7 @@ void spread(Image<std::uint8_t>& picture, PlaneRange& range) {
   range.highest = range.lowest + range.width() / factor;
 }
 
-/// Pictures of 8 and 16 bits as 16-bit ones: the same part of white.
+/// Reads pictures of 8 and 16 bits as 16-bit ones, scaled so that white stays white.
 std::vector<Image<std::uint16_t>> read_mixed_pictures(const fs::path& folder, const PrtDescription& asset,
                                                       const std::string& remedy) {
   std::vector<Image<std::uint16_t>> pictures;

@@ -18,28 +18,29 @@
 
 namespace kiln {
 
-/// One coefficient of one channel, or, in a compressed asset, the weights of one basis vector.
+/// One coefficient of one channel or, in a compressed asset, the weights of one basis vector.
 struct PrtPlane {
-  std::string file;  ///< its picture, relative to the asset's folder; empty: an attribute of the mesh has it
+  std::string file;  ///< picture, relative to the asset's folder; empty if an attribute of the mesh holds the plane
   int channel = 0;
-  int coefficient = 0;  ///< in a compressed asset the number of the basis vector
+  int coefficient = 0;  ///< in a compressed asset, the number of the basis vector
   PlaneRange range;
-  int bits = 8;                 ///< of a stored value, 8 or 16
-  std::string attribute = {};   ///< of the mesh of an asset baked per vertex
-  std::uint32_t unique_id = 0;  ///< that Draco gave the attribute
-  int component = 0;            ///< of the attribute
+  int bits = 8;                 ///< bits of a stored value, 8 or 16
+  std::string attribute = {};   ///< attribute of the mesh of an asset baked per vertex
+  std::uint32_t unique_id = 0;  ///< the attribute's id in the Draco file
+  int component = 0;            ///< component of the attribute
 };
 
-/// What makes transfer vectors of the weights of a compressed asset: of each cluster of texels a mean and the vectors
-/// that the weights stand before. A transfer vector is all channels' coefficients, channel after channel.
+/// Means and basis vectors of a compressed asset, which turn a texel's weights into its transfer vector: each cluster
+/// of texels has one mean and one basis vector per weight. A transfer vector holds all channels' coefficients, channel
+/// after channel.
 struct PrtClusters {
   int count = 1;
   int components = 0;          ///< weights per texel
-  int length = 0;              ///< of a transfer vector: channels * bands^2
-  std::vector<float> vectors;  ///< per cluster its mean, then its `components` basis vectors
-  Image<std::uint8_t> ids;     ///< the cluster of every texel; empty where there is one
+  int length = 0;              ///< numbers of a transfer vector: channels * bands^2
+  std::vector<float> vectors;  ///< for each cluster its mean, then its `components` basis vectors
+  Image<std::uint8_t> ids;     ///< the cluster of every texel; empty if there is only one cluster
 
-  /// `component` of 0 to components - 1; mean() is M_k, vector() B_kj of D3DX' equation.
+  /// Vectors of a cluster: mean() is M_k, vector() is B_kj of [D3DX]'s equation; `component` is 0 to components - 1.
   std::span<const float> mean(int cluster) const { return row(cluster * (components + 1)); }
   std::span<const float> vector(int cluster, int component) const {
     return row(cluster * (components + 1) + 1 + component);
@@ -53,83 +54,84 @@ struct PrtClusters {
   }
 };
 
-/// The share of light that the asset's surface reflects, which its transfer leaves out: exit radiance is this times
-/// the sum of light and transfer coefficients.
+/// Reflectance of the asset's surface, which its transfer does not include: exit radiance is albedo times the sum of
+/// light and transfer coefficients.
 struct PrtAlbedo {
-  bool known = false;     ///< whether the asset says anything of it; if not, a grey of the consumer's choice will do
-  std::string file = {};  ///< of the picture, relative to the asset's folder; empty: none
-  Image<std::uint8_t> picture = {};  ///< 3 channels, sRGB-encoded, of the asset's size; empty where it is constant
-  Eigen::Vector3f constant = Eigen::Vector3f::Ones();  ///< linear; where there is no picture
-  bool within_transfer = false;  ///< whether a bake has multiplied transfer by it, which leaves ones here
+  bool known = false;                ///< whether the asset states its albedo; if not, consumers choose a grey
+  std::string file = {};             ///< the picture, relative to the asset's folder; empty if there is none
+  Image<std::uint8_t> picture = {};  ///< 3 channels, sRGB-encoded, of the asset's size; empty if constant
+  Eigen::Vector3f constant = Eigen::Vector3f::Ones();  ///< linear; used if there is no picture
+  bool within_transfer = false;  ///< whether the bake has multiplied transfer by albedo, which is 1 here then
 
   static PrtAlbedo of_constant(const Eigen::Vector3f& linear) { return {true, "", {}, linear}; }
   static PrtAlbedo of_picture(const std::string& name) { return {true, name}; }
   static PrtAlbedo of_transfer() { return {true, "", {}, Eigen::Vector3f::Ones(), true}; }
 };
 
-/// What pca.json says of the means and basis vectors; PrtClusters has them decoded.
+/// Description of the means and basis vectors in pca.json; PrtClusters has them decoded.
 struct PcaTables {
   int clusters = 1;
-  std::string ids_file;                    ///< the cluster of every texel; empty where there is one
-  std::string vectors_file;                ///< means and basis vectors
-  std::vector<double> coefficient_scales;  ///< what entry i of a stored vector is multiplied by
-  std::vector<PlaneRange> vector_ranges;   ///< of the means, then of each basis vector
+  std::string ids_file;      ///< picture with the cluster of every texel; empty if there is only one cluster
+  std::string vectors_file;  ///< picture of means and basis vectors
+  std::vector<double> coefficient_scales;  ///< factor of entry i of a stored vector
+  std::vector<PlaneRange> vector_ranges;   ///< range of the means, then of each basis vector
 };
 
-/// All that the JSON of a baked folder says, and nothing of the files that it names. Planes of coefficients are sorted
-/// by channel, then coefficient, and there is one for each; of weights, `coefficient` is the number of the basis
-/// vector.
+/// Content of a baked folder's JSON, without the files that it names. Planes of coefficients are sorted by channel,
+/// then coefficient, each there once; of planes of weights, `coefficient` is the number of the basis vector.
 struct PrtDescription {
-  std::filesystem::path ranges_file = {};            ///< where it comes from, for messages
-  std::string mesh_file = {};                        ///< relative to its folder
-  std::string normals_file = {};                     ///< the same; empty: none
-  NormalSpace normal_space = NormalSpace::object;    ///< of that map
-  PrtAlbedo albedo = {};                             ///< without its picture
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< of the mesh's positions, in the coordinates of the file
+  std::filesystem::path ranges_file = {};          ///< the JSON file, for messages
+  std::string mesh_file = {};                      ///< relative to the JSON file's folder
+  std::string normals_file = {};                   ///< relative to the same folder; empty if there is none
+  NormalSpace normal_space = NormalSpace::object;  ///< space of that normal map
+  PrtAlbedo albedo = {};                           ///< without its picture
+  /// origin of the mesh's positions, in the coordinates of the original file
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   int bands = 0;
   int channels = 0;
-  int bits = 8;  ///< 8 or 16, of stored values; of a compressed asset the most of any plane
+  int bits = 8;  ///< bits of stored values, 8 or 16; in a compressed asset the most that any plane has
   int width = 0;
   int height = 0;
-  int vertices = 0;  ///< of an asset baked per vertex alone, whose width and height are 0
+  int vertices = 0;  ///< vertices of an asset baked per vertex, whose width and height are 0; else 0
   std::vector<PrtPlane> planes = {};
-  std::optional<PcaTables> pca = {};  ///< of a compressed asset alone
+  std::optional<PcaTables> pca = {};  ///< set for compressed assets only
 
-  /// Numbers of a transfer vector: all channels' coefficients, channel after channel.
+  /// Returns the numbers of a transfer vector: all channels' coefficients, channel after channel.
   std::size_t vector_length() const {
     return static_cast<std::size_t>(channels) * static_cast<std::size_t>(bands) * static_cast<std::size_t>(bands);
   }
 };
 
-/// A baked PRT folder, as it is on the disk: the mesh with its atlas, and a picture for every transfer coefficient, or
-/// for every weight where it is compressed. One that is baked per vertex has transfer vectors in place of pictures.
+/// A baked folder in memory, values still as stored: the mesh with its atlas, and a picture for each transfer
+/// coefficient (for each weight if compressed). An asset baked per vertex has transfer vectors instead of pictures.
 struct PrtAsset : PrtDescription {
   TriangleMesh mesh;
-  std::variant<std::vector<Image<std::uint8_t>>, std::vector<Image<std::uint16_t>>> pictures;  ///< as `bits` says
-  std::optional<PrtClusters> clusters;  ///< of a compressed asset alone
-  std::vector<float> vertex_transfer;   ///< of one baked per vertex alone: a vector for each vertex of `mesh`
+  /// one per plane, 8 or 16 bits as `bits` says
+  std::variant<std::vector<Image<std::uint8_t>>, std::vector<Image<std::uint16_t>>> pictures;
+  std::optional<PrtClusters> clusters;  ///< set for compressed assets only
+  /// set for assets baked per vertex only: one transfer vector per vertex of `mesh`
+  std::vector<float> vertex_transfer;
 
   bool is_per_vertex() const { return !vertex_transfer.empty(); }
 };
 
-/// Reads `folder`/pca.json, or where there is none `folder`/ranges.json, and what it names: the mesh, the planes and
-/// the albedo, and nothing else. Throws BadInput where anything is missing, damaged, at odds with the rest, or beyond
-/// this version of Kiln.
+/// Reads `folder`/pca.json or, without it, `folder`/ranges.json, and the files that it names: mesh, planes and albedo.
+/// Throws BadInput if anything is missing, damaged, inconsistent, or newer than this version of Kiln.
 PrtAsset load_prt_asset(const std::filesystem::path& folder);
 
 /// Reads the JSON alone, by the same rules.
 PrtDescription load_prt_description(const std::filesystem::path& folder);
 
-/// Reads another form of `asset`, as kiln-compress makes it. Throws BadInput as load_prt_asset does, and where it has
-/// other bands.
+/// Reads another form of `asset`, such as kiln-compress makes. Throws BadInput as load_prt_asset does, and for a
+/// different number of bands.
 PrtAsset load_other_form(const std::filesystem::path& folder, const PrtAsset& asset);
 
-/// Transfer vectors of texels (numbered as Image has them), one after another: what planes, or weights and clusters,
-/// stand for. `vectors` has room for channels * bands^2 values for each texel.
+/// Decodes the transfer vectors of texels (numbered as Image numbers them), one after another, from planes or from
+/// weights and clusters. `vectors` holds channels * bands^2 values per texel.
 void decode_transfer(const PrtAsset& asset, std::span<const std::uint32_t> texels, std::span<float> vectors);
 
-/// Transfer at some places of a folder of kiln-bake: texels (numbered as Image has them), or vertices of its mesh. Goes
-/// plane by plane, so that of the pictures one is in memory. Throws BadInput.
+/// Reads transfer vectors at some points of a folder of kiln-bake: texels (numbered as Image numbers them) or vertices
+/// of its mesh. Only one picture is in memory at a time. Throws BadInput.
 std::vector<TransferVectors> read_transfer(const std::filesystem::path& folder, std::span<const std::uint32_t> places);
 
 }  // namespace kiln

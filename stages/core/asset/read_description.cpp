@@ -46,7 +46,7 @@ Eigen::Vector3d read_origin(const Fields& fields) {
   return origin.empty() ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(origin[0], origin[1], origin[2]);
 }
 
-/// Bands, channels, the mesh and what else both descriptions have.
+/// Reads what both descriptions have: bands, channels, mesh, normals, albedo.
 void read_shared(const Fields& fields, PrtDescription& asset) {
   if (asset.vertices == 0) {
     asset.width = fields.integer(key::width, 1, largest_asset_side);
@@ -58,7 +58,7 @@ void read_shared(const Fields& fields, PrtDescription& asset) {
   asset.origin = read_origin(fields);
 }
 
-/// The plane at `index` of the list, which has each once, in order.
+/// Reads the plane at `index` of the list, which has each plane once, in order.
 PrtPlane read_plane(const Fields& fields, const PrtDescription& asset, int index) {
   const int coefficients = asset.bands * asset.bands;
   PrtPlane plane;
@@ -82,18 +82,18 @@ PrtPlane read_plane(const Fields& fields, const PrtDescription& asset, int index
   return plane;
 }
 
-/// What ranges.json has of its own.
+/// Reads what only ranges.json has.
 void read_ranges(const Fields& fields, PrtDescription& asset) {
   asset.bits = fields.bits(key::bits);
   if (fields.has(key::vertices)) asset.vertices = fields.integer(key::vertices, 1, most_asset_vertices, 1);
   read_shared(fields, asset);
-  if (asset.vector_length() == 0) return;  // of what is at fault no number of planes follows
+  if (asset.vector_length() == 0) return;  // a faulty size gives no number of planes
   const Json* planes = fields.list(key::planes, asset.vector_length(), "planes");
   for (std::size_t k = 0; planes != nullptr && k < planes->size(); ++k)
     asset.planes.push_back(read_plane(fields.child(key::planes, k, (*planes)[k]), asset, static_cast<int>(k)));
 }
 
-/// What pca.json has of its own.
+/// Reads what only pca.json has.
 void read_pca(const Fields& fields, PrtDescription& asset) {
   read_shared(fields, asset);
   const int length = static_cast<int>(asset.vector_length());
@@ -127,7 +127,7 @@ FormatHead read_head(const Fields& fields, const char* format, const std::vector
   FormatHead head;
   fields.constant(key::format, format);
   head.version = fields.integer(key::version, oldest_format_version, format_version);
-  // Version 1 has no such key, so there it is one of those that are ignored.
+  // Version 1 has no `origin`: a key of that name is unknown there, and ignored.
   if (head.version >= 2) {
     const std::string expected = known.empty() ? "nothing" : fmt::format("none but {}", fmt::join(known, ", "));
     const Json* list = fields.list(key::required, std::nullopt, "names of what a reader must know");

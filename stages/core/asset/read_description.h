@@ -11,29 +11,29 @@
 
 namespace kiln {
 
-/// What every JSON of the format begins with.
+/// Keys at the start of every JSON file of the format.
 struct FormatHead {
-  int version = 0;                    ///< 0 where it is at fault
-  std::vector<std::string> required;  ///< what is known of it
+  int version = 0;                    ///< 0 if faulty
+  std::vector<std::string> required;  ///< entries of `requires` that this reader knows
 };
 
-/// Reads the format, a version that is known, what it requires, which must be among `known`, and the basis.
+/// Reads the format, its version, what it requires (each of which must be among `known`) and the basis.
 FormatHead read_head(const Fields& fields, const char* format, const std::vector<std::string>& known);
 
-/// "min" and "max".
+/// Reads "min" and "max".
 PlaneRange read_range(const Fields& fields);
 
-/// The description in `file`, ranges.json or pca.json, with all its faults told of, and what it begins with. What is at
-/// fault in it is left out, or 0.
+/// Reads `file`, ranges.json or pca.json, with all faults reported, and returns its description and its head. Faulty
+/// parts are left out, or 0.
 std::pair<PrtDescription, FormatHead> read_description(const std::filesystem::path& file, Faults& faults);
 
-/// What a reader of the base form would get wrong, as `requires` has it.
+/// Lists what a reader must know beyond the base form, as `requires` states it.
 std::vector<std::string> requirements(const PrtDescription& asset);
 
-/// What to do about a fault of such a folder.
+/// Suggests what to do about a fault of such a folder.
 std::string remedy_for(const PrtDescription& asset);
 
-/// The file that describes a folder: pca.json, or where there is none ranges.json. Throws BadInput where there is none.
+/// Finds the file that describes a folder: pca.json or, without it, ranges.json. Throws BadInput if there is neither.
 std::filesystem::path description_file(const std::filesystem::path& folder);
 
 }  // namespace kiln

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Throws unless the mesh is fit to be drawn: its triangles' vertices are there, and it has a size.
+/// Throws unless the mesh can be drawn: its triangles refer to its vertices, and its extent is above 0.
 void require_drawable(const TriangleMesh& mesh, const fs::path& file) {
   const auto is_there = [&](std::uint32_t vertex) { return vertex < mesh.positions.size(); };
   for (const Triangle& triangle : mesh.triangles)

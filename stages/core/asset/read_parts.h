@@ -13,38 +13,38 @@
 #include "image/image.h"
 #include "mesh/draco_file.h"
 
-/// The files that a description names, read one by one and held against it. All throw BadInput.
+/// Readers of the files that a description names; each checks its file against the description and throws BadInput.
 namespace kiln {
 
-/// The mesh of an asset with an atlas, fit to be drawn.
+/// Reads the mesh of an asset with an atlas, and checks that it can be drawn.
 TriangleMesh read_atlas_mesh(const std::filesystem::path& folder, const PrtDescription& asset);
 
-/// The mesh of an asset baked per vertex, fit to be drawn, with its attributes.
+/// Reads the mesh of an asset baked per vertex with its attributes, and checks that it can be drawn.
 AttributedMesh read_vertex_mesh(const std::filesystem::path& folder, const PrtDescription& asset);
 
-/// The attribute of that mesh that has plane `k`, with as many bits and components as it needs.
+/// Finds the attribute of that mesh that holds plane `k`, and checks its bits and components.
 const IntegerAttribute& attribute_of(const AttributedMesh& mesh, const std::filesystem::path& folder,
                                      const PrtDescription& asset, std::size_t k);
 
-/// Values of a plane at some vertices, from its attribute.
+/// Reads the values of a plane at some vertices from its attribute.
 std::vector<float> vertex_values(const IntegerAttribute& attribute, const PrtPlane& plane,
                                  std::span<const std::uint32_t> vertices);
 
-/// Throws unless a picture has that size and so many channels, 1 or 3.
+/// Throws unless a picture has the given size and 1 or 3 channels.
 template <class Texel>
 void require_picture(const Image<Texel>& picture, const std::filesystem::path& file, int width, int height,
                      int channels, const std::string& remedy);
 
-/// The picture of albedo, where the asset has one.
+/// Reads the picture of the albedo, if the asset has one.
 Image<std::uint8_t> read_albedo_picture(const std::filesystem::path& folder, const PrtDescription& asset);
 
-/// Means and basis vectors of a compressed asset, as PrtClusters has them.
+/// Reads the means and basis vectors of a compressed asset, laid out as in PrtClusters.
 std::vector<float> read_vectors(const std::filesystem::path& folder, const PrtDescription& asset);
 
-/// The cluster of every texel of a compressed asset, all of which are there; empty where there is one.
+/// Reads the cluster of every texel of a compressed asset, each of which must exist; empty if there is only one.
 Image<std::uint8_t> read_cluster_ids(const std::filesystem::path& folder, const PrtDescription& asset);
 
-/// A grey PNG of 8 or 16 bits and of that size.
+/// Reads a grey PNG of 8 or 16 bits and of the given size.
 template <class Texel>
 Image<Texel> read_grey(const std::filesystem::path& file, int width, int height, const std::string& remedy);
 
@@ -53,8 +53,8 @@ Image<std::uint8_t> read_grey(const std::filesystem::path& file, int width, int 
 template <>
 Image<std::uint16_t> read_grey(const std::filesystem::path& file, int width, int height, const std::string& remedy);
 
-/// The pictures of all planes, which have the bits of `Texel`. The first plane at fault is the one that is told of,
-/// whatever the number of threads.
+/// Reads the pictures of all planes, whose bits are those of `Texel`. With several faults the first plane's is
+/// reported, on any number of threads.
 template <class Texel>
 std::vector<Image<Texel>> read_grey_pictures(const std::filesystem::path& folder, const PrtDescription& asset,
                                              const std::string& remedy) {

@@ -14,7 +14,7 @@ namespace {
 
 Json range_json(const PlaneRange& range) { return {{key::lowest, range.lowest}, {key::highest, range.highest}}; }
 
-/// What every description begins with.
+/// Makes the keys at the start of every description.
 Json head_of(const PrtDescription& asset) {
   Json head = {{key::format, asset.pca ? pca_format : prt_format}, {key::version, format_version}};
   head[key::required] = Json::array();
@@ -35,7 +35,7 @@ void add_albedo(Json& head, const PrtAlbedo& albedo) {
     head[key::albedo] = {constant.x(), constant.y(), constant.z()};
 }
 
-/// Sizes, and what both descriptions name.
+/// Adds the sizes, and the files that both descriptions name.
 void add_shared(Json& head, const PrtDescription& asset) {
   if (asset.vertices > 0) {
     head[key::vertices] = asset.vertices;
@@ -87,7 +87,7 @@ Image<Stored> stored_plane(const Image<float>& values, const PlaneRange& range, 
   return stored;
 }
 
-/// The attribute that the next coefficients of a channel go into.
+/// Makes an empty attribute for the next coefficients of a channel.
 IntegerAttribute new_attribute(const PrtDescription& asset, int channel, int coefficient, std::size_t vertices) {
   const int left = coefficient_count(asset.bands) - coefficient;
   IntegerAttribute attribute{plane_attribute(channel, coefficient / attribute_components),
@@ -157,7 +157,7 @@ std::vector<std::uint32_t> write_vertex_asset(OutputSet& outputs, PrtDescription
   const std::vector<std::uint32_t> sources = save_attributed_draco(file, mesh, attributes);
   asset.vertices = static_cast<int>(sources.size());
 
-  // The ids that Draco gave the attributes.
+  // Looks up the ids that Draco gave the attributes.
   for (const IntegerAttribute& written : load_attributed_draco(file).attributes)
     for (PrtPlane& plane : asset.planes)
       if (plane.attribute == written.name) plane.unique_id = written.unique_id;
