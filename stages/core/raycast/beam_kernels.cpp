@@ -10,8 +10,8 @@
 #include "raycast/exact_side.h"
 #include "sh/transfer_sums.h"
 
-// Headers come first: what they define is compiled for every machine, and only what beam_kernels.inc defines for wider
-// vectors.
+// Includes headers before the target options below: their functions are compiled for every machine, and only those of
+// beam_kernels.inc for wider vectors.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #include <immintrin.h>
 #define KILN_WIDER_VECTORS 1
@@ -30,7 +30,7 @@ using Bits = std::int32_t __attribute__((vector_size(4 * beam_lanes)));  // 0 or
 using Longs = std::int64_t __attribute__((vector_size(8 * beam_lanes)));
 
 constexpr std::uint32_t all_lanes = (1u << beam_lanes) - 1;
-constexpr float looser = 1.00001f;  // some 80 roundings
+constexpr float looser = 1.00001f;  // a margin of some 80 roundings
 
 namespace any_machine {
 #include "raycast/beam_kernels.inc"

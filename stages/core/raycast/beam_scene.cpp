@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::uint32_t no_neighbour = std::numeric_limits<std::uint32_t>::max();
 
-/// One number for each place, by vertex.
+/// Numbers the places of vertices: vertices at the same position get the same number.
 std::vector<std::uint32_t> places_of(std::span<const Eigen::Vector3f> positions) {
   std::vector<std::uint32_t> by_place(positions.size()), place(positions.size());
   std::iota(by_place.begin(), by_place.end(), 0u);
@@ -33,18 +33,19 @@ std::vector<std::uint32_t> places_of(std::span<const Eigen::Vector3f> positions)
 }
 
 struct Neighbours {
-  /// Triangles across the sides of each, corner 0 to 1 first; none where a side does not have just two, which run
-  /// through it in opposite ways.
+  /// Neighbours across the three sides of each triangle, corner 0 to 1 first; none if the side does not have exactly
+  /// two triangles, of opposite orientation.
   std::vector<std::array<std::uint32_t, 3>> across;
-  /// Sides, from vertex to vertex, that are run through this way more often than the other; once for each time.
+  /// Sides, from vertex to vertex, that are used more often in this direction than in the other, once for each surplus
+  /// use.
   std::vector<std::array<std::uint32_t, 2>> borders;
 };
 
 Neighbours neighbours_of(std::span<const Eigen::Vector3f> positions,
                          std::span<const std::array<std::uint32_t, 3>> triangles) {
   struct Side {
-    std::uint64_t edge;  // its places, the lower first
-    std::uint32_t side;  // 2 * (3 * triangle + corner), 1 more where it is run through backwards
+    std::uint64_t edge;  // its two places, the lower first
+    std::uint32_t side;  // 2 * (3 * triangle + corner), plus 1 if its direction is from the higher place to the lower
   };
   const std::vector<std::uint32_t> place = places_of(positions);
   std::vector<Side> sides(3 * triangles.size());
@@ -78,13 +79,13 @@ Neighbours neighbours_of(std::span<const Eigen::Vector3f> positions,
   return neighbours;
 }
 
-/// Lids: what closes a surface.
+/// Lids: triangles that close a surface.
 struct Lids {
-  std::vector<Eigen::Vector3f> positions;  ///< the surface's, then a middle for each border
+  std::vector<Eigen::Vector3f> positions;  ///< the surface's positions, then the middle of each border
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Fans from the middle of each connected border. A cone over a cycle of edges closes it, whatever its shape.
+/// Makes a fan from the middle of each connected border. A cone over a cycle of edges closes it, whatever its shape.
 Lids lids_over(std::span<const Eigen::Vector3f> positions, std::span<const std::array<std::uint32_t, 2>> borders) {
   Lids lids{{positions.begin(), positions.end()}, {}};
   const std::vector<std::uint32_t> place = places_of(positions);
@@ -133,7 +134,7 @@ class Builder {
     });
   }
 
-  /// Index of the topmost node.
+  /// Builds the tree and returns the index of its root.
   std::uint32_t build() { return triangles_.empty() ? BeamScene::no_node : node({0, triangles_.size()}); }
 
  private:
@@ -142,8 +143,8 @@ class Builder {
     std::size_t size() const { return last - first; }
   };
 
-  /// Halves `range` across the longest side of its triangles' centres. Which triangles go to which side depends on
-  /// their places alone, with the index to break ties.
+  /// Halves `range` across the longest side of the box of its triangles' centres. The halves depend only on the
+  /// centres, with the index to break ties.
   std::array<Range, 2> halves(const Range& range) {
     Eigen::AlignedBox3f box;
     for (std::size_t k = range.first; k < range.last; ++k) box.extend(centres_[order_[k]]);
@@ -168,7 +169,7 @@ class Builder {
     float least_cosine = 1, least_around = 1;
     for (std::size_t k = range.first; k < range.last; ++k) {
       const Eigen::Vector3f& normal = normals_[order_[k]];
-      const bool flat = normal.isZero(0);  // without area nothing is hit
+      const bool flat = normal.isZero(0);  // no ray hits a triangle without area
       const float cosine = flat ? 1 : normal.dot(axis);
       least_cosine = std::min(least_cosine, cosine);
       least_around = std::min(least_around, flat ? -1 : cosine);
@@ -179,7 +180,7 @@ class Builder {
     }
     if (least_cosine <= 0) return;
     for (int k = 0; k < 3; ++k) boxes.cone_axis[k][i] = axis[k];
-    constexpr float rounding = 1e-4f;  // with room for corners that the tracer moves by a rounding
+    constexpr float rounding = 1e-4f;  // margin for corners that the tracer moves by a rounding
     const auto sine_of = [&](float cosine) { return std::sqrt(std::max(0.f, 1 - cosine * cosine)) + rounding; };
     boxes.cone_sine[i] = sine_of(least_cosine);
     if (least_around > 0) boxes.sheet_sine[i] = sine_of(least_around);
@@ -198,7 +199,7 @@ class Builder {
   }
 
   std::uint32_t node(const Range& range) {
-    // Step 1: cut into at most 16, always the largest.
+    // Step 1: cut into at most 16 parts, always the largest.
     std::vector<Range> parts{range};
     while (parts.size() < beam_lanes) {
       const auto largest = std::max_element(parts.begin(), parts.end(),
@@ -209,7 +210,7 @@ class Builder {
       parts.push_back(two[1]);
     }
 
-    // Step 2: boxes and children.
+    // Step 2: make boxes and children.
     const auto index = static_cast<std::uint32_t>(scene_.nodes.size());
     scene_.nodes.emplace_back();
     BeamScene::Node made{};

@@ -14,24 +14,24 @@ namespace kiln {
 namespace {
 
 constexpr std::int32_t unknown = -1, none = -2;
-constexpr BeamPlaces unknown_places = {0, 1, 0};  // what lies wholly above a plane also rises above it
+constexpr BeamPlaces unknown_places = {0, 1, 0};  // a box wholly above a plane also rises above it
 constexpr std::size_t most_of_block = 128, most_of_quarter = 128;
-constexpr float direction_rounding = 1e-6f;  // of unit vectors in float32, with room
-constexpr int few_clusters = 64;             // tested rather than searched
-constexpr int few_directions = 3;            // for which triangles are not packed
+constexpr float direction_rounding = 1e-6f;  // of unit vectors in float32, with a margin
+constexpr int few_clusters = 64;             // up to so many are tested without a search
+constexpr int few_directions = 3;            // up to so many, triangles are not packed
 constexpr std::size_t all_of_them = std::numeric_limits<std::size_t>::max();
 
-/// 1 / x, of a tiny number instead of 0; the number's sign is x's.
+/// Returns 1 / x; replaces x by a tiny number of its sign if it is 0.
 float inverse(float& x) {
   constexpr float tiny = 1e-12f;
   if (std::abs(x) < tiny) x = x > 0 ? tiny : -tiny;
   return 1 / x;
 }
 
-/// The first `count` bits, 1 to 32 of them.
+/// Sets the first `count` bits, 1 to 32.
 std::uint32_t first_bits(int count) { return (2u << (count - 1)) - 1; }
 
-/// The bits of a group of 16 of `count` entries.
+/// Sets the bits of group `group` of 16 that belong to `count` entries.
 std::uint32_t own_lanes(std::size_t count, std::size_t group) {
   return first_bits(static_cast<int>(std::min<std::size_t>(beam_lanes, count - group * beam_lanes)));
 }
@@ -40,7 +40,7 @@ Eigen::Vector3f at_lane(const float (&lanes)[3][beam_lanes], int lane) {
   return {lanes[0][lane], lanes[1][lane], lanes[2][lane]};
 }
 
-/// The shaft from the zero point, for boxes less that of the packet's origins.
+/// Moves the origins of a shaft to zero, for boxes that are enlarged by the packet's box.
 BeamShaft from_zero(BeamShaft shaft) {
   for (int axis = 0; axis < 3; ++axis) shaft.origin_lower[axis] = shaft.origin_upper[axis] = 0;
   return shaft;
@@ -56,7 +56,7 @@ void copy_box(const BeamBoxes& from, int i, BeamBoxes& to, std::size_t lane) {
   to.sheet_sine[lane] = from.sheet_sine[i];
 }
 
-/// Halves the directions whose bit is set across the longest side of their box.
+/// Halves the directions whose bit is set, across the longest side of their box.
 std::array<std::uint32_t, 2> halves(const float (*direction)[3], std::uint32_t which) {
   int sorted[beam_directions], count = 0;
   float lower[3] = {1, 1, 1}, upper[3] = {-1, -1, -1};
@@ -218,7 +218,7 @@ void BeamTracer::set_box(const float* lower, const float* upper, const BeamBoxes
 BeamTracer::Verdict BeamTracer::search(const Front& from, const BeamShaft& shaft, std::size_t most, Front& found) {
   found.clear();
   std::size_t edges = 0;
-  // Step 1: the clusters and sheets.
+  // Step 1: test clusters and sheets.
   const BeamShaft about_zero = from_zero(shaft);
   for (std::size_t group = 0; group < from.boxes.size(); ++group) {
     const auto [met, sheets] = kernels_.meet(about_zero, from.boxes[group]);
@@ -243,14 +243,14 @@ BeamTracer::Verdict BeamTracer::search(const Front& from, const BeamShaft& shaft
       if (lane == 0) found.sheet_boxes.emplace_back();
       copy_box(from.sheet_boxes[group], i, found.sheet_boxes.back(), lane);
     }
-  // Step 2: the nodes, level after level.
+  // Step 2: open nodes, level after level.
   found.nodes.assign(from.nodes.begin(), from.nodes.end());
   std::size_t next = 0;
   for (; next < found.nodes.size() && found.clusters.size() + found.nodes.size() - next < most; ++next)
     edges += open(found.nodes[next], shaft, found);
   found.nodes.erase(found.nodes.begin(), found.nodes.begin() + static_cast<std::ptrdiff_t>(next));
   edges += found.nodes.size();
-  // Step 3: the one ray.
+  // Step 3: cast the one ray that stands for all.
   if (edges > 0) return Verdict::mixed;
   return meets_sheet(found, shaft) ? Verdict::hidden : Verdict::lit;
 }
@@ -305,7 +305,7 @@ void BeamTracer::open_sheets(const BeamShaft& shaft, Front& front) {
 
 bool BeamTracer::meets_sheet(const Front& front, const BeamShaft& shaft) {
   if (front.clusters.empty() && front.sheets.empty()) return false;
-  // Some ray of the shaft: from its middle along the mean of its directions.
+  // Takes some ray of the shaft: from its middle, along the mean of its directions.
   BeamShaft ray = shaft;
   float direction[3];
   for (int axis = 0; axis < 3; ++axis) {

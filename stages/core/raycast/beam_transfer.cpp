@@ -16,11 +16,11 @@ namespace kiln {
 
 namespace {
 
-constexpr std::size_t group_packets = 1024;  // between two reports of progress
+constexpr std::size_t group_packets = 1024;  // packets between two reports of progress
 
-using Place = Eigen::Matrix<float, 6, 1>;  // a receiver's position and its normal, as far as that counts
+using Place = Eigen::Matrix<float, 6, 1>;  // position and scaled normal of a receiver
 
-/// Sorts a range so that halves of halves, down to 16, lie close together.
+/// Sorts a range so that its halves, their halves, and so on down to 16 places, lie close together.
 void sort_into_packets(std::span<const Place> places, std::span<std::uint32_t> order) {
   if (order.size() <= beam_lanes) return;
   Place lower = Place::Constant(std::numeric_limits<float>::infinity()), upper = -lower;
@@ -48,7 +48,7 @@ void sort_into_packets(std::span<const Place> places, std::span<std::uint32_t> o
 }  // namespace
 
 std::vector<std::uint32_t> packet_order(const Receivers& receivers) {
-  // A turn by a radian counts as a tenth of the receivers' extent.
+  // A turn of the normal by one radian counts as a tenth of the receivers' extent.
   Place lower = Place::Constant(std::numeric_limits<float>::infinity()), upper = -lower;
   std::vector<Place> places(receivers.size());
   for (std::size_t r = 0; r < receivers.size(); ++r) {

@@ -18,27 +18,27 @@ namespace kiln {
 
 namespace {
 
-/// Points with a free ray among so many, spread over all directions, are seen.
+/// Rays that are cast in search of light, spread over all directions: a point is seen if one of them is free.
 constexpr int light_directions = 32;
 
-/// A ray that leaves its surface at a flatter angle (its sine) is not asked.
+/// Least sine of the angle between a surface and a ray that leaves it, for the ray to count.
 constexpr float least_cosine = 0.1f;
 
-/// Rays that vote about closed components: the most of them are right where one passes an edge.
+/// Rays that vote on closed components: the majority is right even if one passes an edge.
 constexpr int votes = 3;
 
-/// Rays over which winding numbers of open components are averaged.
+/// Rays over which the winding numbers of open components are averaged.
 constexpr int winding_directions = 64;
 
-/// Crossings nearer than so many ray offsets are of the point's own triangle, if its normal slants.
+/// Multiple of the ray offset: crossings nearer than this belong to the point's own triangle, if its normal slants.
 constexpr float nearest_crossing = 4;
 
 constexpr float largest_open_winding = 0.5f;
 constexpr std::size_t chunk_points = 256;
 
-/// Whether each component has as many edges one way as the other, so that it bounds a solid.
+/// Finds the components that have each edge as often in one direction as in the other, so that they bound a solid.
 std::vector<std::uint8_t> closed_components(const TriangleMesh& mesh, const Components& components) {
-  std::vector<std::array<std::uint32_t, 3>> edges;  // lesser vertex, greater vertex, 2 * component + direction
+  std::vector<std::array<std::uint32_t, 3>> edges;  // lower vertex, higher vertex, 2 * component + direction
   edges.reserve(3 * mesh.triangles.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -57,7 +57,7 @@ std::vector<std::uint8_t> closed_components(const TriangleMesh& mesh, const Comp
   return closed;
 }
 
-/// What a ray crosses: components, and how often out of them minus how often into them.
+/// Components that a ray crosses, and how often it leaves each minus how often it enters it.
 using Crossings = std::vector<std::pair<std::uint32_t, int>>;
 
 struct CrossingContext {
@@ -75,7 +75,7 @@ void count_crossing(const RTCFilterFunctionNArguments* arguments) {
   const auto known = std::find_if(crossings.begin(), crossings.end(),
                                   [&](const auto& crossing) { return crossing.first == component; });
   (known == crossings.end() ? crossings.emplace_back(component, 0) : *known).second += outwards > 0 ? 1 : -1;
-  arguments->valid[0] = 0;  // the ray goes on
+  arguments->valid[0] = 0;  // makes the ray go on
 }
 
 }  // namespace
@@ -86,7 +86,7 @@ struct BuriedTest::Implementation {
   std::vector<std::uint8_t> closed;  ///< per component
   bool all_closed;
   float ray_offset;
-  std::vector<Eigen::Vector3f> light, winding;  ///< directions
+  std::vector<Eigen::Vector3f> light, winding;  ///< directions of rays
   EmbreeScene embree;
 
   Implementation(TriangleMesh joined, float offset)
@@ -136,7 +136,7 @@ bool BuriedTest::Implementation::sees_light(const Eigen::Vector3f& origin, const
 
 bool BuriedTest::Implementation::in_closed(const Eigen::Vector3f& origin, const Eigen::Vector3f& normal,
                                            float nearest) const {
-  // The rays closest to the normal: they leave the point's own surface at once.
+  // Takes the rays closest to the normal: they leave the point's own surface at once.
   std::array<Eigen::Vector3f, votes> rays;
   std::partial_sort_copy(
       light.begin(), light.end(), rays.begin(), rays.end(),
@@ -163,7 +163,8 @@ bool BuriedTest::Implementation::in_open(const Eigen::Vector3f& origin) const {
 bool BuriedTest::Implementation::is_buried(const Eigen::Vector3f& origin, const Eigen::Vector3f& normal) const {
   if (!(normal.squaredNorm() > 0) || is_free(origin, normal)) return false;
   if (in_closed(origin, normal, nearest_crossing * ray_offset)) return true;
-  // What is left: open parts, and points so close to the line that only the dark tells on which side they are.
+  // Undecided so far: open components, and points so close to the limit that only darkness shows on which side they
+  // are.
   if (sees_light(origin, normal)) return false;
   return in_closed(origin, normal, 0) || (!all_closed && in_open(origin));
 }

@@ -13,7 +13,7 @@ namespace kiln {
 
 namespace {
 
-/// Embree keeps its own copy of the buffers, padded as its wide loads need.
+/// Makes Embree's own copy of the buffers, padded as its wide loads need.
 RTCGeometry make_geometry(RTCDevice device, std::span<const Eigen::Vector3f> positions,
                           std::span<const Triangle> triangles) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -43,7 +43,7 @@ float diagonal_of(std::span<const Eigen::Vector3f> positions) {
 EmbreeScene::EmbreeScene(std::span<const Eigen::Vector3f> positions, std::span<const Triangle> triangles)
     : surface_{positions, triangles, doubtful_share * diagonal_of(positions)}, device_(rtcNewDevice(nullptr)) {
   build(positions, triangles, RTC_BUILD_QUALITY_HIGH, nullptr, this, refuse_behind);
-  // By one thread, so that the tree does not depend on their number.
+  // Builds the tree with one thread, so that it does not depend on their number.
   tbb::task_arena one_thread(1);
   one_thread.execute([&] { commit(); });
 }

@@ -10,7 +10,7 @@
 
 namespace kiln {
 
-/// A ray as Embree has it, from `nearest` to `farthest` times the direction.
+/// Makes an Embree ray, from `nearest` to `farthest` times the direction.
 inline RTCRay make_ray(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest = 0,
                        float farthest = std::numeric_limits<float>::infinity()) {
   RTCRay ray = {};
@@ -26,16 +26,16 @@ inline RTCRay make_ray(const Eigen::Vector3f& origin, const Eigen::Vector3f& dir
   return ray;
 }
 
-/// An Embree device with one scene, of one mesh. Only for sources of this room: it shows Embree's own types.
+/// An Embree device with one scene of one mesh. Only for sources of this room, since it shows Embree's own types.
 class EmbreeScene {
  public:
-  /// The positions and triangles outlive the scene. rtcOccluded1M does not count hits that is_before finds to lie
-  /// behind the ray's origin. Which of two triangles a query on their edge gets does not depend on the number of
-  /// threads.
+  /// Builds the scene of `positions` and `triangles`, which must outlive it. rtcOccluded1M ignores hits that is_before
+  /// finds behind the ray's origin. Which of two triangles a query on their common edge returns does not depend on the
+  /// number of threads.
   EmbreeScene(std::span<const Eigen::Vector3f> positions, std::span<const Triangle> triangles);
 
-  /// For all hits of rays, whose order means nothing: built in a fraction of the time. `filter` is asked about every
-  /// hit of rtcIntersect1, not of rtcOccluded1, and gets `filter_data`, which outlives the scene
+  /// Builds a scene for collecting all hits of rays, in any order, in a fraction of the time. `filter` is called for
+  /// every hit of rtcIntersect1, not of rtcOccluded1, with `filter_data`, which must outlive the scene
   /// (rtcSetGeometryIntersectFilterFunction).
   EmbreeScene(std::span<const Eigen::Vector3f> positions, std::span<const Triangle> triangles,
               RTCFilterFunctionN filter, void* filter_data);
@@ -45,7 +45,8 @@ class EmbreeScene {
 
   RTCScene scene() const { return scene_; }
 
-  /// Whether a hit of `triangle` at `distance` from `origin` is none: in doubt, and behind it.
+  /// Tests whether a hit of `triangle` at `distance` from `origin` is false: near enough to be doubtful, and behind the
+  /// origin.
   bool is_behind(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, std::uint32_t triangle,
                  float distance) const;
 
@@ -54,7 +55,7 @@ class EmbreeScene {
              RTCFilterFunctionN filter, void* filter_data, RTCFilterFunctionN occlusion_filter);
   void commit();
 
-  /// What the occlusion filter needs.
+  /// Data of the occlusion filter.
   struct Surface {
     std::span<const Eigen::Vector3f> positions;
     std::span<const Triangle> triangles;

@@ -15,11 +15,11 @@ namespace kiln {
 
 namespace {
 
-constexpr std::size_t group_packets = 1024;  // between two reports of progress
+constexpr std::size_t group_packets = 1024;  // packets between two reports of progress
 
 static_assert(RayScene::PacketHits::lanes == beam_lanes);
 
-/// sum[i] += a[i] * wa + b[i] * wb + c[i] * wc.
+/// Computes sum[i] += a[i] * wa + b[i] * wb + c[i] * wc.
 KILN_ANY_VECTOR_WIDTH void add_weighted(const float* a, const float* b, const float* c, float wa, float wb, float wc,
                                         float* __restrict sum, std::size_t width) {
   for (std::size_t i = 0; i < width; ++i) sum[i] += a[i] * wa + b[i] * wb + c[i] * wc;
@@ -35,14 +35,14 @@ KILN_ANY_VECTOR_WIDTH void move_block(float* __restrict sums, std::int64_t* __re
 
 /// One thread's packet: sums of the block and of all blocks, receiver after receiver.
 struct Worker {
-  std::vector<BeamTracer> tracer;  // none, or one
-  bool has_begun = false;          // the packet's beams
+  std::vector<BeamTracer> tracer;  // one tracer, or none
+  bool has_begun = false;          // whether the packet's beams have begun
   FirstHits::Packet block, packet;
   std::vector<float> sums;
   std::vector<std::int64_t> totals;
 };
 
-/// max(0, n.s) of a packet's receivers; the bits of those above 0.
+/// Computes max(0, n.s) of a packet's receivers; returns the bits of those above 0.
 KILN_ANY_VECTOR_WIDTH std::uint32_t face(const BeamPacket& packet, const Eigen::Vector3f& direction,
                                          float (&cosines)[beam_lanes]) {
   const float x = direction.x(), y = direction.y(), z = direction.z();
@@ -53,7 +53,7 @@ KILN_ANY_VECTOR_WIDTH std::uint32_t face(const BeamPacket& packet, const Eigen::
   return facing;
 }
 
-/// What one call gathers of; the same for all threads.
+/// Arguments of one call to add_gathered; the same for all threads.
 class Gathering {
  public:
   Gathering(const RayScene& scene, const BeamScene* beams, const BeamReceivers& receivers,
@@ -73,15 +73,15 @@ class Gathering {
     return {{}, false, {}, {}, std::vector<float>(sums, 0.f), std::vector<std::int64_t>(sums)};
   }
 
-  /// Adds up what a packet receives, in worker.totals.
+  /// Sums the light that a packet receives, in worker.totals.
   void gather(std::size_t packet, Worker& worker) const;
 
  private:
-  /// Which rays of a block may hit something at all.
+  /// Finds the rays of a block that may hit something.
   BlockLanes candidates(std::size_t packet, std::size_t block, Worker& worker) const;
-  /// Casts the rays of a block, into worker.block.
+  /// Casts the rays of a block; worker.block holds the hits.
   void find(std::size_t packet, std::size_t block, Worker& worker) const;
-  /// Adds what hits of a block send. `hit` is the first of them, and becomes the one after the last.
+  /// Adds the light from the hits of a block. `hit` is the first of them, and becomes the one after the last.
   void sum(std::size_t packet, std::span<const FirstHits::Rays> rays, const FirstHits::Hit*& hit, Worker& worker) const;
 
   const RayScene& scene_;

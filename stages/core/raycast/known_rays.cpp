@@ -37,7 +37,7 @@ FirstHits::FirstHits(RayMemory& memory, std::size_t packets) {
 
 void FirstHits::keep(std::size_t packet, const Packet& found) {
   if (!memory_->take(sizeof(Packet) + found.bytes())) return;
-  packets_[packet] = found;  // of just the size that it needs
+  packets_[packet] = found;  // a copy without spare capacity
   packets_[packet].known = true;
 }
 

@@ -11,12 +11,12 @@
 
 namespace kiln {
 
-/// How many bytes may be kept of rays. Any thread may take of them; what is taken does not come back.
+/// Number of bytes that may still be spent on known rays. Any thread may take some; they are never given back.
 class RayMemory {
  public:
   explicit RayMemory(std::size_t bytes) : left_(bytes) {}
 
-  /// False, and nothing is taken, where fewer are left.
+  /// Takes bytes; false, taking nothing, if too few are left.
   bool take(std::size_t bytes);
   std::size_t left() const { return left_; }
 
@@ -24,33 +24,34 @@ class RayMemory {
   std::atomic<std::size_t> left_;
 };
 
-/// Lanes of a packet for each direction of a block, a bit for each of 16 receivers.
+/// Lanes of a packet for each direction of a block: one bit per receiver.
 using BlockLanes = std::array<std::uint16_t, beam_directions>;
 
-/// Which rays of packets of receivers are blocked, a bit for each pair of a receiver and a direction: what a direct
-/// pass finds, kept for passes over the same rays after it. Blocks of directions are kept one after the other, of all
-/// packets each, until memory is at its end.
+/// Rays of packets of receivers that are blocked, a bit for each pair of a receiver and a direction: found by a direct
+/// pass, kept for later passes over the same rays. Blocks of directions are kept in order, each for all packets, until
+/// the memory is used up.
 class BlockedRays {
  public:
   /// Keeps nothing.
   BlockedRays() = default;
-  /// Keeps what `memory` has room for, which must outlive additions. The first block added is `first_block` of all.
+  /// Keeps what `memory`, which must outlive all additions, has room for. The first block added is number
+  /// `first_block`.
   explicit BlockedRays(RayMemory& memory) : memory_(&memory) {}
 
-  /// What adds blocks counts them from 0; they are those from `first` on.
+  /// Sets the number of the first block: callers that add blocks count them from 0, and mean those from `first` on.
   void start_at(std::size_t first) { first_block_ = first; }
 
-  /// Room for the next block, packet after packet; null where it is not kept, and no later one either.
+  /// Makes room for the next block, packet after packet; null if neither it nor later blocks are kept.
   BlockLanes* add_block(std::size_t packets);
 
-  /// The lanes of a packet that face a direction of the block, but do not see it; bits of lanes that face away, in
-  /// directions that others face, are set as well. Null where this is not kept.
+  /// Returns the blocked lanes of a packet in a block: those that face a direction but do not see it. Bits of lanes
+  /// that face away are also set, in directions that others face. Null if not kept.
   const BlockLanes* find(std::size_t packet, std::size_t block) const {
-    const std::size_t own = block - first_block_;  // huge for one before the first
+    const std::size_t own = block - first_block_;  // wraps to a huge number for a block before the first
     return own < blocks_.size() ? &blocks_[own][packet] : nullptr;
   }
 
-  /// Whether all of so many blocks are kept.
+  /// Tests whether all of the first `blocks` blocks are kept.
   bool holds(std::size_t blocks) const { return first_block_ == 0 && blocks_.size() >= blocks; }
 
  private:
@@ -59,20 +60,20 @@ class BlockedRays {
   std::vector<std::vector<BlockLanes>> blocks_;
 };
 
-/// What the rays of packets of receivers hit first, of those that hit a front: what the first pass over them finds,
-/// kept for later ones.
+/// First hits of rays of packets of receivers, for rays that hit a front face: found by the first pass over them, kept
+/// for later ones.
 class FirstHits {
  public:
   struct Hit {
     std::uint32_t triangle;
     float u, v;  ///< as in SurfacePoint
   };
-  /// Parallel rays that hit something: as many hits as `lanes` has bits, from the lowest on.
+  /// Parallel rays that hit something: as many hits as `lanes` has bits, from the lowest bit on.
   struct Rays {
     std::uint32_t direction;
     std::uint32_t lanes;
   };
-  /// Hits of one packet, directions ascending.
+  /// Hits of one packet, in ascending order of directions.
   struct Packet {
     std::vector<Rays> rays;
     std::vector<Hit> hits;
@@ -85,17 +86,17 @@ class FirstHits {
 
   /// Keeps nothing.
   FirstHits() = default;
-  /// Keeps what `memory` has room for, which must outlive additions; a packet's place is paid for when it is kept.
+  /// Keeps what `memory` has room for; it must outlive additions. Memory is taken when a packet is kept.
   FirstHits(RayMemory& memory, std::size_t packets);
 
   bool keeps() const { return memory_ != nullptr; }
 
-  /// The packet's, null where they are not kept.
+  /// Returns a packet's hits; null if they are not kept.
   const Packet* find(std::size_t packet) const {
     return packet < packets_.size() && packets_[packet].known ? &packets_[packet] : nullptr;
   }
 
-  /// Keeps a packet's hits, all directions, if there is room. Threads may call it at once for packets of their own.
+  /// Keeps a packet's hits over all directions, if there is room. Threads may call this at once for different packets.
   void keep(std::size_t packet, const Packet& found);
 
  private:
@@ -103,16 +104,16 @@ class FirstHits {
   std::vector<Packet> packets_;
 };
 
-/// What is known of the rays of receivers of which one pass takes a part at a time.
+/// Knowledge of the rays of a part of the receivers, of which one pass takes a part at a time.
 struct KnownRays {
   const BlockedRays* blocked = nullptr;
-  FirstHits* hits = nullptr;     ///< taken where they are kept, else found and kept
-  std::size_t first_packet = 0;  ///< of the part, in both
+  FirstHits* hits = nullptr;     ///< read if kept for the packet, else found and kept
+  std::size_t first_packet = 0;  ///< first packet of the part, in both
 };
 
-/// Receivers of a list, as packets of 16 take them, and what is known of their rays over a list of directions.
+/// A list of receivers in packets of 16, and what is known of their rays over a list of directions.
 struct TracedReceivers {
-  std::vector<std::uint32_t> order;  ///< packet p, lane i is receiver order[16 p + i]; the last packet may lack some
+  std::vector<std::uint32_t> order;  ///< packet p, lane i is receiver order[16 p + i]; the last packet may be shorter
   BlockedRays blocked;
   FirstHits hits;
 

@@ -15,20 +15,20 @@ namespace kiln {
 
 namespace {
 
-/// A triangle faces a direction where the cosine is above this: one that lies along it does not, whatever rounding
-/// says.
+/// Least cosine between a direction and the normal of a triangle that faces it: keeps rounding from deciding for
+/// triangles that lie along the direction.
 constexpr float least_facing_cosine = 1e-3f;
 
 constexpr std::size_t stream_rays = 256;
 
-/// Where in the segment from a to b, 0 to 1, the closest point to p lies.
+/// Finds where in the segment from a to b, 0 to 1, the point closest to p lies.
 double closest_in_segment(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const Eigen::Vector3d ab = b - a;
   const double squared_length = ab.squaredNorm();
   return squared_length > 0 ? std::clamp((p - a).dot(ab) / squared_length, 0.0, 1.0) : 0;
 }
 
-/// closest_weights of a triangle without area: the best of its sides.
+/// Finds closest_weights of a triangle without area: the best of its sides.
 Eigen::Vector2d closest_side_weights(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                      const Eigen::Vector3d& c) {
   const double on_ab = closest_in_segment(p, a, b), on_ac = closest_in_segment(p, a, c),
@@ -45,8 +45,8 @@ Eigen::Vector2d closest_side_weights(const Eigen::Vector3d& p, const Eigen::Vect
   return best;
 }
 
-/// Closest point of a triangle to p, as weights of its second and third corner (Ericson, "Real-Time Collision
-/// Detection", 2005, section 5.1.5). In double, because slivers leave float32 no digits.
+/// Finds the point of a triangle closest to p, as weights of its second and third corner ([Ericson 2005], section
+/// 5.1.5). In double, because float32 has no digits left for slivers.
 Eigen::Vector2d closest_weights(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                 const Eigen::Vector3d& c) {
   const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a;
@@ -92,7 +92,7 @@ struct RayScene::Implementation {
     return (positions[t[1]] - positions[t[0]]).cross(positions[t[2]] - positions[t[0]]).dot(direction) < 0;
   }
 
-  /// The closest point, of triangles that face `facing` if that is not null.
+  /// Finds the closest point, only on triangles that face `facing` if that is not null.
   SurfacePoint closest(const Eigen::Vector3f& point, const Eigen::Vector3f* facing, float farthest) const;
 };
 

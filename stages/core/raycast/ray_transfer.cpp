@@ -14,7 +14,7 @@ namespace kiln {
 namespace {
 
 constexpr std::size_t stream_receivers = 256;
-constexpr std::size_t group_streams = 64;  // between two reports of progress
+constexpr std::size_t group_streams = 64;  // streams between two reports of progress
 
 }  // namespace
 
@@ -32,7 +32,7 @@ void add_transfer_by_rays(const RayScene& scene, const Receivers& receivers,
     std::vector<float> cosines(count);
     std::vector<std::uint8_t> occluded(count);
     for (std::size_t d = 0; d < directions.size(); ++d) {
-      // Step 1: the receivers that face the direction, and whether they see it.
+      // Step 1: find the receivers that face the direction, and whether they see it.
       std::size_t rays = 0;
       for (std::size_t r = 0; r < count; ++r) {
         const Eigen::Vector3f& normal = receivers.normals[begin + r];

@@ -12,12 +12,13 @@ namespace kiln {
 
 /// Adds the transfer over `directions` by occlusion rays. Visibility is exact for the triangles of `scene`; rays start
 /// `ray_offset` (object units) off the receiver along its normal. Neighbouring receivers should stand next to each
-/// other: each block of them is cast as one stream per direction. Any number of threads gives the same bits.
+/// other in the list: each block of them is cast as one stream per direction. Any number of threads gives the same
+/// bits.
 void add_transfer_by_rays(const RayScene& scene, const Receivers& receivers,
                           std::span<const Eigen::Vector3f> directions, float ray_offset, TransferSums& sums,
                           const ProgressFunction& progress = no_progress);
 
-/// The transfer of `directions` alone, spread evenly over the sphere.
+/// Computes the transfer of `directions` alone, each standing for an equal share of the sphere.
 TransferVectors transfer_by_rays(const RayScene& scene, const Receivers& receivers,
                                  std::span<const Eigen::Vector3f> directions, int bands, float ray_offset,
                                  const ProgressFunction& progress = no_progress);

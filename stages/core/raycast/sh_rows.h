@@ -10,7 +10,7 @@
 
 namespace kiln {
 
-/// B_i(s_d) of all directions, row after row.
+/// Evaluates B_i(s_d) for all directions, row after row.
 inline std::vector<float> sh_rows(std::span<const Eigen::Vector3f> directions, int bands) {
   const ShBasis basis(bands);
   std::vector<float> rows(directions.size() * basis.size());

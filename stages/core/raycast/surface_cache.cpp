@@ -13,21 +13,21 @@ namespace kiln {
 
 namespace {
 
-constexpr float crease_cosine = 0.70710678f;  // of 45 degrees
-/// Normals of one vertex that lie nearer than this to each other are one.
+constexpr float crease_cosine = 0.70710678f;  // cosine of 45 degrees
+/// Least cosine between two normals of a vertex that are taken as one.
 constexpr float shared_normal_cosine = 0.999f;
-constexpr float inset = 0.1f;  // of the way to the triangle's centre, at creases and borders
+constexpr float inset = 0.1f;  // fraction of the way to the triangle's centre, for points at creases and borders
 
-/// A triangle of the cut surface: its corners, and where they lie in the triangle that it was cut from.
+/// A triangle of the cut surface: its corners, and their places in the triangle that it was cut from.
 struct Piece {
   std::array<std::uint32_t, 3> corners;
   std::uint32_t source = 0;
-  std::array<Eigen::Vector2f, 3> places;  // weights of the source's second and third corner
+  std::array<Eigen::Vector2f, 3> places;  // weights of the source triangle's second and third corner
 };
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Halves edges longer than `longest` until there are none.
+/// Halves edges until none is longer than `longest`.
 void cut_long_edges(std::vector<Eigen::Vector3f>& positions, std::vector<Piece>& pieces, float longest) {
   const float most = longest * longest;
   for (bool any = true; any;) {
@@ -40,7 +40,7 @@ void cut_long_edges(std::vector<Eigen::Vector3f>& positions, std::vector<Piece>&
     };
     std::vector<Piece> finer;
     for (const Piece& piece : pieces) {
-      // Step 1: turned so that, of one cut edge, it is the first, and of two, the third is the whole one.
+      // Step 1: turn the triangle so that a single cut edge comes first, or, of two, the uncut edge is the third.
       std::array<bool, 3> is_long{};
       int count = 0;
       for (int k = 0; k < 3; ++k) {
@@ -54,7 +54,7 @@ void cut_long_edges(std::vector<Eigen::Vector3f>& positions, std::vector<Piece>&
       any = true;
       int first = 0;
       while (count < 3 && !(is_long[first] && (count == 1 || is_long[(first + 1) % 3]))) ++first;
-      // Step 2: corners 0 to 2, and the middles of the edges 0-1, 1-2 and 2-0 as 3 to 5.
+      // Step 2: number the corners 0 to 2, and the middles of the edges 0-1, 1-2 and 2-0 as 3 to 5.
       std::array<std::uint32_t, 6> vertex{};
       std::array<Eigen::Vector2f, 6> place;
       for (int k = 0; k < 3; ++k) {
@@ -86,10 +86,10 @@ void cut_long_edges(std::vector<Eigen::Vector3f>& positions, std::vector<Piece>&
   }
 }
 
-/// Points for the corners of pieces.
+/// Makes points for the corners of pieces.
 class PointMaker {
  public:
-  /// `mesh` is what the pieces were cut from.
+  /// Keeps references; `mesh` is what the pieces were cut from.
   PointMaker(const TriangleMesh& mesh, const std::vector<Eigen::Vector3f>& positions, const std::vector<Piece>& pieces)
       : mesh_(mesh), positions_(positions), pieces_(pieces), on_border_(positions.size(), 0) {
     std::vector<Edge> sides;
@@ -108,7 +108,7 @@ class PointMaker {
 
   /// Fills the cache's points; albedos are still zero.
   void make(SurfaceCache& cache) const {
-    // Step 1: the corners of each vertex, in the order of triangles.
+    // Step 1: list the corners of each vertex, in the order of triangles.
     std::vector<std::uint32_t> first(positions_.size() + 1, 0), corners(3 * pieces_.size());
     for (const Piece& piece : pieces_)
       for (std::uint32_t vertex : piece.corners) ++first[vertex + 1];
@@ -117,7 +117,7 @@ class PointMaker {
     for (std::uint32_t corner = 0; corner < corners.size(); ++corner)
       corners[next[pieces_[corner / 3].corners[corner % 3]]++] = corner;
 
-    // Step 2: groups of them.
+    // Step 2: group them.
     cache.points.resize(pieces_.size());
     for (std::uint32_t vertex = 0; vertex < positions_.size(); ++vertex) {
       std::vector<Group> groups;
@@ -139,14 +139,14 @@ class PointMaker {
     }
   }
 
-  /// Twice the triangle's area.
+  /// Returns twice the triangle's area.
   float double_area(std::size_t piece) const { return normals_[piece].norm(); }
 
  private:
   struct Group {
     std::vector<std::uint32_t> corners;
-    Eigen::Vector3f normal = Eigen::Vector3f::Zero();  // the sum, weighted by the angles at the vertex
-    std::uint32_t largest = 0;                         // of its triangles
+    Eigen::Vector3f normal = Eigen::Vector3f::Zero();  // sum, weighted by the angles at the vertex
+    std::uint32_t largest = 0;                         // largest of its triangles
   };
 
   void add_corner(std::vector<Group>& groups, std::uint32_t corner) const {
@@ -157,14 +157,14 @@ class PointMaker {
     const Eigen::Vector3f& at = positions_[vertices[corner % 3]];
     const Eigen::Vector3f a = positions_[vertices[(corner + 1) % 3]] - at,
                           b = positions_[vertices[(corner + 2) % 3]] - at;
-    // Hard edges of the mesh part groups; without any, edges that bend much do.
+    // Hard edges of the mesh separate groups; without any, edges that bend by more than 45 degrees do.
     const bool has_hard_edges = !mesh_.corner_normals.empty();
     const Eigen::Vector2f& place = pieces_[piece].places[corner % 3];
     const Eigen::Vector3f shading =
         has_hard_edges ? normal_at(mesh_, {pieces_[piece].source, place.x(), place.y(), 0}) : Eigen::Vector3f();
     const auto fits = [&](const Group& group) {
       if (has_hard_edges) return group.normal.dot(shading) > shared_normal_cosine * group.normal.norm();
-      // Triangles without area fit anywhere, and where there is nothing but them.
+      // Triangles without area fit any group, and a group of such triangles fits any triangle.
       return length == 0 || group.normal.isZero(0) ||
              group.normal.dot(normal) > crease_cosine * length * group.normal.norm();
     };
@@ -181,12 +181,12 @@ class PointMaker {
   const TriangleMesh& mesh_;
   const std::vector<Eigen::Vector3f>& positions_;
   const std::vector<Piece>& pieces_;
-  std::vector<Eigen::Vector3f> normals_;  // twice the areas long
+  std::vector<Eigen::Vector3f> normals_;  // their length is twice the area
   std::vector<std::uint8_t> on_border_;
 };
 
-/// The mean of what `albedo` has over the triangles at each point, weighted by the point's share in interpolation: 16
-/// samples of each triangle, the centres of a regular subdivision.
+/// Averages `albedo` over the triangles at each point, weighted by the point's share in interpolation: 16 samples of
+/// each triangle, at the centres of a regular subdivision.
 std::vector<Eigen::Vector3f> mean_albedos(const SurfaceCache& cache, const std::vector<Piece>& pieces,
                                           const PointMaker& maker, const AlbedoAt& albedo_at) {
   constexpr int rows = 4;
@@ -194,7 +194,7 @@ std::vector<Eigen::Vector3f> mean_albedos(const SurfaceCache& cache, const std::
   std::vector<float> weights(cache.size(), 0.f);
   for (std::size_t t = 0; t < pieces.size(); ++t) {
     const Piece& piece = pieces[t];
-    // A triangle without area counts where there is nothing else.
+    // A triangle without area counts only if the point has no other.
     const float area = std::max(maker.double_area(t), 1e-30f);
     for (int i = 0; i < rows; ++i)
       for (int j = 0; j < 2 * (rows - i) - 1; ++j) {
@@ -219,7 +219,7 @@ std::vector<Eigen::Vector3f> mean_albedos(const SurfaceCache& cache, const std::
 SurfaceCache make_surface_cache(const TriangleMesh& mesh, const AlbedoAt& albedo_at, bool grey, double longest_edge) {
   SurfaceCache cache;
 
-  // Step 1: the triangles.
+  // Step 1: cut the triangles.
   cache.positions = mesh.positions;
   std::vector<Piece> pieces;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
@@ -227,7 +227,7 @@ SurfaceCache make_surface_cache(const TriangleMesh& mesh, const AlbedoAt& albedo
   cut_long_edges(cache.positions, pieces, static_cast<float>(longest_edge) * bounding_box(mesh).diagonal());
   for (const Piece& piece : pieces) cache.triangles.push_back(piece.corners);
 
-  // Step 2: the points.
+  // Step 2: make the points.
   const PointMaker maker(mesh, cache.positions, pieces);
   maker.make(cache);
   cache.point_albedos = mean_albedos(cache, pieces, maker, albedo_at);

@@ -11,14 +11,14 @@ struct SurfaceTransferSettings {
   int directions = 256;
 };
 
-/// Transfer vectors (the numeric contract's: unoccluded t_0 is 0.282095) of points on or near the surface of
-/// `occluder`, shadowed by it: what decisions about a mesh need to know of its light before anything is baked. Beams of
-/// rays, within about 2 % of what many directions would give; the same bits for any number of threads. Points with
-/// neighbours close by in their order are as fast as others.
+/// Computes transfer vectors (unoccluded t_0 is 0.282095; ARCHITECTURE.md, "Contracts") at points on or near the
+/// surface of `occluder`, shadowed by it, for decisions about a mesh before anything is baked. Uses beams of rays, and
+/// comes within about 2 % of the result of many directions; any number of threads gives the same bits. Points whose
+/// neighbours are close by in the list are as fast as others.
 TransferVectors surface_transfer(const TriangleMesh& occluder, const Receivers& points,
                                  const SurfaceTransferSettings& settings = {});
 
-/// Share of the sky above each point that is open, weighted by the cosine: t_0 over that of an unoccluded point.
+/// Computes the open share of the sky above each point, weighted by the cosine: t_0 over that of an unoccluded point.
 std::vector<float> surface_openness(const TriangleMesh& occluder, const Receivers& points, int directions = 64);
 
 }  // namespace kiln
