@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Writes OUTPUT, a C++ file that holds the text of every shader of INPUTS by its file name.
+# Writes OUTPUT, a C++ file that holds the text of every shader in INPUTS under its file name.
 set(rows "")
 foreach(input ${INPUTS})
   cmake_path(GET input FILENAME name)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# make install and make package: programs, the runtime as libraries, shaders, licences.
+# Rules of `make install` and `make package`: programs, the runtime as libraries, shaders, licences.
 include(CMakePackageConfigHelpers)
 
 set(KILN_PROGRAMS kiln kiln-check ${stage_programs} kiln-render kiln-view)
@@ -12,7 +12,7 @@ install(FILES LICENSE LICENSES/MIT.txt README.md TYPE DOC)
 install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
 install(DIRECTORY examples TYPE DOC)
 
-# Man pages and completions, of the programs' own option tables.
+# Man pages and completions, made from the programs' own option tables.
 set(pages "")
 foreach(program ${KILN_PROGRAMS})
   set(man ${PROJECT_BINARY_DIR}/share/${program}.1)
@@ -31,7 +31,7 @@ foreach(program ${KILN_PROGRAMS})
 endforeach()
 add_custom_target(pages ALL DEPENDS ${pages})
 
-# find_package(kiln) gives kiln::runtime and kiln::runtime-gl.
+# CMake package: find_package(kiln) defines kiln::runtime and kiln::runtime-gl.
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/kiln)
 install(EXPORT kilnTargets NAMESPACE kiln:: DESTINATION ${package_folder})
 configure_package_config_file(cmake/kilnConfig.cmake.in ${PROJECT_BINARY_DIR}/kilnConfig.cmake

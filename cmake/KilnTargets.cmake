@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What every target of the house has in common: C++20, warnings as errors, one folder for executables, ccache.
+# Settings of every target: C++20, warnings as errors, one folder for executables, ccache.
 
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
@@ -15,7 +15,7 @@ endif()
 add_library(kiln_flags INTERFACE)
 option(KILN_WARNINGS_AS_ERRORS "Stop at compilers' warnings; off for compilers that the house was not built with" ON)
 target_compile_options(kiln_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow)
-# -Wrestrict of GCC 12 misfires on std::string concatenation (GCC bug 105651).
+# Turns -Wrestrict off: GCC 12's misfires on std::string concatenation (GCC bug 105651).
 target_compile_options(kiln_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 if(KILN_WARNINGS_AS_ERRORS)
   target_compile_options(kiln_flags INTERFACE -Werror)
@@ -23,19 +23,20 @@ endif()
 target_include_directories(kiln_flags INTERFACE ${PROJECT_SOURCE_DIR}/stages/core ${PROJECT_SOURCE_DIR}/stages ${PROJECT_SOURCE_DIR})
 target_compile_definitions(kiln_flags INTERFACE KILN_VERSION="${PROJECT_VERSION}")
 if(KILN_SANITIZE)
-  # GCC takes its own checks of values for uses of uninitialised ones (GCC bug 100016).
+  # Turns -Wmaybe-uninitialized off: GCC takes the sanitizers' checks of values for uses of uninitialised ones (bug
+  # 100016).
   target_compile_options(kiln_flags INTERFACE -fsanitize=${KILN_SANITIZE} -fno-omit-frame-pointer -Wno-maybe-uninitialized)
   target_link_options(kiln_flags INTERFACE -fsanitize=${KILN_SANITIZE})
 endif()
 
-# kiln_library(NAME SOURCES... LINK libraries...): a static library of the house.
+# Defines kiln_library(NAME SOURCES... LINK libraries...): a static library of Kiln's own.
 function(kiln_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC kiln_flags ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK})
 endfunction()
 
-# kiln_program(NAME SOURCES... LINK libraries...): an executable in build/<preset>/bin.
+# Defines kiln_program(NAME SOURCES... LINK libraries...): an executable in build/<preset>/bin.
 function(kiln_program name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})

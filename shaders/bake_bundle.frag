@@ -12,7 +12,7 @@ layout(std430, binding = 7) coherent buffer Counter {
   uint entry_count;
 };
 flat in int layer;
-uniform uint capacity;  // entries there is room for; more are counted all the same
+uniform uint capacity;  // room for entries; further ones are counted, not stored
 uniform uint first_triangle;
 
 void main() {

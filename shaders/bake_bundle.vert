@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A surface seen along one direction per instance, from the light.
+// Draws a surface as the light sees it: one direction per instance.
 #include "bake_views.glsl"
 
 layout(location = 0) in vec3 position_object;

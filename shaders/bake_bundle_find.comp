@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What every receiver sees along a batch of directions: of its texel's list the fragment nearest before it.
+// Finds what every receiver sees along a batch of directions: the nearest fragment in front of it in its texel's list.
 //   STEEPEST_SLOPE  largest tangent of the angle between normal and direction that a slope or bias follows
 //   RECEIVER_PLANE  1: fragments are compared with the receiver's tangent plane at the texel's centre
 #include "bake_views.glsl"
@@ -22,11 +22,11 @@ layout(std430, binding = 9) readonly buffer Corners {
   uint corners[];  // three per triangle
 };
 uniform int batch_directions;
-uniform int first_row;               // of the batch among the block's hits
+uniform int first_row;               // row of the batch's first direction among the block's hits
 uniform float depth_bias;            // in map depths, 0 to 1
-uniform float position_bias;         // the same, in object units
-uniform float angle_bias_texels;     // of the map
-uniform float normal_offset_texels;  // of the map
+uniform float position_bias;         // in object units
+uniform float angle_bias_texels;     // in texels of the map
+uniform float normal_offset_texels;  // in texels of the map
 uniform float depth_rounding;        // in map depths
 
 vec3 corner_position(uint triangle, int corner) {
@@ -34,17 +34,17 @@ vec3 corner_position(uint triangle, int corner) {
   return vec3(positions[3u * vertex], positions[3u * vertex + 1u], positions[3u * vertex + 2u]);
 }
 
-// The nearest fragment before the receiver; END_OF_LIST for none. The depth decides, and of equal ones the triangle, so that
-// the order of the list does not matter.
+// Finds the nearest fragment in front of the receiver; END_OF_LIST if there is none. Depth decides and, for equal
+// depths, the triangle's number, so that the order of the list does not matter.
 uint nearest_before(int layer, vec3 position, vec3 normal, float cosine) {
   float texel_size = views[layer].direction.w;
   vec3 extent = views[layer].extent.xyz;
   vec3 at = map_coordinates(layer, position + normal * (normal_offset_texels * texel_size));
   float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
   float tangent = min(sine / cosine, STEEPEST_SLOPE);
-  float texel_slope = texel_size * tangent / extent.z;  // depth over one texel of the receiver's plane
+  float texel_slope = texel_size * tangent / extent.z;  // depth over one texel along the receiver's plane
   float limit = at.z - depth_bias - position_bias / extent.z - angle_bias_texels * texel_slope - depth_rounding;
-  vec2 place = at.xy * float(size) - 0.5;  // whole at texel centres
+  vec2 place = at.xy * float(size) - 0.5;  // a whole number at texel centres
   vec2 tap = floor(place + 0.5);
 #if RECEIVER_PLANE == 1
   vec2 across = vec2(dot(normal, views[layer].row_u.xyz) * extent.x, dot(normal, views[layer].row_v.xyz) * extent.y);
@@ -77,7 +77,8 @@ void main() {
     if (cosine > 0.0) triangle = nearest_before(d, position, normal, cosine);
     vec3 weights = vec3(0.0);
     if ((triangle & FACES_LIGHT) == 0u) {
-      // Where the ray meets the triangle's plane, or, if that is outside by the part of a texel, inside nearby.
+      // The point where the ray meets the triangle's plane or, if that is outside by a fraction of a texel, a point
+      // inside nearby.
       vec3 a = corner_position(triangle, 0), ab = corner_position(triangle, 1) - a, ac = corner_position(triangle, 2) - a;
       vec3 across = cross(ab, ac);
       float along = dot(across, direction);

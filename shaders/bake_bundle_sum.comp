@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Sums what the points of the surface that receivers see send them, over a block of directions: float32 sums that stay in
-// registers, and are added to the totals.
+// Sums the light that receivers get from the surface points that they see, over a block of directions: float32 sums
+// that stay in registers, and are then added to the totals.
 //   CHUNK   components of a chunk, a multiple of 4
 #include "bake_receivers.glsl"
 #include "bake_totals.glsl"
 
 layout(std430, binding = 2) readonly buffer Hits {
-  uvec4 hits[];  // as shaders/bake_bundle_find.comp has them
+  uvec4 hits[];  // as in shaders/bake_bundle_find.comp
 };
 layout(std430, binding = 9) readonly buffer Points {
-  uint points[];  // three per triangle: those of its corners
+  uint points[];  // for each triangle, the points of its three corners
 };
 layout(std430, binding = 10) readonly buffer Radiance {
   vec4 radiance[];  // point after point, the components of the chunk

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which triangle each texel of a depth map shows.
+// Writes the triangle that each texel of a depth map shows.
 layout(location = 0) out uint triangle;
 
 void main() { triangle = uint(gl_PrimitiveID); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One layer of the depth maps per instance: an occluder seen along one direction.
+// Draws an occluder as seen along one direction: one layer of the depth maps per instance.
 #ifdef HAS_VERTEX_LAYER
 #extension GL_ARB_shader_viewport_layer_array : require
 #endif

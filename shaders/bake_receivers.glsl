@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Texels of the atlas (or any points) that receive light, and the tiles of them that a pass visits: one per workgroup.
+// Receivers (texels of the atlas, or any points) and tiles of them; a workgroup handles one tile.
 struct Receiver {
   vec4 position;  // xyz, object space
   vec4 normal;    // xyz, unit

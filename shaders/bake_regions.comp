@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A coarse map of each depth map: the least and the greatest depth of every square of CELL x CELL texels.
+// Makes a coarse map of each depth map: the least and the greatest depth of every square of CELL x CELL texels.
 //   CELL      texels a side
 //   MIDPOINT  as in bake_weigh.comp
 layout(local_size_x = 8, local_size_y = 8) in;

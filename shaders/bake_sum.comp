@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Projects a block of directions: its float32 sums of weights * basis rows stay in registers, and are added to the totals.
+// Projects a block of directions: float32 sums of weights * basis rows stay in registers, and are then added to the
+// totals.
 //   BLOCK   directions of a full block; the weights of those beyond a smaller one are zero
 //   CHUNK   coefficients of a chunk, a multiple of 4
 #include "bake_receivers.glsl"
@@ -8,7 +9,7 @@
 layout(std430, binding = 2) readonly buffer Weights {
   float weights[];  // direction after direction
 };
-// Basis functions at the block's directions. A uniform block, whose constant addresses cost nothing.
+// Basis functions at the block's directions, in a uniform block: reading it at constant addresses is free.
 layout(std140, binding = 0) uniform BasisRows {
   vec4 basis_rows[BLOCK * CHUNK / 4];
 };

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Conservative regions: a tile of receivers that is wholly lit or wholly shadowed from a direction, as the coarse maps of
-// bake_regions.comp tell, needs no test of its receivers. Slacks cover whatever a test may add, so that no result changes.
+// Conservative regions: a tile of receivers that the coarse maps of bake_regions.comp show to be wholly lit or wholly
+// shadowed from a direction needs no test of its receivers. Margins cover whatever a test may add, so that no result
+// changes.
 struct Tile {
   vec4 sphere;  // centre and radius, object space
-  vec4 cone;    // of the normals: axis, sine of the half-angle
+  vec4 cone;    // cone of the normals: axis, sine of the half-angle
 };
 
 layout(std430, binding = 7) readonly buffer TileBounds {
@@ -14,14 +15,14 @@ layout(std430, binding = 8) buffer TileCounts {
 };
 layout(binding = 3) uniform sampler2DArray region_maps;
 
-// Bit d: the tile's class from direction d of the batch; none: its receivers are to be tested.
+// Bit d of one of these: the tile's class from direction d of the batch. In none of them: its receivers must be tested.
 shared uint tiles_behind, tiles_lit, tiles_shadowed;
 
 const uint CLASS_TESTED = 0u, CLASS_BEHIND = 1u, CLASS_LIT = 2u, CLASS_SHADOWED = 3u;
 
 uint tile_class(Tile tile, int layer) {
-  const float tap_reach = 2.2;  // texels from a receiver to the farthest centre that it is compared at
-  const int most_cells = 6;     // a side
+  const float tap_reach = 2.2;  // largest distance, in texels, between a receiver and a centre that it is compared at
+  const int most_cells = 6;     // largest number of cells a side
   float texel_size = views[layer].direction.w;
   vec3 extent = views[layer].extent.xyz;
   if (dot(tile.cone.xyz, views[layer].direction.xyz) < -tile.cone.w) return CLASS_BEHIND;
@@ -41,7 +42,7 @@ uint tile_class(Tile tile, int layer) {
       greatest = max(greatest, depths.y);
     }
 
-  // The normals' steepest tangent, from the cone.
+  // Steepest tangent of the normals, from the cone.
   float cosine = dot(tile.cone.xyz, views[layer].direction.xyz), sine = sqrt(max(1.0 - cosine * cosine, 0.0));
   float least_cosine = cosine * sqrt(max(1.0 - tile.cone.w * tile.cone.w, 0.0)) - sine * tile.cone.w - 1e-4;
   float tangent = STEEPEST_SLOPE;
@@ -54,7 +55,7 @@ uint tile_class(Tile tile, int layer) {
   return CLASS_TESTED;
 }
 
-// All invocations of the workgroup call it; the masks are there for all of them after.
+// Classifies the tile; all invocations of the workgroup call it, and see the masks afterwards.
 void classify_tile() {
   uint lane = gl_LocalInvocationID.x;
   if (lane == 0u) tiles_behind = tiles_lit = tiles_shadowed = 0u;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Sums of all blocks, as fixed-point numbers, so that the order of blocks does not matter (stages/core/sh/transfer_sums.h).
+// Sums of all blocks, as fixed-point numbers, so that the order of blocks does not matter
+// (stages/core/sh/transfer_sums.h).
 layout(std430, binding = 3) buffer Totals {
   uvec2 totals[];  // plane after plane, whole chunks; 64-bit integers: low word, high word
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The directions of one batch and the frames of their depth maps, as stages/bake/egl/shadow_frame.h has them.
+// Directions of a batch and the frames of their depth maps, laid out as in stages/bake/egl/shadow_frame.h.
 struct View {
   vec4 row_u;
   vec4 row_v;
@@ -12,7 +12,7 @@ layout(std430, binding = 0) readonly buffer Views {
   View views[];
 };
 
-// Map coordinates (0 to 1) and depth (0 nearest to the light) of a point.
+// Returns the map coordinates (0 to 1) and depth (0 is nearest to the light) of a point.
 vec3 map_coordinates(int layer, vec3 position_object) {
   vec4 p = vec4(position_object, 1.0);
   return vec3(dot(views[layer].row_u, p), dot(views[layer].row_v, p), dot(views[layer].row_depth, p));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every receiver against the depth maps of a batch of directions: clamped cosine times visibility
-// (stages/bake/egl/shadow_settings.h says what each option does).
+// Compares every receiver with the depth maps of a batch of directions: clamped cosine times visibility
+// (stages/bake/egl/shadow_settings.h explains each option).
 //   TAPS            1, 2 or 3: so many texels a side are compared
 //   STEEPEST_SLOPE  largest tangent of the angle between normal and direction that a slope or bias follows
 //   RECEIVER_PLANE  1: a texel is compared with the receiver's tangent plane at the texel's centre
@@ -29,12 +29,12 @@ layout(binding = 0) uniform sampler2DArray depth_maps;
 layout(binding = 1) uniform sampler2DArray back_depth_maps;
 #endif
 uniform int batch_directions;
-uniform int first_row;               // of the batch among the block's weights
+uniform int first_row;               // row of the batch's first direction among the block's weights
 uniform float depth_bias;            // in map depths, 0 to 1
-uniform float position_bias;         // the same, in object units
-uniform float angle_bias_texels;     // of the depth map
-uniform float normal_offset_texels;  // of the depth map
-uniform float error_band_texels;     // of the depth map
+uniform float position_bias;         // in object units
+uniform float angle_bias_texels;     // in texels of the depth map
+uniform float normal_offset_texels;  // in texels of the depth map
+uniform float error_band_texels;     // in texels of the depth map
 uniform float depth_rounding;        // in map depths
 
 #if REGIONS == 1
@@ -62,8 +62,8 @@ bool is_neighbour(ivec3 texel, uvec3 own) {
 }
 #endif
 
-// Weights of the texels along one axis: the B-spline of TAPS texels. `fraction` is the place's from the first texel's
-// centre (2 taps), or from the middle texel's, -0.5 to 0.5 (3 taps).
+// Weights of the texels along one axis: the B-spline of TAPS texels. `fraction` is the place relative to the first
+// texel's centre (2 taps) or to the middle texel's, -0.5 to 0.5 (3 taps).
 #if TAPS == 1
 float tap_weight(int tap, float fraction) { return 1.0; }
 #elif TAPS == 2
@@ -76,18 +76,18 @@ float tap_weight(int tap, float fraction) {
 }
 #endif
 
-// 0 to 1; the sign bit is set where MARK is 1 and the map cannot decide.
+// Computes visibility, 0 to 1; the sign bit is set if MARK is 1 and the map cannot decide.
 float visibility(int layer, int r, vec3 position, vec3 normal, float cosine) {
   float texel_size = views[layer].direction.w;
   vec3 extent = views[layer].extent.xyz;
   vec3 at = map_coordinates(layer, position + normal * (normal_offset_texels * texel_size));
   float sine = sqrt(max(1.0 - cosine * cosine, 0.0));
   float tangent = min(sine / cosine, STEEPEST_SLOPE);
-  float texel_slope = texel_size * tangent / extent.z;  // depth over one texel of the receiver's plane
+  float texel_slope = texel_size * tangent / extent.z;  // depth over one texel along the receiver's plane
   float limit = at.z - depth_bias - position_bias / extent.z - angle_bias_texels * texel_slope - depth_rounding;
 
   ivec2 size = textureSize(depth_maps, 0).xy;
-  vec2 place = at.xy * vec2(size) - 0.5;  // whole at texel centres
+  vec2 place = at.xy * vec2(size) - 0.5;  // a whole number at texel centres
 #if TAPS == 2
   vec2 first = floor(place), fraction = place - first;
 #else
@@ -122,7 +122,7 @@ float visibility(int layer, int r, vec3 position, vec3 normal, float cosine) {
       within = within || !decided;
     }
 #if TAPS > 1
-  lit = any_dark ? lit : 1.0;  // exactly
+  lit = any_dark ? lit : 1.0;  // keeps 1 and 0 exact
 #endif
 #if MARK == 1
   if (within || (any_lit && any_dark)) return uintBitsToFloat(floatBitsToUint(lit) | 0x80000000u);

@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: MIT
-// Exit radiance from a baked or a compressed asset under a light: the one place that knows the format.
+// Computes exit radiance from a plain or a compressed asset under a light: the only shader that knows the format.
 //
-// A stack of coefficients. With t_i = min_i + s_i (max_i - min_i), s_i the stored value of plane i (0 to 1) and L_i the
-// light's coefficient,
+// A plain asset is a stack of coefficients. With t_i = min_i + s_i (max_i - min_i), where s_i is the stored value of
+// plane i (0 to 1) and L_i the light's coefficient,
 //
 //   albedo sum_i L_i t_i  =  albedo sum_i L_i min_i  +  sum_i (albedo L_i (max_i - min_i)) s_i.
 //
-// A compressed asset, by the D3DX equation of clustered PCA, k the cluster of the texel, M_k its mean, B_kj its basis
-// vectors and w_pj = min_j + s_j (max_j - min_j) the texel's weights:
+// A compressed asset follows [D3DX]'s equation of clustered PCA, where k is the cluster of the texel, M_k its mean,
+// B_kj its basis vectors and w_pj = min_j + s_j (max_j - min_j) the texel's weights:
 //
 //   R_p = M_k . L' + sum_j w_pj (B_kj . L').
 //
-// Either is a constant and a scale for each stored value, which cluster_weights (runtime/decode) computes once
-// per light. A plane of a colour's own transfer has zeros for the other colours. So any number of bands, channels and
-// components goes through here.
+// Both are a constant plus a scale for each stored value, which cluster_weights (runtime/decode) computes once per
+// light. A plane of one colour's transfer has zeros for the other colours. So the code below serves any number of
+// bands, channels and components.
 //
 // Layer k of prt_planes holds planes 4k to 4k + 3 in its red, green, blue and alpha, so that 25 planes are 7 lookups.
-// prt_light is the light, a small texture: for each incident-light sample, for each cluster, the constant (rgb), then for
-// each layer three texels: what its four planes add to red, to green and to blue.
+// prt_light is the light, a small texture: for each incident-light sample, for each cluster, the constant (rgb), then
+// three texels for each layer: the scales of its four planes for red, for green and for blue.
 //
-// PRT_SAMPLES, 1 unless defined: incident-light sample points ([Chapter 2010], 4.3.3 to 4.3.6).
-// PRT_CLUSTERED, not defined unless there are several clusters.
+// PRT_SAMPLES: number of incident-light samples ([Chapter 2010], 4.3.3 to 4.3.6); 1 unless defined.
+// PRT_CLUSTERED: defined only if there are several clusters.
 #ifndef PRT_SAMPLES
 #define PRT_SAMPLES 1
 #endif
@@ -30,18 +30,18 @@ layout(binding = 2) uniform sampler2D prt_light;
 layout(location = 1) uniform int prt_layers;
 layout(location = 2) uniform int prt_clusters;
 
-const int prt_light_width = 1024;  // texels to a row of prt_light
+const int prt_light_width = 1024;  // texels per row of prt_light
 
 vec4 prt_light_at(int place) {
   return texelFetch(prt_light, ivec2(place % prt_light_width, place / prt_light_width), 0);
 }
 
-// Where the light of a sample and a cluster begins.
+// Finds where the light of a sample and a cluster begins.
 int prt_light_begin(int light_sample, int cluster) {
   return (light_sample * prt_clusters + cluster) * (1 + 3 * prt_layers);
 }
 
-// `contributions` of the incident-light samples add up to 1.
+// Mixes the constants of the samples; their `contributions` add up to 1.
 vec3 prt_constant(int cluster, float contributions[PRT_SAMPLES]) {
   vec3 radiance = vec3(0.0);
   for (int k = 0; k < PRT_SAMPLES; ++k)
@@ -49,7 +49,7 @@ vec3 prt_constant(int cluster, float contributions[PRT_SAMPLES]) {
   return radiance;
 }
 
-// What the four stored values of a layer add.
+// Computes what the four stored values of a layer add.
 vec3 prt_decoded(int cluster, int layer, vec4 stored, float contributions[PRT_SAMPLES]) {
   vec3 radiance = vec3(0.0);
   for (int k = 0; k < PRT_SAMPLES; ++k) {
@@ -60,7 +60,7 @@ vec3 prt_decoded(int cluster, int layer, vec4 stored, float contributions[PRT_SA
   return radiance;
 }
 
-// Where all texels of a lookup are of one cluster.
+// Computes radiance where all texels of a lookup belong to one cluster.
 vec3 prt_filtered(int cluster, vec2 uv, float contributions[PRT_SAMPLES]) {
   vec3 radiance = prt_constant(cluster, contributions);
   for (int layer = 0; layer < prt_layers; ++layer)
@@ -79,19 +79,19 @@ vec3 prt_texel_radiance(ivec2 texel, uint cluster, float contributions[PRT_SAMPL
   return radiance;
 }
 
-// Weights of two clusters are of two bases and must not be mixed: where a lookup's four texels are of several clusters
-// each is decoded by itself, and what they decode to is blended. Where they are of one, which is almost everywhere,
-// decoding and blending commute, and the texture unit does it.
+// Computes radiance from several clusters. Weights of two clusters belong to two bases and must not be mixed: if a
+// lookup's four texels belong to several clusters, each is decoded by itself, and the results are blended. If they
+// belong to one, which is almost everywhere, decoding and blending commute, and the texture unit blends.
 vec3 prt_exit_radiance(vec2 uv, float contributions[PRT_SAMPLES]) {
   ivec2 size = textureSize(prt_cluster_ids, 0);
   vec2 place = uv * vec2(size) - 0.5;
   ivec2 corner = ivec2(floor(place));
-  // At the corner that the four texels share, so that no rounding can choose other ones.
+  // Gathers at the corner that the four texels share, so that no rounding can choose other texels.
   uvec4 ids = textureGather(prt_cluster_ids, (vec2(corner) + 1.0) / vec2(size));
   if (ids.x == ids.y && ids.y == ids.z && ids.z == ids.w) return prt_filtered(int(ids.x), uv, contributions);
   vec2 share = place - vec2(corner);
   ivec2 low = clamp(corner, ivec2(0), size - 1), high = clamp(corner + 1, ivec2(0), size - 1);
-  // textureGather's order: upper left, upper right, lower right, lower left, the lower being the first row.
+  // Order of textureGather: upper left, upper right, lower right, lower left, where the first row is the lower one.
   vec3 upper = mix(prt_texel_radiance(ivec2(low.x, high.y), ids.x, contributions),
                    prt_texel_radiance(high, ids.y, contributions), share.x);
   vec3 lower = mix(prt_texel_radiance(low, ids.w, contributions),
@@ -101,7 +101,7 @@ vec3 prt_exit_radiance(vec2 uv, float contributions[PRT_SAMPLES]) {
 
 #else
 
-// Linear RGB; may be below 0 where truncated harmonics ring.
+// Computes linear RGB, which may be below 0 where truncated harmonics ring.
 vec3 prt_exit_radiance(vec2 uv, float contributions[PRT_SAMPLES]) {
   return prt_filtered(0, uv, contributions);
 }

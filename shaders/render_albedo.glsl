@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The surface's own reflectance, which no transfer has in it. Stored in sRGB, which the texture unit decodes.
+// Albedo of the surface, which transfer does not include. Stored in sRGB, which the texture unit decodes.
 #ifdef ALBEDO_MAP
 layout(binding = 3) uniform sampler2D albedo_map;
 vec3 surface_albedo(vec2 uv) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// First pass of deferred shading: writes what shading needs of the nearest surface, without any light. These are
-// PixelFlow's appearance parameters [Lastra 1995].
-layout(location = 3) uniform float asset_number;  // from 1
+// First pass of deferred shading: writes what shading needs of the nearest surface, without any light: PixelFlow's
+// appearance parameters [Lastra 1995].
+layout(location = 3) uniform float asset_number;  // counted from 1
 
 in vec2 surface_uv;
 layout(location = 0) out vec4 uv_and_asset;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How much each incident-light sample point counts at a point of the surface; what common_prt.glsl wants.
+// Contributions of the incident-light samples at a point of the surface, as common_prt.glsl expects them.
 #ifndef PRT_SAMPLES
 #define PRT_SAMPLES 1
 #endif

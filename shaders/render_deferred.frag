@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Deferred shading, second pass: light, once for each visible sample of one asset.
+// Second pass of deferred shading: computes light once for each visible sample of one asset.
 #include "common_prt.glsl"
 #include "render_albedo.glsl"
 #include "render_contributions.glsl"
 
-layout(early_fragment_tests) in;  // the stencil, before the shader
+layout(early_fragment_tests) in;  // makes the stencil test run before the shader
 
 layout(location = 3) uniform float asset_number;
 layout(binding = 6) uniform sampler2D uv_and_asset;

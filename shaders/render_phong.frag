@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-// [Phong 1975]: no light is ever in shadow. Balls light by the inverse square of their distance; light without a
+// Shades by [Phong 1975], without shadows. Balls light by the inverse square of their distance; light without a
 // direction arrives as irradiance in nine harmonics [Ramamoorthi 2001].
-// NORMAL_MAP: normals of the high mesh, object space, in place of the low mesh's.
+// NORMAL_MAP: takes normals of the high mesh, object space, instead of the low mesh's.
 #include "render_albedo.glsl"
 
 struct DirectLight {
-  vec4 place;     // xyz: a ball's centre, or the unit vector towards a distant light; w: a ball's radius, 0 for distant
+  vec4 place;     // xyz: a ball's centre, or the unit vector towards a distant light; w: a ball's radius, 0 if distant
   vec4 radiance;  // rgb
 };
 
 layout(std430, binding = 1) readonly buffer PhongLights {
   vec4 phong_albedo;         // rgb; a: specular reflectance
   vec4 phong_eye;            // xyz, object space; w: shininess, the cosine's power
-  vec4 phong_irradiance[9];  // rgb, over pi, in spherical harmonics of three bands
+  vec4 phong_irradiance[9];  // rgb, divided by pi, in spherical harmonics of three bands
   DirectLight phong_lights[];
 };
 
@@ -33,7 +33,7 @@ vec3 shading_normal() {
 }
 #endif
 
-// The basis of stages/core/sh/basis.h, three bands.
+// Evaluates the first three bands of the basis of stages/core/sh/basis.h.
 vec3 diffuse_light(vec3 n) {
   vec3 sum = 0.282095 * phong_irradiance[0].rgb;
   sum += 0.488603 * (n.y * phong_irradiance[1].rgb + n.z * phong_irradiance[2].rgb + n.x * phong_irradiance[3].rgb);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Textured PRT, plain or compressed.
+// Draws textured PRT, plain or compressed.
 #include "common_prt.glsl"
 #include "render_albedo.glsl"
 #include "render_contributions.glsl"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Per-vertex PRT: the dot product with the light at every vertex, four coefficients to a texel of vertex_transfer.
+// Draws per-vertex PRT: the dot product with the light at every vertex, four coefficients per texel of vertex_transfer.
 #include "common_prt.glsl"
 #include "render_contributions.glsl"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A colour for each chart, darker where the surface turns away from the eye.
+// Draws each chart in a colour of its own, darker where the surface turns away from the eye.
 layout(location = 1) uniform vec3 eye_object;
 
 in vec3 surface_position;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How far a sample is covered by an edge of its triangle, in alpha. The distance to an edge is the barycentric coordinate
-// over its slope on the screen.
+// Computes, in alpha, how far a sample is covered by an edge of its triangle. The distance to an edge is the
+// barycentric coordinate over its slope on the screen.
 layout(location = 1) uniform float half_width_samples;
 
 in vec3 surface_corner;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Normals as colours, n / 2 + 1/2 in object space; with NORMAL_MAP those of the map.
+// Draws normals as colours, n / 2 + 1/2 in object space; with NORMAL_MAP those of the map.
 in vec2 surface_uv;
 in vec3 surface_normal;
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Samples to the pixels of the finished picture, straight alpha, as tools/render/output/picture.h has it.
+// Averages samples into the pixels of the finished picture, with straight alpha, as tools/render/output/picture.h does.
 //
-// VIEW_RADIANCE: linear radiance through exposure and tone curve.
-// VIEW_SIGNED: a number, or its difference from that of another picture, from blue (below 0) by grey to red.
-// Neither: colours as they are.
-// VIEW_EDGES: with the edges of the mesh over it.
+// VIEW_RADIANCE: maps linear radiance through exposure and tone curve.
+// VIEW_SIGNED: maps a number, or its difference from that of another picture, from blue (below 0) by grey to red.
+// Neither: keeps colours as they are.
+// VIEW_EDGES: adds the edges of the mesh.
 layout(location = 0) uniform int supersample;
-layout(location = 1) uniform float gain;      // 2^stops, or what makes 1 of the number to be shown fully red
-layout(location = 2) uniform vec4 background; // linear rgb; a: 1 where there is one, else the picture is transparent
+layout(location = 1) uniform float gain;      // 2^stops, or the factor that turns the largest number to be shown into 1
+layout(location = 2) uniform vec4 background; // linear rgb; a is 1 if there is one, else the picture is transparent
 layout(location = 3) uniform bool srgb_tone;
-layout(location = 4) uniform vec3 signed_weights;  // of red, green and blue in the number
+layout(location = 4) uniform vec3 signed_weights;  // weights of red, green and blue in the number
 layout(binding = 0) uniform sampler2D picture_samples;
 layout(binding = 1) uniform sampler2D reference_samples;
 layout(binding = 2) uniform sampler2D edge_samples;
@@ -53,7 +53,7 @@ void main() {
   colour /= max(alpha, 1e-6);
 #endif
 #ifdef VIEW_EDGES
-  // Dark on light and light on dark, so that no colour hides them.
+  // Draws dark edges on light colours and light edges on dark ones, so that no colour hides them.
   colour = clamp(colour, 0.0, 1.0);
   float brightness = dot(vec3(0.2126, 0.7152, 0.0722), colour);
   float edge = mean_of(edge_samples).a;

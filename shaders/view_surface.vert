@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every corner of every triangle, three in a row, for inspection: nothing is shared between triangles.
+// Draws every corner of every triangle, three in a row, for inspection: triangles share nothing.
 layout(location = 0) uniform mat4 clip_from_object;
 
 layout(location = 0) in vec3 position_object;

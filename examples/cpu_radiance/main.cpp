@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Prints the exit radiance of points of an asset: cpu_radiance FOLDER LIGHT POINT...
-// LIGHT as kiln-render's --light has it ("45,30"); a POINT is a texel, numbered row after row from the bottom, or a
-// vertex.
+// LIGHT is written as for kiln-render --light ("45,30"). A POINT is a texel, numbered row after row from the bottom, or
+// a vertex.
 
 #include <cstdio>
 #include <cstdlib>

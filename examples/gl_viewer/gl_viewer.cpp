@@ -24,7 +24,7 @@ constexpr int picture_size = 512;
 
 using Vector = std::array<float, 3>;
 
-/// Direction towards an azimuth (0 is +Z, 90 is +X) and an elevation, degrees.
+/// Returns the direction towards an azimuth (0 is +Z, 90 is +X) and an elevation, in degrees.
 Vector towards(double azimuth, double elevation) {
   const double level = std::cos(elevation * degree);
   return {static_cast<float>(level * std::sin(azimuth * degree)), static_cast<float>(std::sin(elevation * degree)),
@@ -42,7 +42,7 @@ struct Camera {
   Vector eye;
 };
 
-/// A camera that sees all of a mesh from a direction, 30 degrees high.
+/// Places a camera that sees the whole mesh from a direction, with a vertical field of view of 30 degrees.
 Camera camera_around(const kiln::runtime::Asset& asset, double azimuth, double elevation, float aspect) {
   Vector lowest = {1e30f, 1e30f, 1e30f}, highest = {-1e30f, -1e30f, -1e30f};
   for (std::size_t k = 0; k < asset.positions().size(); ++k) {
@@ -62,7 +62,7 @@ Camera camera_around(const kiln::runtime::Asset& asset, double azimuth, double e
   const float nearest = distance - radius, farthest = distance + radius;
   const float depth = (farthest + nearest) / (nearest - farthest),
               shift = 2 * farthest * nearest / (nearest - farthest);
-  // Rows of the view matrix times those of the projection.
+  // Multiplies the rows of the view matrix by those of the projection.
   const auto set_row = [&](int row, const Vector& axis, float scale, float added) {
     for (int column = 0; column < 3; ++column) camera.clip_from_object[4 * column + row] = scale * axis[column];
     camera.clip_from_object[12 + row] = -scale * dot(axis, camera.eye) + added;
@@ -75,8 +75,8 @@ Camera camera_around(const kiln::runtime::Asset& asset, double azimuth, double e
 }
 
 struct View {
-  double azimuth = 20, elevation = 12;              ///< of the camera
-  double light_azimuth = 45, light_elevation = 30;  ///< degrees
+  double azimuth = 20, elevation = 12;              ///< direction of the camera, degrees
+  double light_azimuth = 45, light_elevation = 30;  ///< direction of the light, degrees
 };
 
 void draw(kiln::runtime::gl::Renderer& renderer, const kiln::runtime::Asset& asset, const View& view, int width,
@@ -95,7 +95,7 @@ void draw(kiln::runtime::gl::Renderer& renderer, const kiln::runtime::Asset& ass
 }
 
 void save_picture(const kiln::runtime::Asset& asset, const char* file) {
-  // Step 1: a context without a window.
+  // Step 1: create a context without a window.
   const EGLDisplay display = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
   if (!eglInitialize(display, nullptr, nullptr) || !eglBindAPI(EGL_OPENGL_API))
     throw std::runtime_error("EGL has no display without a surface");
@@ -103,7 +103,7 @@ void save_picture(const kiln::runtime::Asset& asset, const char* file) {
   const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted);
   if (context == EGL_NO_CONTEXT || !eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context))
     throw std::runtime_error("EGL has no OpenGL 4.5");
-  // Step 2: a framebuffer, and the asset in it.
+  // Step 2: create a framebuffer, and draw the asset into it.
   GLuint framebuffer, colour, depth;
   glCreateFramebuffers(1, &framebuffer);
   glCreateRenderbuffers(1, &colour);
@@ -120,7 +120,7 @@ void save_picture(const kiln::runtime::Asset& asset, const char* file) {
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glReadPixels(0, 0, picture_size, picture_size, GL_RGB, GL_UNSIGNED_BYTE, pixels.data());
   }
-  // Step 3: the file, whose first row is the top.
+  // Step 3: write the file, whose first row is the top.
   std::FILE* const out = std::fopen(file, "wb");
   if (out == nullptr) throw std::runtime_error(std::string("cannot write ") + file);
   std::fprintf(out, "P6\n%d %d\n255\n", picture_size, picture_size);

@@ -28,7 +28,7 @@ LightWindow window_of(Window window) {
   return LightWindow::hann;
 }
 
-/// Adds a light, by way of its text, so that numbers out of range are refused in one place.
+/// Adds a light by way of its text form, so that numbers out of range are refused in one place.
 void add(SceneLights& lights, const LightSpec& spec) {
   report_errors([&] { lights.specs.push_back(parse_light_spec(to_text(spec))); });
 }

@@ -13,7 +13,7 @@ namespace kiln::runtime {
 
 namespace {
 
-/// Throws unless an asset and a light go together. Returns the numbers of a colour of the light.
+/// Throws unless `light` fits the asset. Returns the number of coefficients per colour of the light.
 std::size_t require_light(const Asset& asset, std::span<const float> light) {
   const auto coefficients = static_cast<std::size_t>(asset.bands()) * static_cast<std::size_t>(asset.bands());
   if (light.size() != 3 * coefficients)

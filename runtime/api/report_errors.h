@@ -10,7 +10,7 @@
 
 namespace kiln::runtime {
 
-/// Calls `work`; whatever the house throws of a caller's or a file's fault leaves as Error. Lack of memory stays
+/// Calls `work`, and rethrows as Error what core throws about a fault of the caller or of a file. Lack of memory stays
 /// std::bad_alloc.
 template <class Work>
 decltype(auto) report_errors(const Work& work) {

@@ -13,7 +13,7 @@ namespace kiln {
 
 namespace {
 
-/// What a light makes of a transfer vector (channels * bands^2 values): RGB.
+/// Multiplies a transfer vector (channels * bands^2 values) by a light: RGB.
 Eigen::Vector3d lit(const PrtAsset& asset, const LightCoefficients& light, std::span<const float> transfer) {
   const std::size_t coefficients = static_cast<std::size_t>(asset.bands) * asset.bands;
   Eigen::Vector3d radiance = Eigen::Vector3d::Zero();
@@ -23,7 +23,7 @@ Eigen::Vector3d lit(const PrtAsset& asset, const LightCoefficients& light, std::
   return radiance;
 }
 
-/// Of planes that hold coefficients.
+/// Computes the weights of planes that hold coefficients.
 PlaneWeights coefficient_weights(const PrtAsset& asset, const LightCoefficients& light, const Eigen::Vector3d& albedo) {
   Eigen::Vector3d constant = Eigen::Vector3d::Zero();
   PlaneWeights weights;
@@ -39,7 +39,7 @@ PlaneWeights coefficient_weights(const PrtAsset& asset, const LightCoefficients&
   return weights;
 }
 
-/// Of planes that hold weights of basis vectors.
+/// Computes the weights of planes that hold weights of basis vectors.
 PlaneWeights basis_weights(const PrtAsset& asset, int cluster, const LightCoefficients& light,
                            const Eigen::Vector3d& albedo) {
   Eigen::Vector3d constant = albedo.cwiseProduct(lit(asset, light, asset.clusters->mean(cluster)));
@@ -54,7 +54,7 @@ PlaneWeights basis_weights(const PrtAsset& asset, int cluster, const LightCoeffi
   return weights;
 }
 
-/// Throws unless the asset has colours, and the light those of it.
+/// Throws unless the asset has colours, and `light` fits it.
 void require_light(const PrtAsset& asset, const LightCoefficients& light) {
   if (light.bands != asset.bands || light.channels.size() != 3)
     throw std::invalid_argument("cluster_weights: the light must have the asset's bands and three channels");

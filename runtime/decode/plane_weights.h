@@ -11,31 +11,33 @@
 
 namespace kiln {
 
-/// What a light makes of an asset's planes: exit radiance (linear RGB) = constant + sum over planes of scale * stored
-/// value (0 to 1). The expansion of the ranges, the light and the albedo are all in it, since all of them are linear:
-/// albedo L (min + s (max - min)) = albedo L min + albedo L (max - min) s. shaders/common_prt.glsl
-/// evaluates the same.
+/// Weights that turn an asset's stored values into light: exit radiance (linear RGB) = constant + sum over planes of
+/// scale * stored value (0 to 1). They combine the expansion of the ranges, the light and the albedo, since all of them
+/// are linear: albedo L (min + s (max - min)) = albedo L min + albedo L (max - min) s. shaders/common_prt.glsl
+/// evaluates the same sum.
 struct PlaneWeights {
   Eigen::Vector3f constant = Eigen::Vector3f::Zero();
   std::vector<Eigen::Vector3f> scales;  ///< one per plane, RGB
 };
 
-/// One for every cluster of a compressed asset, one for any other. The constant of a compressed one has the clusters'
-/// means in it, and the scales the dot products of basis vectors with the light: the terms in brackets of D3DX'
+/// Computes the weights of each cluster of a compressed asset, or the single ones of any other asset. For a compressed
+/// asset the constant includes the clusters' means, and the scales the dot products of basis vectors with the light:
+/// the terms in brackets of [D3DX]'s equation,
 ///
 ///   R_p = (M_k . L') + sum_j w_pj (B_kj . L'),
 ///
 /// which are computed once per light. `light` has three channels (R, G, B) and the asset's bands. An asset of one
-/// channel has the same transfer for all colours; of three, one for each. Throws std::invalid_argument for another
-/// light, BadInput for another number of channels: those are spectral basis functions, which need sensor matrices to
-/// become colours.
+/// channel has the same transfer for all colours; an asset of three has one for each. Throws std::invalid_argument for
+/// any other light, and BadInput for any other number of channels: those are spectral basis functions, which need
+/// sensor matrices to become colours.
 std::vector<PlaneWeights> cluster_weights(const PrtAsset& asset, const LightCoefficients& light,
                                           const std::array<float, 3>& albedo);
 
-/// The same for transfer vectors as they are, `constant` being 0: one scale for each number of a vector.
+/// Computes weights for transfer vectors themselves instead of stored values: one scale per number of a vector;
+/// `constant` is 0.
 PlaneWeights vector_weights(const PrtAsset& asset, const LightCoefficients& light, const std::array<float, 3>& albedo);
 
-/// Exit radiance of every texel, three channels, rows from the bottom; what the GPU draws, computed by the CPU.
+/// Computes the exit radiance of every texel on the CPU, as the GPU draws it: three channels, rows from the bottom.
 Image<float> relight_texels(const PrtAsset& asset, const LightCoefficients& light, const std::array<float, 3>& albedo);
 
 }  // namespace kiln

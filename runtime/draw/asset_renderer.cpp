@@ -14,7 +14,7 @@ namespace kiln {
 
 namespace {
 
-// Bindings and locations as shaders/common_prt.glsl and shaders/render_* have them.
+// Bindings and locations of shaders/common_prt.glsl and shaders/render_*.
 constexpr GLuint planes_unit = 0, cluster_ids_unit = 1, light_unit = 2, albedo_unit = 3, vertex_transfer_unit = 4,
                  normal_map_unit = 5, phong_binding = 1;
 constexpr GLint clip_from_object_location = 0, layers_location = 1, clusters_location = 2, asset_number_location = 3;
@@ -23,7 +23,7 @@ bool is_textured(Technique technique) {
   return technique == Technique::textured_prt || technique == Technique::compressed;
 }
 
-/// The buffer of shaders/render_phong.frag.
+/// Fills the buffer of shaders/render_phong.frag.
 std::vector<float> phong_buffer(const AssetLight& light, const std::array<float, 3>& albedo, const SurfaceLook& look,
                                 const Eigen::Vector3f& eye) {
   std::vector<float> values = {albedo[0], albedo[1], albedo[2], look.specular, eye[0], eye[1], eye[2], look.shininess};
@@ -175,7 +175,7 @@ void AssetRenderer::shade_appearance(int number) {
   bind_albedo();
   glProgramUniform1f(used.name(), asset_number_location, static_cast<float>(number));
   glUseProgram(used.name());
-  glBindVertexArray(mesh_.vertices.name());  // core profile wants one, the shader reads nothing of it
+  glBindVertexArray(mesh_.vertices.name());  // the core profile requires one, although the shader reads nothing from it
   glDrawArrays(GL_TRIANGLES, 0, 3);
   check_gl("shading the asset");
 }

@@ -17,52 +17,54 @@
 
 namespace kiln {
 
-/// The surface, as far as it is not in the transfer.
+/// Surface properties that transfer does not include.
 struct SurfaceLook {
-  /// Linear, times the asset's own; none: 1 where the asset knows its own, else a grey of 0.8.
+  /// Linear, multiplied by the asset's own albedo. Without a value: 1 if the asset knows its own albedo, else a grey of
+  /// 0.8.
   std::optional<std::array<float, 3>> albedo;
-  bool own_albedo = true;  ///< whether the asset's own counts
-  float specular = 0;      ///< of the Phong techniques alone: reflectance of the highlight
-  float shininess = 32;    ///< of these: the power of its cosine
+  bool own_albedo = true;  ///< whether the asset's own albedo is used
+  float specular = 0;      ///< reflectance of the highlight; Phong techniques only
+  float shininess = 32;    ///< power of the highlight's cosine; Phong techniques only
 };
 
-/// What a technique takes on the GPU, in bytes, as in Chapter 2010, table 6.2.
+/// GPU memory that a technique takes, in bytes, itemised as in [Chapter 2010], table 6.2.
 struct GpuMemory {
   std::uint64_t per_mesh = 0;    ///< textures, and the light
   std::uint64_t per_vertex = 0;  ///< attributes of one vertex, transfer included
-  std::uint64_t indices = 0;     ///< of the triangles
+  std::uint64_t indices = 0;     ///< indices of the triangles
 };
 
-/// An asset on the GPU, drawn by any technique under any light by shaders/render_*. Draws into the framebuffer that is
-/// bound, with the depth test and the state that is set (draw/frame.h). The GL context that is current at construction
+/// Draws an asset on the GPU, by any technique under any light, with shaders/render_*. Draws into the bound
+/// framebuffer, with the current depth test and state (draw/frame.h). The GL context that is current at construction
 /// must be current in every call and at destruction.
 class AssetRenderer {
  public:
-  /// Uploads the mesh. `incident_samples` of 1 to most_incident_samples: points at which the incident light is
-  /// computed.
+  /// Uploads the mesh. `incident_samples`, 1 to most_incident_samples, is the number of points at which the incident
+  /// light is computed.
   explicit AssetRenderer(const PrtAsset& asset, int incident_samples = 1);
 
   const PrtAsset& asset() const { return asset_; }
   const IncidentSamples& samples() const { return samples_; }
 
-  /// Loads what the technique needs, which otherwise draw() does when it comes to it. Throws WrongUsage where the asset
-  /// cannot be drawn so, BadInput, and MachineLacks where the device takes no such texture.
+  /// Loads the data of a technique, which draw() otherwise does on first use. Throws WrongUsage if the asset cannot be
+  /// drawn by it, BadInput, and MachineLacks if the device does not support such textures.
   void prepare(Technique technique);
 
-  /// Sets the light, of as many samples as this has, for all draws that follow. Throws as cluster_weights does.
+  /// Sets the light of all following draws; its number of samples must be incident_samples. Throws as cluster_weights
+  /// does.
   void set_light(const AssetLight& light, const SurfaceLook& look);
 
-  /// Draws all triangles, both sides. `clip_from_object` is a column-vector matrix, `eye_object` where the camera
-  /// stands.
+  /// Draws all triangles, both sides. `clip_from_object` is a matrix for column vectors, `eye_object` the camera's
+  /// position.
   void draw(Technique technique, const Eigen::Matrix4f& clip_from_object, const Eigen::Vector3f& eye_object);
 
-  /// The two passes of deferred shading, textured and compressed alone: writes what to shade into the three colour
-  /// attachments (shaders/render_appearance.frag), and shades the samples that have `number` there, which are read from
-  /// textures (AppearanceFrame).
+  /// Passes of deferred shading, for the textured and the compressed technique only. The first writes what shading
+  /// needs into the three colour attachments (shaders/render_appearance.frag); the second shades the samples that have
+  /// `number` there, which it reads from textures (AppearanceFrame).
   void draw_appearance(const Eigen::Matrix4f& clip_from_object, int number);
   void shade_appearance(int number);
 
-  /// Of a technique that was prepared, with a light that was set.
+  /// Returns the memory of a technique that was prepared, with a light that was set.
   GpuMemory memory(Technique technique) const;
 
  private:

@@ -15,13 +15,13 @@ namespace kiln {
 
 namespace {
 
-// As shaders/common_prt.glsl has it.
+// Width of the light texture of shaders/common_prt.glsl.
 constexpr int light_width = 1024;
 
-// As shaders/render_*.vert have them.
+// Attribute locations of shaders/render_*.vert.
 constexpr GLuint position_location = 0, uv_location = 1, normal_location = 2, contributions_location = 3;
 
-/// Four planes as the channels of one picture; channels without a plane are 0.
+/// Packs four planes into the channels of one picture; channels without a plane are 0.
 template <class Value>
 std::vector<Value> interleaved(const std::vector<Image<Value>>& planes, std::size_t first) {
   std::vector<Value> texels(planes_per_layer * planes[first].values().size(), Value{0});
@@ -48,7 +48,7 @@ void add_attribute(GLuint vertices, GLuint location, const GlBuffer& buffer, int
   glEnableVertexArrayAttrib(vertices, location);
 }
 
-/// Transfer vectors at the vertices of a textured asset: bilinear lookups at their uvs.
+/// Looks up transfer vectors at the vertices of a textured asset, bilinearly at their uvs.
 std::vector<float> looked_up_transfer(const PrtAsset& asset) {
   const std::size_t length = asset.vector_length();
   std::vector<float> vectors(asset.mesh.positions.size() * length, 0.f), texels(4 * length);
@@ -119,7 +119,8 @@ UploadedTexture upload_normal_map(const PrtAsset& asset) {
   if (asset.normal_space == NormalSpace::tangent)
     encoded = quantise_normals(decode_normals(encoded, asset.normal_space, asset.mesh,
                                               rasterise_uvs(asset.mesh, encoded.width(), encoded.height())));
-  UploadedTexture map{make_texture(GL_TEXTURE_2D), 8 * encoded.values().size() / 3};  // drivers pad RGB to four
+  UploadedTexture map{make_texture(GL_TEXTURE_2D),
+                      8 * encoded.values().size() / 3};  // drivers pad RGB to four channels
   glTextureStorage2D(map.texture.name(), 1, GL_RGB16, encoded.width(), encoded.height());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTextureSubImage2D(map.texture.name(), 0, 0, 0, encoded.width(), encoded.height(), GL_RGB, GL_UNSIGNED_SHORT,
@@ -132,7 +133,8 @@ UploadedTexture upload_normal_map(const PrtAsset& asset) {
 UploadedTexture upload_albedo(const Image<std::uint8_t>& picture) {
   if (picture.values().empty()) return {};
   require_at_most(GL_MAX_TEXTURE_SIZE, std::max(picture.width(), picture.height()), "textures with a side");
-  UploadedTexture map{make_texture(GL_TEXTURE_2D), 4 * picture.values().size() / 3};  // drivers pad RGB to four
+  UploadedTexture map{make_texture(GL_TEXTURE_2D),
+                      4 * picture.values().size() / 3};  // drivers pad RGB to four channels
   glTextureStorage2D(map.texture.name(), 1, GL_SRGB8, picture.width(), picture.height());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTextureSubImage2D(map.texture.name(), 0, 0, 0, picture.width(), picture.height(), GL_RGB, GL_UNSIGNED_BYTE,
@@ -161,7 +163,7 @@ UploadedVertexTransfer upload_vertex_transfer(const PrtAsset& asset) {
 
 UploadedTexture upload_light(const std::vector<std::vector<PlaneWeights>>& samples) {
   const auto layers = static_cast<std::size_t>(layer_count(samples.front().front().scales.size()));
-  const std::size_t clusters = samples.front().size(), stride = 1 + 3 * layers;  // texels
+  const std::size_t clusters = samples.front().size(), stride = 1 + 3 * layers;  // texels of each cluster and sample
   const std::size_t texels = samples.size() * clusters * stride;
   const int rows = static_cast<int>((texels + light_width - 1) / light_width);
   std::vector<float> values(4 * static_cast<std::size_t>(light_width) * static_cast<std::size_t>(rows), 0.f);

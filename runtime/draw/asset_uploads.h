@@ -12,33 +12,33 @@
 
 namespace kiln {
 
-/// Four coefficient planes to a layer of a texture.
+/// Coefficient planes per layer of a texture.
 inline constexpr int planes_per_layer = 4;
 int layer_count(std::size_t planes);
 
-/// A texture and what it takes on the GPU.
+/// A texture, and its size on the GPU.
 struct UploadedTexture {
   GlTexture texture;
   std::uint64_t bytes = 0;
 };
 
-/// Throws MachineLacks where the device's `limit` is less than `wanted`.
+/// Throws MachineLacks if the device's `limit` is less than `wanted`.
 void require_at_most(GLenum limit, int wanted, const char* what);
 
-/// The planes, four to a layer, normalised to 0..1, looked up bilinearly, clamped at the edges.
+/// Uploads the planes, four to a layer, normalised to 0..1, with bilinear lookup, clamped at the edges.
 UploadedTexture upload_planes(const PrtAsset& asset);
 
-/// The cluster of every texel, clamped at the edges as the planes are; none where there is one cluster.
+/// Uploads the cluster of every texel, clamped at the edges like the planes; no texture if there is only one cluster.
 UploadedTexture upload_cluster_ids(const PrtAsset& asset);
 
-/// The asset's normal map as object-space n * 0.5 + 0.5, 16 bits. Throws BadInput.
+/// Uploads the asset's normal map as object-space n * 0.5 + 0.5, 16 bits. Throws BadInput.
 UploadedTexture upload_normal_map(const PrtAsset& asset);
 
-/// An albedo that the texture unit decodes from sRGB, looked up bilinearly; none of no picture.
+/// Uploads an albedo that the texture unit decodes from sRGB, with bilinear lookup; no texture if the picture is empty.
 UploadedTexture upload_albedo(const Image<std::uint8_t>& picture);
 
-/// Transfer vectors at the vertices, float32, four coefficients to a texel of a buffer texture, layer_count texels to a
-/// vertex: looked up in the texels at the vertices' uvs, or those of an asset that is baked per vertex.
+/// Transfer vectors at the vertices, float32, in a buffer texture: four coefficients per texel, layer_count texels per
+/// vertex. Those of a textured asset are looked up at the vertices' uvs.
 struct UploadedVertexTransfer {
   GlBuffer buffer;
   GlTexture texture;
@@ -46,7 +46,8 @@ struct UploadedVertexTransfer {
 };
 UploadedVertexTransfer upload_vertex_transfer(const PrtAsset& asset);
 
-/// The light of shaders/common_prt.glsl: of every incident-light sample, of every cluster, what cluster_weights gives.
+/// Uploads the light for shaders/common_prt.glsl: the result of cluster_weights for each incident-light sample and
+/// cluster.
 UploadedTexture upload_light(const std::vector<std::vector<PlaneWeights>>& samples);
 
 /// The mesh, and the contributions of incident-light samples at its vertices.

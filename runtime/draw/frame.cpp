@@ -7,7 +7,7 @@ namespace kiln {
 
 namespace {
 
-// As shaders/render_deferred.frag has them.
+// Texture units of shaders/render_deferred.frag.
 constexpr GLuint uv_and_asset_unit = 6, contributions_low_unit = 7, contributions_high_unit = 8;
 
 GlTexture make_target(GLenum format, int width, int height) {
@@ -26,7 +26,7 @@ void clear(const GlFramebuffer& framebuffer, int attachments) {
   glClearNamedFramebufferfi(framebuffer.name(), GL_DEPTH_STENCIL, 0, 1.f, 0);
 }
 
-/// Assets beyond the stencil's 255 share a value; the shader tells them apart.
+/// Returns an asset's stencil value. Assets beyond the stencil's 255 values share one; the shader tells them apart.
 GLint stencil_of(int number) { return (number - 1) % 255 + 1; }
 
 void bind(const GlFramebuffer& framebuffer, int width, int height) {

@@ -5,7 +5,8 @@
 
 namespace kiln {
 
-/// Where pictures are drawn: linear radiance and coverage in float32, depth, and a stencil for deferred shading.
+/// Framebuffer that pictures are drawn into: linear radiance and coverage in float32, depth, and a stencil for deferred
+/// shading.
 class Frame {
  public:
   Frame(int width, int height);
@@ -13,7 +14,7 @@ class Frame {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// Binds and clears it, and sets the state that assets are drawn with: depth test, both sides, no blending.
+  /// Binds and clears the framebuffer, and sets the state for drawing assets: depth test, both sides, no blending.
   void begin() const;
 
   const GlTexture& colour() const { return colour_; }
@@ -26,26 +27,26 @@ class Frame {
   GlFramebuffer framebuffer_;
 };
 
-/// The first pass of deferred shading of frames of a size: uv and the asset's number of every sample, contributions of
-/// incident-light samples (16-bit floats) where assets have several. Depth and stencil are the frame's.
+/// Framebuffer of the first pass of deferred shading: uv and asset number of every sample, and contributions of
+/// incident-light samples (16-bit floats) if assets have several. Shares depth and stencil with a Frame of the same
+/// size.
 class AppearanceFrame {
  public:
   AppearanceFrame(int width, int height, bool with_contributions);
 
-  /// Binds and clears it, and the frame's depth and stencil, with the state of Frame::begin.
+  /// Binds and clears the framebuffer, and the frame's depth and stencil, with the state of Frame::begin.
   void begin(const Frame& frame) const;
 
-  /// Of the draws that follow, until begin_shading: the asset's number goes into the stencil. Assets are numbered
-  /// from 1.
+  /// Sets the asset number, counted from 1, that the following draws write into the stencil, until begin_shading.
   void begin_asset(int number) const;
 
-  /// Binds the frame, cleared but for its depth, and the textures that AssetRenderer::shade_appearance reads.
+  /// Binds the frame, cleared except for its depth, and the textures that AssetRenderer::shade_appearance reads.
   void begin_shading(const Frame& frame) const;
 
-  /// Only the samples of that asset are shaded: the stencil keeps the shader from running for others.
+  /// Restricts shading to the samples of one asset: the stencil keeps the shader from running for others.
   void begin_shading_asset(int number) const;
 
-  /// Back to the state of Frame::begin.
+  /// Restores the state of Frame::begin.
   void end_shading(const Frame& frame) const;
 
  private:

@@ -11,10 +11,10 @@ namespace kiln {
 
 namespace {
 
-// Pictures are drawn in tiles of at most so many samples a side, so that memory does not grow with supersampling.
+// Samples per side of a tile: pictures are drawn in tiles, so that memory does not grow with supersampling.
 constexpr int tile_samples = 2048;
 
-/// Part of a picture, in pixels of it.
+/// Part of a picture, in pixels.
 struct Tile {
   int left = 0, bottom = 0, width = 0, height = 0;
 };
@@ -30,7 +30,7 @@ Eigen::Matrix4d clip_of_tile(const Tile& tile, int width, int height) {
   return zoom;
 }
 
-/// Adds the means of squares of `factor` x `factor` samples of `fine` to the pixels of `tile`, which are 0.
+/// Averages squares of `factor` x `factor` samples of `fine`, and adds the means to the pixels of `tile`, which are 0.
 void box_filter(const Image<float>& fine, int factor, const Tile& tile, Image<float>& picture) {
   const float weight = 1.f / static_cast<float>(factor * factor);
   for (int j = 0; j < fine.height(); ++j)

@@ -14,7 +14,7 @@
 
 namespace kiln {
 
-/// Whether light is computed for every sample drawn, or once for each that is visible.
+/// Order of drawing and shading: light is computed for every sample drawn, or once for each visible sample.
 enum class Shading { forward, deferred };
 
 /// One asset in a scene.
@@ -22,7 +22,8 @@ struct SceneAsset {
   AssetRenderer* renderer = nullptr;
   Placement placement;
   Technique technique = Technique::textured_prt;
-  const ProbeSet* probes = nullptr;  ///< the light where it stands, past what kiln-probes was given; none: nothing
+  /// Light where the asset stands, shadowed by what kiln-probes was given; null: unshadowed.
+  const ProbeSet* probes = nullptr;
 };
 
 /// One picture of a scene.
@@ -35,20 +36,20 @@ struct SceneView {
   Shading shading = Shading::forward;
 };
 
-/// The vertices of all assets where they stand.
+/// Lists the vertices of all assets, placed in the scene.
 std::vector<Eigen::Vector3f> scene_shape(const std::vector<SceneAsset>& assets);
 
-/// Gives every asset the light of its place.
+/// Gives every asset the light at its place.
 void light_scene(const std::vector<SceneAsset>& assets, const SceneLights& lights, const SurfaceLook& look);
 
-/// Draws lit assets into `frame` as `clip_from_scene` and `eye_scene` see them. Deferred shading goes through
-/// `appearance`, which is as large; forward shading needs none. Throws WrongUsage for deferred shading of a
-/// technique that does not go with it, and as AssetRenderer::prepare does.
+/// Draws lit assets into `frame` as `clip_from_scene` and `eye_scene` see them. Deferred shading needs an `appearance`
+/// of the same size; forward shading needs none. Throws WrongUsage for a technique that deferred shading does not
+/// support, and as AssetRenderer::prepare does.
 void draw_scene(const std::vector<SceneAsset>& assets, const Eigen::Matrix4d& clip_from_scene,
                 const Eigen::Vector3d& eye_scene, const Frame& frame, const AppearanceFrame* appearance = nullptr);
 
-/// Lights and draws: linear exit radiance RGB times coverage, and coverage; rows from the bottom, box-filtered, drawn
-/// in tiles. Radiance may be below 0 where truncated harmonics ring.
+/// Lights and draws a scene in tiles. Returns linear exit radiance RGB times coverage, and coverage, rows from the
+/// bottom, box-filtered. Radiance may be below 0 where truncated harmonics ring.
 Image<float> render_scene(const std::vector<SceneAsset>& assets, const SceneLights& lights, const SceneView& view);
 
 }  // namespace kiln

@@ -16,7 +16,7 @@ namespace kiln {
 
 namespace {
 
-/// Red, green and blue of a grey, RGB or RGBA picture.
+/// Reads red, green and blue of a grey, RGB or RGBA picture.
 Image<float> read_colours(const std::filesystem::path& file) {
   const Image<float> picture = read_float_image(file);
   const auto fail = [&](const std::string& found, const std::string& expected) {
@@ -49,7 +49,7 @@ LightCoefficients turned(const LightCoefficients& light, double rotation_degrees
   return ShRotation(light.bands, turn.toRotationMatrix())(light);
 }
 
-/// The six faces of a folder, rows from the top, as OpenGL has them.
+/// Reads the six faces in a folder, rows from the top, as OpenGL orders them.
 LightCoefficients load_cube_map(const std::filesystem::path& folder, int bands, double rotation_degrees) {
   std::array<std::vector<float>, 6> faces;
   std::array<std::span<const float>, 6> views;

@@ -10,7 +10,7 @@ namespace kiln {
 
 namespace {
 
-/// Both extremes of x, y and z, then farthest points; each place once.
+/// Picks vertices: both extremes along x, y and z, then the farthest from all so far; each position once.
 std::vector<Eigen::Vector3f> spread_points(const TriangleMesh& mesh, std::size_t count) {
   std::vector<Eigen::Vector3f> points;
   const auto add = [&](const Eigen::Vector3f& point) {
@@ -31,16 +31,16 @@ std::vector<Eigen::Vector3f> spread_points(const TriangleMesh& mesh, std::size_t
     };
     const auto farthest = std::max_element(mesh.positions.begin(), mesh.positions.end(),
                                            [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
-    if (distance(*farthest) == 0) break;  // a mesh of fewer vertices
+    if (distance(*farthest) == 0) break;  // the mesh has no other positions
     points.push_back(*farthest);
   }
   return points;
 }
 
-/// Moving least squares of linear functions, distances as fractions of `unit`.
+/// Computes contributions by moving least squares of linear functions, distances as fractions of `unit`.
 std::vector<double> contributions_at(const Eigen::Vector3f& place, const std::vector<Eigen::Vector3f>& points,
                                      double unit) {
-  // Over the least distance, so that a place next to a sample, or on it, overflows nothing.
+  // Divides by the least distance, so that a place next to a sample, or on it, overflows nothing.
   std::vector<double> weights;
   std::vector<Eigen::Vector4d> functions;
   for (const Eigen::Vector3f& point : points) {
@@ -52,7 +52,7 @@ std::vector<double> contributions_at(const Eigen::Vector3f& place, const std::ve
   double sum = 0;
   for (double& weight : weights) sum += weight = weight > least ? least / weight : 1;
 
-  // A few points in a plane have no slope across it: a little of the identity keeps it near 0.
+  // A few points in a plane leave the slope across it undefined: a small multiple of the identity keeps it near 0.
   constexpr double ridge = 0.003;
   Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
   moments.diagonal() << 0, ridge, ridge, ridge;

@@ -20,7 +20,7 @@ bool is_direct(const LightSpec& spec) {
          (spec.kind == Kind::cone && spec.half_angle_degrees <= 90);
 }
 
-/// The first bands of a light; those that it has not are 0.
+/// Returns the first bands of a light; bands that it lacks are 0.
 LightCoefficients first_bands(const LightCoefficients& light, int bands) {
   LightCoefficients cut{bands, light.channels};
   for (std::vector<float>& channel : cut.channels) channel.resize(coefficient_count(bands));
@@ -32,7 +32,7 @@ DirectLight direct_light(const LightSpec& spec, const Placement& placement) {
     const Eigen::Vector3d towards = direction_from_angles(spec.azimuth_degrees, spec.elevation_degrees).cast<double>();
     return {(placement.rotation.transpose() * towards).cast<float>(), 0, spec.colour};
   }
-  // The ball's own radiance: a white surface at the scene's origin that faces it has the radiance `colour`.
+  // Computes the ball's own radiance: a white surface at the scene's origin that faces it has the radiance `colour`.
   const Eigen::Vector3d position(spec.position.data());
   const double sine = std::min(1.0, spec.radius / position.norm());
   DirectLight light{placement.to_object(position).cast<float>(), static_cast<float>(spec.radius / placement.scale),
@@ -49,7 +49,7 @@ bool SceneLights::is_local() const {
 }
 
 LightCoefficients SceneLights::incident(int bands, const Eigen::Vector3d& viewpoint) const {
-  // Windows come last, so that what they even out is the light that arrives.
+  // Windows come last, so that they damp ringing of the light that arrives.
   const int source_bands = probes != nullptr ? std::max(bands, probes->bands) : bands,
             carried_bands = probes != nullptr ? std::min(bands, probes->bands) : bands;
   LightCoefficients sum = constant_light(bands, std::array<float, 3>{0, 0, 0});

@@ -20,30 +20,31 @@ struct SceneLights {
   std::vector<LightSpec> specs;
   std::optional<LightCoefficients> environment;  ///< distant light of any number of bands
   LightWindow window = LightWindow::hann;
-  const ProbeSet* probes = nullptr;  ///< what stands at the origin and shadows the light on its way; none: nothing
+  const ProbeSet* probes = nullptr;  ///< objects at the origin that shadow the light on its way; null: none
 
-  /// Whether the light depends on the place.
+  /// Tests whether the light depends on the place.
   bool is_local() const;
 
-  /// What comes in at `viewpoint`, three channels, every light windowed (window_weights).
+  /// Computes the light that arrives at `viewpoint`, three channels, every light windowed (window_weights).
   LightCoefficients incident(int bands, const Eigen::Vector3d& viewpoint) const;
 };
 
 /// A light with a position or a direction, for shading without harmonics; object space.
 struct DirectLight {
-  Eigen::Vector3f place;               ///< of a ball its centre, of a distant light the unit vector towards it
-  float radius = 0;                    ///< of a ball, object units; 0: distant
-  std::array<float, 3> radiance = {};  ///< of a ball its own; distant: of a white surface that faces it
+  Eigen::Vector3f place;  ///< centre of a ball, or unit vector towards a distant light
+  float radius = 0;       ///< of a ball, object units; 0 if distant
+  /// Of a ball its own radiance; of a distant light that of a white surface that faces it.
+  std::array<float, 3> radiance = {};
 };
 
-/// What the lights of a scene are to one asset at its place, in its object space.
+/// Lights of a scene as one asset receives them at its place, in its object space.
 struct AssetLight {
-  std::vector<LightCoefficients> samples;  ///< at every incident-light sample point
+  std::vector<LightCoefficients> samples;  ///< light at each incident-light sample
   std::vector<DirectLight> direct;         ///< directional lights, cones of up to 90 degrees, and balls
-  LightCoefficients rest;                  ///< all others, three bands, no window
+  LightCoefficients rest;                  ///< all other lights, three bands, no window
 };
 
-/// `points` are the asset's incident-light sample points in its object space.
+/// Computes an asset's light; `points` are its incident-light samples in its object space.
 AssetLight light_asset(const SceneLights& lights, int bands, const Placement& placement,
                        std::span<const Eigen::Vector3f> points);
 

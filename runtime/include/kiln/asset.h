@@ -20,48 +20,48 @@ namespace kiln::runtime {
 /// Linear red, green and blue.
 using Colour = std::array<float, 3>;
 
-/// Where an asset's transfer vectors stand.
+/// How an asset stores its transfer vectors.
 enum class Form {
-  texels,    ///< one picture for each coefficient
-  clusters,  ///< compressed: pictures of weights, and the vectors that they weigh
-  vertices,  ///< in attributes of the mesh
+  texels,    ///< for texels: one picture per coefficient
+  clusters,  ///< for texels, compressed: pictures of weights, and the vectors that they multiply
+  vertices,  ///< for vertices: in attributes of the mesh
 };
 
-/// A folder that kiln-bake or kiln-compress made, in memory. Cheap to copy: copies share what was read. Points of the
-/// surface are numbered: texels row after row from the bottom (v = 0), or vertices. docs/format.md has the meaning of
-/// every number. Constant functions may be called from several threads at once.
+/// An asset in memory, read from a folder of kiln-bake or kiln-compress. Cheap to copy, since copies share the data.
+/// Points of the surface are numbered: texels row after row from the bottom (v = 0), or vertices. docs/format.md
+/// explains every number. Constant functions may be called from several threads at once.
 class KILN_RUNTIME_API Asset {
  public:
-  /// Reads the folder. Throws Error where anything is missing, damaged, or at odds with the rest.
+  /// Reads a folder. Throws Error if anything is missing, damaged or inconsistent.
   static Asset load(const std::filesystem::path& folder);
 
   Form form() const;
-  int bands() const;     ///< degrees l < bands
+  int bands() const;     ///< number of degrees: l < bands
   int channels() const;  ///< 1: the same transfer for all colours; 3: red, green, blue
-  int width() const;     ///< texels; 0 where transfer stands at vertices
+  int width() const;     ///< texels; 0 if transfer is stored at vertices
   int height() const;
-  std::size_t points() const;         ///< width * height, or vertices
+  std::size_t points() const;         ///< width * height, or the number of vertices
   std::size_t vector_length() const;  ///< numbers of a transfer vector: channels * bands^2
 
-  /// The mesh, in object space (+Y up, right-handed): three numbers a vertex, two of uvs (0,0 the lower left; none
-  /// where transfer stands at vertices), three vertices a triangle, counter-clockwise from outside.
+  /// The mesh in object space (+Y up, right-handed): three numbers per vertex, two uvs per vertex ((0, 0) is the lower
+  /// left; none if transfer is stored at vertices), three vertices per triangle, counter-clockwise seen from outside.
   std::span<const float> positions() const;
   std::span<const float> normals() const;
   std::span<const float> uvs() const;
   std::span<const std::uint32_t> triangles() const;
 
-  /// Where positions count from, in the coordinates of the file that the mesh was made of.
+  /// Returns the origin of positions, in the coordinates of the file that the mesh was made from.
   std::array<double, 3> origin() const;
 
-  /// Transfer vectors of points, one after another, each channel after channel. `vectors` holds vector_length() numbers
-  /// for each point. Throws Error for a point that is none, or too short a span.
+  /// Writes the transfer vectors of points to `vectors`, one after another, each channel after channel. `vectors` holds
+  /// vector_length() numbers per point. Throws Error for a point out of range or too short a span.
   void transfer(std::span<const std::uint32_t> points, std::span<float> vectors) const;
 
-  /// Whether the asset says what share of light its surface reflects; if not, albedo() is 1.
+  /// Tests whether the asset states the reflectance of its surface; if not, albedo() is 1.
   bool knows_albedo() const;
   Colour albedo(std::uint32_t point) const;
 
-  /// For the library's own use.
+  /// Returns the library's own representation.
   const PrtAsset& implementation() const { return *asset_; }
 
  private:

@@ -7,7 +7,7 @@
 
 namespace kiln::runtime {
 
-/// Anything that a caller or a file did wrong, in one sentence: where, what was found, what was expected, the remedy.
+/// Fault of a caller or a file, in one sentence: where, what was found, what was expected, the remedy.
 class KILN_RUNTIME_API Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
