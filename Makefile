@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Kiln's front door. CMake builds the stages, `kiln` runs them on content.
+# Kiln's front door: CMake builds the stages, `kiln` runs them on content.
 #
 #   make          build everything into build/release
 #   make demo     build the programs, then run pipeline.yaml; ends by naming the report

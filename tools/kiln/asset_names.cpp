@@ -18,7 +18,7 @@ constexpr std::string_view refused = "/\\:*?\"<>|";
 
 bool is_control(unsigned char c) { return c < 0x20 || c == 0x7f; }
 
-/// C1 controls, U+2028 and U+2029, which end lines.
+/// Tests for C1 controls, U+2028 and U+2029, which end lines.
 bool has_wide_control(const std::string& name) {
   for (std::size_t k = 0; k + 1 < name.size(); ++k) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(name[k + i]); };
@@ -28,7 +28,7 @@ bool has_wide_control(const std::string& name) {
   return false;
 }
 
-/// What stands beside the assets' folders.
+/// Tests whether a name is taken by a file beside the assets' folders.
 bool is_taken(const std::string& name) { return name == "Makefile" || name == "index.html"; }
 
 }  // namespace
@@ -71,7 +71,7 @@ bool is_pattern(const std::string& text) { return text.find_first_of("*?[{") != 
 
 std::vector<fs::path> matching_files(const fs::path& folder, const std::string& pattern) {
   const fs::path whole = fs::path(pattern).is_absolute() || folder == "." ? fs::path(pattern) : fs::path();
-  std::string escaped;  // the folder's own characters are no pattern
+  std::string escaped;  // characters of the folder that would be a pattern are escaped
   if (whole.empty()) {
     for (const char c : folder.string()) {
       if (std::string_view("\\*?[]{},~").find(c) != std::string_view::npos) escaped += '\\';

@@ -7,25 +7,25 @@
 
 namespace kiln {
 
-/// What keeps a text from being the name of an asset, and so of its folder on any system; empty where nothing does. A
-/// name is UTF-8 of any script, of at most 200 bytes, without control characters and / \ : * ? " < > |. It begins with
-/// no dot, hyphen or blank, ends with no dot or blank and not with .yaml or .yml, and is not one of Makefile and
-/// index.html, which stand beside the assets' folders.
+/// Says why a text cannot be the name of an asset, and so of its folder on any system; empty if it can. A name is UTF-8
+/// of any script, of at most 200 bytes, without control characters and / \ : * ? " < > |. It does not begin with a dot,
+/// hyphen or blank, does not end with a dot, a blank, .yaml or .yml, and is neither Makefile nor index.html, which
+/// stand beside the assets' folders.
 std::string fault_of_name(const std::string& name);
 
-/// What name_fault() lets a name be, for messages.
+/// Description of what fault_of_name() accepts, for messages.
 inline constexpr const char* what_a_name_is =
     "a name of letters, digits and signs of any script, without / \\ : * ? \" < > | and control characters";
 
-/// A name for the asset of a mesh file: the file's without what follows its last dot, "_" in place of what a name
+/// Names the asset of a mesh file: the file's name without its extension, with "_" for each character that a name
 /// cannot have.
 std::string name_of_mesh(const std::filesystem::path& mesh);
 
-/// Whether a text has characters that make it a pattern: * ? [ {.
+/// Tests whether a text has characters that make it a pattern: * ? [ {.
 bool is_pattern(const std::string& text);
 
-/// The files that a pattern of the shell (* ? [a-z] {a,b}) names, seen from `folder` and relative to it where the
-/// pattern is, in order of their bytes; names that begin with a dot only where the pattern does.
+/// Lists the files that a shell pattern (* ? [a-z] {a,b}) matches, seen from `folder` and relative to it if the pattern
+/// is, in the order of their bytes. Names that begin with a dot match only a pattern that does.
 std::vector<std::filesystem::path> matching_files(const std::filesystem::path& folder, const std::string& pattern);
 
 }  // namespace kiln

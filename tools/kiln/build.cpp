@@ -30,7 +30,7 @@ namespace {
 
 constexpr int missed_budget = static_cast<int>(ExitCode::budget_missed);
 
-/// The metrics of an asset that has a report; else null.
+/// Reads the metrics of an asset; null if it has no report.
 Json metrics_of_asset(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_regular_file(folder / report_metrics, error) || !fs::is_regular_file(folder / layout::report_page, error))
@@ -39,7 +39,7 @@ Json metrics_of_asset(const fs::path& folder) {
   return metrics.is_object() ? metrics : Json();
 }
 
-/// One build: what has to run, the run, and what came of it.
+/// One build: the steps to run, the run, and its outcome.
 class Build {
  public:
   Build(const Pipeline& pipeline, const BuildSettings& settings) : pipeline_(pipeline), settings_(settings) {}
@@ -67,7 +67,7 @@ class Build {
  private:
   bool must_run(std::size_t rule) const { return !reasons_[rule].empty(); }
 
-  /// Says what no stage could read; whether there is something to build all the same.
+  /// Reports files that no stage could read; returns whether something can be built all the same.
   bool check_files(const std::vector<const Asset*>& assets) {
     std::set<std::string> said;
     for (const Asset* asset : assets) {
@@ -84,7 +84,7 @@ class Build {
     return !buildable_.empty() && (settings_.keep_going || buildable_.size() == assets.size());
   }
 
-  /// Which rules are wanted, and which of them have to run, and why.
+  /// Decides which rules are wanted, which of them have to run, and why.
   void plan() {
     rules_ = make_rules(pipeline_);
     needs_ = needs_of(rules_);
@@ -99,7 +99,7 @@ class Build {
       const MakeRule& rule = rules_[k];
       plans_[k] = {rule.asset, rule.run, stamp_text(rule.run, programs), rule.state};
     }
-    // A rule stands behind those it needs: `wanted_` is in that order.
+    // `wanted_` lists each rule after those that it needs.
     for (const std::size_t k : wanted_) {
       states_[k] = load_state(pipeline_.folder / rules_[k].state);
       reasons_[k] = settings_.force ? "it is forced" : reason_to_run(plans_[k], states_[k], hashes);
@@ -109,17 +109,17 @@ class Build {
     bytes_read_ = hashes.bytes_read();
   }
 
-  /// The rules of the stages that an asset shall pass.
+  /// Lists the rules of the stages that an asset should pass.
   std::vector<std::size_t> rules_until(const std::string& asset) const {
     const std::size_t last = stage_position(settings_.until).value_or(all_stages().size());
     std::vector<std::size_t> rules;
-    // What makes the mesh is no stage, and comes before all of them.
+    // Rules that make the mesh are no stage, and come before all of them.
     for (std::size_t k = 0; k < rules_.size(); ++k)
       if (rules_[k].asset == asset && stage_position(rules_[k].run.name).value_or(0) <= last) rules.push_back(k);
     return rules;
   }
 
-  /// Adds a rule to those wanted, behind all that it needs.
+  /// Adds a rule to `wanted_`, after all that it needs.
   void want(std::size_t rule) {
     if (std::find(wanted_.begin(), wanted_.end(), rule) != wanted_.end()) return;
     for (const std::size_t need : needs_[rule]) want(need);
@@ -138,7 +138,7 @@ class Build {
       std::printf("nothing to do\n");
   }
 
-  /// Has the steps find that nothing is as it was.
+  /// Removes the states, so that every step has to run.
   void forget() {
     for (const std::size_t k : wanted_) {
       std::error_code error;
@@ -150,7 +150,8 @@ class Build {
 
   void save_plans() {
     for (std::size_t k = 0; k < rules_.size(); ++k) save_plan(pipeline_.folder / rules_[k].plan, plans_[k]);
-    // Stamps that save the next build from reading files again; but for a few bytes nothing is written.
+    // Keeps the new stamps, which save the next build from reading files again; for a few bytes this is not worth a
+    // write.
     constexpr std::int64_t much = 16 << 20;
     for (const std::size_t k : wanted_)
       if (bytes_read_ > much && states_[k] && !must_run(k)) save_state(pipeline_.folder / rules_[k].state, *states_[k]);
@@ -179,7 +180,7 @@ class Build {
     take(end);
   }
 
-  /// What became of the stages.
+  /// Takes over what make reports about the stages.
   void take(const MakeEnd& make) {
     std::map<std::pair<std::string, std::string>, StepEvent> events;
     bool failed = false;
@@ -204,7 +205,7 @@ class Build {
     noted_ = true;
   }
 
-  /// The outcome of one rule, where it is of an asset that was asked for.
+  /// Adds the outcome of one rule; null for an asset that was not asked for.
   StageOutcome* note(std::size_t rule, const char* state) {
     const auto asset = std::find_if(outcomes_.begin(), outcomes_.end(),
                                     [&](const AssetOutcome& outcome) { return outcome.name == rules_[rule].asset; });
@@ -213,7 +214,7 @@ class Build {
     return &asset->stages.back();
   }
 
-  /// Says of every asset that is whole where its report is, and whether it meets the budgets.
+  /// Reports, for each complete asset, where its report is and whether it meets the budgets.
   void judge_all() {
     if (!noted_)
       for (const std::size_t k : wanted_) note(k, "current");
@@ -233,7 +234,7 @@ class Build {
     }
   }
 
-  /// Says where the report is and whether it met the budgets.
+  /// Reports where the asset's report is and whether it met the budgets.
   void judge(AssetOutcome& asset) {
     const fs::path folder = asset.folder;
     const Json metrics = Json::parse(read_text(folder / report_metrics));
@@ -269,16 +270,16 @@ class Build {
   const Pipeline& pipeline_;
   const BuildSettings& settings_;
   const Stopwatch watch_;
-  std::vector<AssetOutcome> outcomes_;  ///< of the assets that were asked for
+  std::vector<AssetOutcome> outcomes_;  ///< one for each asset that was asked for
   std::vector<const Asset*> buildable_;
   std::vector<MakeRule> rules_;
   std::vector<std::vector<std::size_t>> needs_;
-  std::vector<StagePlan> plans_;                   ///< of each rule
-  std::vector<std::optional<StageState>> states_;  ///< of each rule that is wanted
-  std::vector<std::string> reasons_;               ///< why a rule has to run; empty where it does not
-  std::vector<std::size_t> wanted_;                ///< rules, each behind those it needs
+  std::vector<StagePlan> plans_;                   ///< one for each rule
+  std::vector<std::optional<StageState>> states_;  ///< one for each rule; set if the rule is wanted
+  std::vector<std::string> reasons_;               ///< why each rule has to run; empty if it does not
+  std::vector<std::size_t> wanted_;                ///< rules, each after those that it needs
   std::vector<int> statuses_;
-  std::int64_t bytes_read_ = 0;  ///< to see what has changed
+  std::int64_t bytes_read_ = 0;  ///< in finding out what has changed
   bool noted_ = false;
 };
 
@@ -291,7 +292,7 @@ int gravest_status(const std::vector<int>& statuses) {
     return std::find(std::begin(by_gravity), std::end(by_gravity), status) - std::begin(by_gravity);
   };
   for (const int status : statuses)
-    // Whatever is not in the list is a defect, graver than all of it.
+    // A status that is not in the list is a defect, graver than all others.
     if (rank(status) == std::ssize(by_gravity))
       return static_cast<int>(ExitCode::failed);
     else if (rank(status) < rank(gravest))

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A hidden folder that a stage which was killed left half written files in.
+/// Tests for a hidden folder in which a killed stage left half-written files.
 bool is_staging(const fs::path& path) { return path.filename().string().starts_with(".kiln-"); }
 
 class Cleaner {
@@ -30,7 +30,7 @@ class Cleaner {
     }
   }
 
-  /// The assets that have something in the output folder, or may have by the pipeline.
+  /// Lists the assets that have something in the output folder, or may have by the pipeline.
   std::set<std::string> assets() const {
     std::set<std::string> names;
     for (const auto& [name, files] : outputs_) names.insert(name);
@@ -56,14 +56,14 @@ class Cleaner {
     std::error_code error;
     for (const char* name : {"Makefile", "index.html"}) removed_ += fs::remove(folder_ / output_ / name, error) ? 1 : 0;
     fs::remove_all(folder_ / notes_, error);
-    fs::remove(folder_ / output_, error);  // where it is empty
+    fs::remove(folder_ / output_, error);  // removes the folder only if it is empty
   }
 
   int removed() const { return removed_; }
   const std::vector<fs::path>& kept() const { return kept_; }
 
  private:
-  /// Removes folders that are empty now, from the inside; notes what files are left.
+  /// Removes folders that are empty now, from the inside out; notes which files are left.
   void remove_leftovers(const fs::path& folder) {
     std::error_code error;
     std::vector<fs::path> entries;
@@ -93,7 +93,7 @@ void clean(const Pipeline& pipeline, const std::vector<std::string>& names, bool
   Cleaner cleaner(pipeline);
   const std::set<std::string> known = cleaner.assets();
   for (const std::string& name : names)
-    if (!known.contains(name)) select_assets(pipeline, {name});  // which refuses it
+    if (!known.contains(name)) select_assets(pipeline, {name});  // throws, since the name is unknown
   std::error_code error;
   if (!fs::is_directory(pipeline.folder / pipeline.output, error)) {
     if (!quiet) std::fprintf(stderr, "kiln: nothing to remove\n");

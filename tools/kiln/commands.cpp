@@ -37,7 +37,7 @@ struct Commands::Values {
 
 namespace {
 
-/// Takes the pipeline file off the front of `words`; what is left are assets.
+/// Takes the pipeline file off the front of `words`; the rest are assets.
 Pipeline take_pipeline(std::vector<std::string>& words) {
   std::string file = "pipeline.yaml";
   if (!words.empty() && (words.front().ends_with(".yaml") || words.front().ends_with(".yml"))) {
@@ -51,7 +51,7 @@ Pipeline take_pipeline(std::vector<std::string>& words) {
   return load_pipeline(file);
 }
 
-/// Where its mesh comes from.
+/// Describes where an asset's mesh comes from.
 std::string mesh_text(const Asset& asset) {
   if (!asset.square.empty()) return "a square of half-size " + asset.square;
   return asset.archive.empty() ? asset.mesh.string() : asset.archive.string() + ":" + asset.member;
@@ -77,7 +77,7 @@ void list(const Pipeline& pipeline, bool as_json) {
                 mesh_text(asset).c_str());
 }
 
-/// Builds. What is wrong before a stage runs is in the JSON object as well.
+/// Builds. Faults found before a stage runs are in the JSON object as well.
 int run_build(std::vector<std::string>& words, const BuildSettings& settings) {
   try {
     const Pipeline pipeline = take_pipeline(words);
@@ -106,7 +106,7 @@ void add_words(CLI::App& command, std::vector<std::string>& words, const std::st
       ->option_text("[pipeline.yaml] [asset...]");
 }
 
-/// Runs a program that lies beside this one; gives its exit status.
+/// Runs a program of the same folder as this one; returns its exit status.
 int run_sibling(const std::string& name, const std::vector<std::string>& words) {
   std::vector<std::string> arguments = {(program_folder() / name).string()};
   arguments.insert(arguments.end(), words.begin(), words.end());
@@ -161,18 +161,19 @@ Commands::Commands(CLI::App& app) : values_(std::make_unique<Values>()) {
                  v.file == "pipeline.yaml" ? "" : (" " + shell_quoted(v.file.string())).c_str());
   });
 
-  // A program of its own, since it reads pictures and meshes, and every step of a build starts this one.
+  // kiln-check is a program of its own because it links readers of pictures and meshes, and every step of a build
+  // starts this one.
   CLI::App& check = *app.add_subcommand("check", "Hold assets' folders against the format (kiln-check)");
   check.set_help_flag();
   check.prefix_command();
   check.callback([&v, &check] { v.status = run_sibling("kiln-check", check.remaining()); });
 
-  // What docs/schema/pipeline.schema.json is made by.
+  // `kiln schema` makes docs/schema/pipeline.schema.json.
   app.add_subcommand("schema", "Print the JSON Schema of pipeline.yaml")->group("")->callback([] {
     std::printf("%s\n", json_text(pipeline_schema(), 2).c_str());
   });
 
-  // What the Makefile calls.
+  // `kiln step` is for the Makefile to call.
   CLI::App& step = *app.add_subcommand("step", "Run one stage")->group("");
   step.add_option("--threads", v.threads);
   step.add_option("plan", v.plan)->required();

@@ -5,8 +5,8 @@
 
 namespace kiln {
 
-/// Adds kiln's subcommands to `app`: build, list, clean and init, and those that the Makefile calls. `status` becomes
-/// the exit status. Everything they refer to lives as long as `app` is parsed.
+/// Adds kiln's subcommands to `app`: build, list, clean, init and check, and those that the Makefile calls. `status`
+/// becomes the exit status. Must outlive the parsing of `app`.
 class Commands {
  public:
   explicit Commands(CLI::App& app);

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What keeps a file from being read at all.
+/// Says why a file cannot be read at all; empty if it can.
 std::string fault_of_file(const fs::path& file) {
   std::error_code error;
   if (!fs::exists(file, error)) return "does not exist";
@@ -36,8 +36,8 @@ std::string fault_of_extension(const fs::path& file) {
   return extension.empty() ? "has no extension" : fmt::format("has the unknown extension '{}'", extension);
 }
 
-/// Where a mesh was taken out of an archive before, it is there, and the next build sees whether the archive is the
-/// same.
+/// Tests whether a mesh was taken out of an archive before: then it is there, and the next build checks whether the
+/// archive is the same.
 bool was_extracted(const Pipeline& pipeline, const Asset& asset) {
   const fs::path file = pipeline.folder / pipeline.output / ".kiln" / asset.name / "extract.state.json";
   std::optional<StageState> state = load_state(file);
@@ -70,7 +70,7 @@ void check_mesh(const Pipeline& pipeline, const Asset& asset, std::vector<BadInp
          fmt::format("see tar --list --file {}", shell_quoted(source.string())));
 }
 
-/// The files that settings name, each path once: most often all stages have a texture from one line.
+/// Checks the files that settings name, each path once: usually all stages get a texture from the same line.
 void check_named_files(const Pipeline& pipeline, const Asset& asset, std::vector<BadInput>& faults,
                        bool textures_alone = false) {
   std::set<std::string> seen;

@@ -11,14 +11,14 @@
 
 namespace kiln {
 
-/// What keeps a file from being read as a mesh, as far as can be told without reading it; empty where nothing does.
+/// Says why a file cannot be read as a mesh, as far as can be known without reading it; empty if nothing is wrong.
 std::string fault_of_mesh(const std::filesystem::path& file);
 
-/// What fault_of_mesh() lets a file be, for messages.
+/// Description of what fault_of_mesh() accepts, for messages.
 inline constexpr const char* what_a_mesh_is = "a mesh file: obj, ply, stl, off, drc, gltf, glb or fbx";
 
-/// Every file that an asset of the pipeline names and that cannot be read: its mesh, its archive and the member in it,
-/// the picture of its material, and the meshes of those that stand around it.
+/// Lists the files that an asset of the pipeline names and that cannot be read: its mesh, its archive and the member in
+/// it, the picture of its material, and the meshes that stand around it.
 std::vector<BadInput> file_faults(const Pipeline& pipeline, const Asset& asset);
 
 }  // namespace kiln

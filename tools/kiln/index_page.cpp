@@ -11,7 +11,7 @@ namespace kiln {
 
 namespace {
 
-// The colours of the reports.
+// Style sheet, in the colours of the reports.
 constexpr const char* style = R"css(
 :root { color-scheme: light; --ink: #1d1c22; --soft: #65616e; --line: #dedbe2; --paper: #fbfaf8; --card: #fff;
   --good: #2f6b4f; --bad: #a8322a; --accent: #8a4b2a; }
@@ -38,7 +38,7 @@ footer { margin-top: 32px; color: var(--soft); font-size: 13px; }
 @media (max-width: 560px) { main { padding: 20px 14px 32px; } }
 )css";
 
-/// What a metric is, where the stage wrote it.
+/// Finds a metric; null if the stage did not write it.
 const Json* metric(const Json& metrics, const char* stage, const char* name) {
   const auto record = metrics.find(stage);
   if (record == metrics.end() || !record->is_object()) return nullptr;
@@ -46,7 +46,7 @@ const Json* metric(const Json& metrics, const char* stage, const char* name) {
   return value == record->end() || !value->is_number() ? nullptr : &*value;
 }
 
-/// Digits in groups of three.
+/// Formats a number with its digits in groups of three.
 std::string grouped(long long value) {
   std::string text = std::to_string(value);
   for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) text.insert(at, "\u202f");

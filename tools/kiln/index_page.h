@@ -9,21 +9,21 @@
 
 namespace kiln {
 
-/// An asset as the page over all of them shows it.
+/// An asset on the page over all of them.
 struct IndexEntry {
   std::string name;
-  Json metrics;              ///< its metrics.json; null where there is no report
-  bool has_picture = false;  ///< report.png in its folder
+  Json metrics;              ///< content of metrics.json; null if there is no report
+  bool has_picture = false;  ///< whether report.png is in its folder
 };
 
-/// The page of an output folder: each asset's picture, figures and budgets, with a link to its report. Links are
+/// Makes the page of an output folder: each asset's picture, figures and budgets, with a link to its report. Links are
 /// relative, so the folder may be moved.
 std::string index_html(const std::string& pipeline, const std::vector<IndexEntry>& entries);
 
-/// Text in HTML.
+/// Escapes text for HTML.
 std::string html_escaped(const std::string& text);
 
-/// A file name in a URL.
+/// Escapes a file name for a URL.
 std::string url_escaped(const std::string& name);
 
 }  // namespace kiln

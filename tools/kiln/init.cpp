@@ -46,7 +46,7 @@ defaults:
 assets:
 )";
 
-/// A mesh as seen from the folder of the pipeline file: relative where it lies in or beside it.
+/// Returns a mesh's path as seen from the folder of the pipeline file: relative if it lies in that folder or beside it.
 fs::path seen_from(const fs::path& folder, const fs::path& mesh) {
   if (mesh.is_absolute()) return mesh.lexically_normal();
   const fs::path whole = fs::weakly_canonical(fs::absolute(folder_of(mesh))) / mesh.filename();
@@ -61,7 +61,7 @@ std::string yaml_quoted(const std::string& text) {
     return std::isalnum(c) != 0 || c >= 0x80 || c == '_' || c == '-' || c == '.' || c == '/';
   };
   const bool begins_plain = !text.empty() && text[0] != '-' && text[0] != '.' && !words.contains(text);
-  // All digits would be a number, which is a name all the same.
+  // Plain digits would be read as a number, which may be a name all the same.
   if ((begins_plain || text.starts_with("../")) && std::all_of(text.begin(), text.end(), plain)) return text;
   std::string quoted = "\"";
   for (const char c : text) {

@@ -6,11 +6,11 @@
 
 namespace kiln {
 
-/// Writes a pipeline file of these meshes, with comments that say what may be changed. Makes its folder if need be.
-/// Throws BadInput where the file is there already, and for a mesh that is not, is none or is given twice.
+/// Writes a pipeline file for these meshes, with comments that explain what may be changed. Makes its folder if need
+/// be. Throws BadInput if the file exists, and for a mesh that does not exist, is no mesh or is given twice.
 void init_pipeline(const std::vector<std::filesystem::path>& meshes, const std::filesystem::path& file);
 
-/// Text as YAML reads it back: plain where that may be, else between double quotes.
+/// Quotes text so that YAML reads it back: plain if possible, else between double quotes.
 std::string yaml_quoted(const std::string& text);
 
 }  // namespace kiln

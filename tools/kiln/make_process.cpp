@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A folder that is gone when it goes out of scope.
+/// A folder that is removed at the end of the scope.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -37,7 +37,7 @@ class TemporaryFolder {
   fs::path path_;
 };
 
-/// A descriptor of our stderr that make's children find, while make's own messages go to us.
+/// A duplicate of our stderr that make's children write to, while make's own messages go to us.
 class MessageDescriptor {
  public:
   MessageDescriptor() : descriptor_(fcntl(STDERR_FILENO, F_DUPFD, 100)) {}
@@ -65,7 +65,7 @@ MakeEnd run_make(const MakeSettings& make) {
   settings.environment = {{step_environment::events, events_file.string()},
                           {step_environment::messages, messages.number()},
                           {step_environment::alone, make.alone ? "1" : ""}};
-  // A make that runs the driver must not lend its flags and job slots to ours.
+  // Removes variables of an outer make: one that runs the driver must not lend its flags and job slots to ours.
   for (const char* name : {"MAKEFLAGS", "MFLAGS", "MAKELEVEL", "GNUMAKEFLAGS", "MAKEFILES"})
     settings.environment.emplace_back(name, "");
   settings.on_output_line = [](const std::string&) {};

@@ -11,25 +11,25 @@
 namespace kiln {
 
 struct MakeSettings {
-  std::filesystem::path folder;    ///< to run in
-  std::filesystem::path makefile;  ///< seen from there
+  std::filesystem::path folder;    ///< working folder
+  std::filesystem::path makefile;  ///< relative to that folder
   std::vector<std::string> targets;
   int jobs = 1;
-  int threads = 1;  ///< of each stage
+  int threads = 1;  ///< threads of each stage
   bool keep_going = false;
-  bool alone = true;  ///< no two stages run at a time
+  bool alone = true;  ///< whether no two stages run at a time
 };
 
 struct MakeEnd {
   ProcessEnd end;
   std::vector<std::string> errors;  ///< make's own lines
-  std::vector<StepEvent> events;    ///< the stages that ran
+  std::vector<StepEvent> events;    ///< one for each stage that ran
 };
 
-/// Runs make, and lets the stages' messages through to stderr.
+/// Runs make, and passes the stages' messages on to stderr.
 MakeEnd run_make(const MakeSettings& settings);
 
-/// Throws what make said when it failed and no stage did.
+/// Throws make's own message, for a failure without a failed stage.
 [[noreturn]] void fail_as_make(const MakeEnd& make);
 
 }  // namespace kiln

@@ -16,21 +16,21 @@ bool is_plain(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || std::string_view("_-+./,:@").find(c) != std::string::npos;
 }
 
-/// A word of a recipe: for the shell, its dollars for make.
+/// Quotes a word of a recipe: for the shell, and its dollars for make.
 std::string recipe_word(const std::string& word) {
   std::string text;
   for (const char c : shell_quoted(word)) text += c == '$' ? "$$" : std::string(1, c);
   return text;
 }
 
-/// The value of a variable, where # begins a comment.
+/// Escapes the value of a variable, in which # would begin a comment.
 std::string variable_value(const std::string& word) {
   std::string text;
   for (const char c : recipe_word(word)) text += c == '#' ? "\\#" : std::string(1, c);
   return text;
 }
 
-/// A name that make may have as a target besides those it has.
+/// Tests whether a name can be an additional target of make.
 bool is_target(const std::string& name) {
   return name != "all" && std::isalpha(static_cast<unsigned char>(name[0])) != 0 &&
          std::all_of(name.begin(), name.end(),

@@ -9,11 +9,12 @@
 
 namespace kiln {
 
-/// The metrics that an asset of these settings has for budgets, as "STAGE.METRIC": numbers of the stages' records. A
-/// list here, for a budget is checked before any record is there; cli.driver holds it against records.
+/// Lists the metrics that budgets of an asset with these settings may name, as "STAGE.METRIC": numbers of the stages'
+/// records. A list in code, because budgets are checked before any record exists; the test cli.driver compares it with
+/// records.
 std::vector<std::string> metrics_of(const AssetSettings& settings);
 
-/// The setting that has a metric written, as "verify-directions of bake"; empty where it takes none.
+/// Returns the setting that a metric depends on, as "verify-directions of bake"; empty if there is none.
 std::string setting_of_metric(const std::string& metric);
 
 }  // namespace kiln

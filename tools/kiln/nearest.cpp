@@ -8,7 +8,7 @@ namespace kiln {
 
 namespace {
 
-/// Letters to put in, take out or exchange (Levenshtein, 1966).
+/// Counts the letters to insert, remove or exchange [Levenshtein 1966].
 std::size_t changes_between(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);

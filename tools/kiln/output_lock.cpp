@@ -23,7 +23,7 @@ namespace {
 
 constexpr int poll_milliseconds = 50;
 
-/// "process 123", as the holder of the lock wrote it.
+/// Names the holder as it wrote itself into the lock: "process 123".
 std::string holder(int descriptor) {
   char text[64] = {};
   const ssize_t count = pread(descriptor, text, sizeof text - 1, 0);
@@ -31,7 +31,7 @@ std::string holder(int descriptor) {
   return words.empty() ? "" : " (" + words.substr(0, words.find('\n')) + ")";
 }
 
-/// Whether the lock is still the one that stands in the folder: `kiln clean` removes it.
+/// Tests whether this lock file still stands in the folder: `kiln clean` removes it.
 bool is_current(int descriptor, const fs::path& file) {
   struct stat ours = {}, theirs = {};
   return fstat(descriptor, &ours) == 0 && stat(file.c_str(), &theirs) == 0 && ours.st_ino == theirs.st_ino &&
@@ -66,7 +66,7 @@ OutputLock::OutputLock(const fs::path& output) {
 }
 
 OutputLock::~OutputLock() {
-  // Who held it is of no use any more, and a build that had nothing to do leaves the folder as it was.
+  // Clears the holder's name, so that a build that had nothing to do leaves the folder as it was.
   [[maybe_unused]] const int failure = ftruncate(descriptor_, 0);
   close(descriptor_);
 }

@@ -68,7 +68,7 @@ class Reader {
     return output;
   }
 
-  /// What is for all assets: included files, then the pipeline's own.
+  /// Reads what applies to all assets: included files, then the pipeline's own settings.
   void read_shared(const YAML::Node& root) {
     if (const YAML::Node include = root["include"]) shared_ = included_layers(file_, include, "");
     SettingsLayer& own = shared_.emplace_back();
@@ -80,13 +80,13 @@ class Reader {
     if (const YAML::Node block = root["budgets"]) add_budgets(file_, block, own);
   }
 
-  /// Whether a key of `assets` stands for mesh files, and is not a name.
+  /// Tests whether a key of `assets` stands for mesh files, and is not a name.
   static bool stands_for_files(const std::string& key, const YAML::Node& body) {
     const bool has_mesh = body.IsMap() && body["mesh"].IsDefined();
     return !has_mesh && (is_pattern(key) || key.find('/') != std::string::npos);
   }
 
-  /// Where the files of `key` and settings `body` become assets, named after the files.
+  /// Turns the files that match `key` into assets, named after them, with the settings `body`.
   void add_files(const YAML::Node& key, const YAML::Node& body) {
     const std::string text = file_.path(key).string();
     std::error_code error;
@@ -122,7 +122,7 @@ class Reader {
     }
   }
 
-  /// A named asset: a mesh of its own, or settings for one that a pattern before has found.
+  /// Adds a named asset: one with a mesh of its own, or settings for one that an earlier pattern has found.
   void add_asset(const YAML::Node& key, const YAML::Node& body) {
     const std::string name = key.Scalar(), fault = fault_of_name(name);
     file_.require(fault.empty(), key, fmt::format("asset '{}', whose name {}", name, fault), what_a_name_is);
@@ -161,7 +161,7 @@ class Reader {
     }
   }
 
-  /// The settings of an asset, or of those of a pattern; gives what `default` says.
+  /// Reads the settings of an asset, or of those of a pattern; returns the value of `default`.
   std::optional<bool> read_body(const YAML::Node& body, std::vector<std::string> known,
                                 std::vector<SettingsLayer>& layers) const {
     for (const char* name : {"default", "budgets", "include"}) known.emplace_back(name);
@@ -201,7 +201,7 @@ class Reader {
     return asset;
   }
 
-  /// Where the assets of the scene stand, by name.
+  /// Reads where the assets of the scene stand, by name.
   std::map<std::string, std::string> places(const YAML::Node& scene, const std::vector<Asset>& assets) const {
     std::vector<std::string> names;
     for (const Asset& asset : assets) names.push_back(asset.name);

@@ -14,32 +14,32 @@ namespace kiln {
 struct Asset {
   std::string name;
   std::string where;              ///< "FILE:LINE" of its name
-  std::filesystem::path mesh;     ///< a mesh file; empty: `member` of `archive`
+  std::filesystem::path mesh;     ///< a mesh file; empty: the mesh is `member` of `archive`
   std::filesystem::path archive;  ///< a tar file, compressed or not
   std::string member;
-  std::string square;       ///< half the side of a square, which is the mesh in place of a file
-  bool on_request = false;  ///< built only when named
+  std::string square;       ///< half the side of a square that is the mesh, instead of a file
+  bool on_request = false;  ///< whether it is built only when named
   AssetSettings settings;
-  AssetSettings setting_lines;       ///< "FILE:LINE" of each
+  AssetSettings setting_lines;       ///< "FILE:LINE" of each setting
   std::vector<std::string> budgets;  ///< "simplify.hausdorff<=0.012"
 };
 
 struct Pipeline {
   std::filesystem::path file;
-  std::filesystem::path folder;  ///< of `file`: where commands run
+  std::filesystem::path folder;  ///< folder of `file`, in which commands run
   std::filesystem::path output;  ///< relative to `folder`, or absolute
   std::vector<Asset> assets;
-  std::map<std::string, std::string> places;  ///< of assets that stand in one scene, as kiln-bake's --place has them
+  std::map<std::string, std::string> places;  ///< places of the assets of the scene, written as for kiln-bake --place
 };
 
-/// Reads and checks a pipeline file and those it includes: all that can be told without the meshes. Throws BadInput
-/// that names the line for whatever is not understood or cannot work: an unknown key, a key given twice, a value out of
-/// range, a budget for a metric that no stage writes, an asset without a mesh, a pattern that no file matches, a scene
-/// of assets that are not there.
+/// Reads and checks a pipeline file and those that it includes, as far as possible without the meshes. Throws BadInput
+/// that names the line of whatever is unknown or cannot work: an unknown key, a key given twice, a value out of range,
+/// a budget for a metric that no stage writes, an asset without a mesh, a pattern that no file matches, a scene of
+/// assets that do not exist.
 Pipeline load_pipeline(const std::filesystem::path& file);
 
-/// The assets of these names, or, where there are none, those that are not built on request. Throws WrongUsage for a
-/// name that is not in the pipeline.
+/// Returns the assets of these names or, without names, those that are not built on request only. Throws WrongUsage for
+/// a name that is not in the pipeline.
 std::vector<const Asset*> select_assets(const Pipeline& pipeline, const std::vector<std::string>& names);
 
 }  // namespace kiln

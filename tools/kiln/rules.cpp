@@ -19,7 +19,7 @@ fs::path high_mesh_of(const Pipeline& pipeline, const Asset& asset) {
   return asset.archive.empty() ? asset.mesh : made / fs::path(asset.member).filename();
 }
 
-/// A field of --neighbour, whose own semicolons and backslashes have a backslash before them.
+/// Writes a field of --neighbour, with a backslash before its own semicolons and backslashes.
 std::string field_text(const std::string& text) {
   std::string field;
   for (const char c : text) {
@@ -29,7 +29,7 @@ std::string field_text(const std::string& text) {
   return field;
 }
 
-/// An asset as kiln-bake's --neighbour has it.
+/// Describes an asset as kiln-bake's --neighbour expects it.
 std::string neighbour_text(const fs::path& mesh, const std::string& place, const Asset& asset) {
   std::string text = fmt::format("{};place={}", field_text(command_word(mesh)), place);
   const auto add = [&](const char* stage, const char* name) {
@@ -38,7 +38,7 @@ std::string neighbour_text(const fs::path& mesh, const std::string& place, const
     const auto found = settings->second.find(name);
     if (found == settings->second.end()) return;
     std::string value = found->second;
-    for (std::size_t k; (k = value.find("; ")) != std::string::npos;) value.replace(k, 2, ",");  // of a list
+    for (std::size_t k; (k = value.find("; ")) != std::string::npos;) value.replace(k, 2, ",");  // separators of a list
     text += fmt::format(";{}={}", name, field_text(value));
   };
   for (const char* name : {"albedo", "albedo-texture", "albedo-encoding"}) add("normals", name);
@@ -49,7 +49,7 @@ std::string neighbour_text(const fs::path& mesh, const std::string& place, const
   return text;
 }
 
-/// The assets that stand in the same scene as `asset`.
+/// Lists the assets that stand in the same scene as `asset`.
 std::vector<PlanNeighbour> neighbours_of(const Pipeline& pipeline, const Asset& asset) {
   std::vector<PlanNeighbour> neighbours;
   if (!pipeline.places.contains(asset.name)) return neighbours;
@@ -105,7 +105,7 @@ std::string stamp_text(const StageRun& run, FileHashes& programs) {
   std::vector<std::string> names = {run.command.front()};
   names.insert(names.end(), run.helpers.begin(), run.helpers.end());
   for (const std::string& name : names) {
-    if (name == "kiln") continue;  // extracts; what it does to assets is in the commands
+    if (name == "kiln") continue;  // kiln only extracts meshes; its effect on assets is in the commands
     const std::optional<FileStamp> stamp = programs.stamp(name);
     if (!stamp) throw MachineLacks(fmt::format("{} is not beside kiln; build it: make build", name));
     text += fmt::format("{} {}\n", name, stamp->hash);

@@ -10,12 +10,12 @@
 
 namespace kiln {
 
-/// The rules of every asset of the pipeline, those of one asset together and in order.
+/// Makes the rules of every asset of the pipeline; those of one asset are adjacent, and in order.
 std::vector<MakeRule> make_rules(const Pipeline& pipeline);
 
-/// What makes the command of a run give another result: its words, the version, and the programs by content, so that a
-/// moved build does not make all anew and a changed one does. `programs` are the hashes of the folder of the stages'
-/// executables. Throws MachineLacks where one is not there.
+/// Collects everything that changes the result of a run's command: its words, the version, and the programs by content,
+/// so that a moved build does not make everything anew and a changed one does. `programs` are the hashes of the folder
+/// of the stages' executables. Throws MachineLacks if one is missing.
 std::string stamp_text(const StageRun& run, FileHashes& programs);
 
 }  // namespace kiln

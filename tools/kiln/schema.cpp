@@ -17,12 +17,12 @@ Json object_of(const Json& properties) {
   return {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
 }
 
-/// What may stand for a text: YAML reads 45 as a number and off as false, and a list becomes one text.
+/// Schema of a text: YAML reads 45 as a number and off as false, and a list becomes one text.
 Json text_schema() {
   return {{"type", {"string", "number", "boolean", "array"}}, {"items", {{"type", {"string", "number"}}}}};
 }
 
-/// "a, b or c" as its words; empty where the range is something else.
+/// Splits "a, b or c" into its words; empty if the range is something else.
 std::vector<std::string> words_of(const std::string& range) {
   std::vector<std::string> words;
   static const std::regex separator(", | or "), word("[a-z0-9][a-z0-9+-]*");
@@ -34,14 +34,14 @@ std::vector<std::string> words_of(const std::string& range) {
   return words.size() > 1 ? words : std::vector<std::string>();
 }
 
-/// The values of an option, as OptionSet words their range.
+/// Makes the schema of an option's values from the wording of its range in OptionSet.
 Json value_schema(const Option& option) {
   static const std::regex numbers("(auto or )?([-+.e0-9]+) to ([-+.e0-9]+)(, or WIDTHxHEIGHT)?");
   if (option.is_switch) return {{"type", "boolean"}};
   const Json value = option.get();
   std::smatch match;
   if (std::regex_match(option.value_range, match, numbers)) {
-    // A whole number where the text of the range has no other; a table tells more by its default.
+    // A number is whole if the range's text allows only whole ones; otherwise the option's default decides.
     const bool is_whole = value.is_number_integer() || match[4].matched;
     Json number = {{"type", is_whole ? "integer" : "number"}};
     number["minimum"] = Json::parse(match[2].str());
@@ -91,7 +91,7 @@ Json import_schema() {
   return object_of(properties);
 }
 
-/// The names that `material` has for settings of the normals stage.
+/// Makes the schema of `material`, which has its own names for settings of the normals stage.
 Json material_schema() {
   const StageOptions options = stage_info("normals").options();
   Json properties = {{"albedo", option_schema(*options.find("albedo"))},
@@ -104,7 +104,7 @@ Json material_schema() {
 
 Json reference(const std::string& name) { return {{"$ref", "#/$defs/" + name}}; }
 
-/// The blocks that `defaults` and assets have.
+/// Makes references to the blocks that `defaults` and assets have.
 Json block_references() {
   Json blocks = {{"import", reference("import")}, {"material", reference("material")}};
   for (const std::string& stage : stage_names()) blocks[stage] = reference(stage);

@@ -5,7 +5,7 @@
 
 namespace kiln {
 
-/// The JSON Schema (2020-12) of pipeline.yaml, made from the stages' option tables: docs/schema/pipeline.schema.json.
+/// Makes docs/schema/pipeline.schema.json, the JSON Schema (2020-12) of pipeline.yaml, from the stages' option tables.
 Json pipeline_schema();
 
 }  // namespace kiln

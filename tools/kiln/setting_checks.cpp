@@ -17,7 +17,7 @@ namespace kiln {
 
 namespace {
 
-/// What is asked of the settings of one asset.
+/// Checks of the settings of one asset.
 class Checks {
  public:
   explicit Checks(const Asset& asset) : asset_(asset) {}
@@ -40,7 +40,7 @@ class Checks {
     return found.is_string() ? found.get<std::string>() : found.dump();
   }
 
-  /// Where the first of the settings that is given stands; else where the asset does.
+  /// Returns where the first of the settings that is given stands, else where the asset does.
   std::string where(const char* stage, std::initializer_list<const char*> names) const {
     const StageSettings& lines = asset_.setting_lines.at(stage);
     for (const char* name : names)
@@ -55,7 +55,7 @@ class Checks {
                      remedy);
   }
 
-  /// Runs what a stage parses its settings with, whose refusals are of the command line.
+  /// Parses settings as their stage does, and translates its refusals, which speak of the command line.
   void try_parsing(const std::string& line, const std::string& remedy, const std::function<void()>& parse) const {
     try {
       parse();
@@ -67,7 +67,7 @@ class Checks {
     }
   }
 
-  /// What works by hand and not here.
+  /// Refuses settings that work on the command line but not in a pipeline.
   void check_impossible() const {
     require(value("atlas", "keep-uv") == false, "atlas", "keep-uv",
             "none in a pipeline, where kiln-simplify makes the mesh anew, without uvs",
@@ -103,7 +103,7 @@ class Checks {
             "none beside subsurface, whose material has its own albedo", "remove one of them");
   }
 
-  /// A low mesh has no materials, and other uvs than its textures.
+  /// Refuses low receivers with materials: the low mesh has none, and its uvs are not those of the textures.
   void check_low_receivers() const {
     if (text("bake", "receiver") != "low") return;
     const bool reflects = text("bake", "bounces") != "0" || value("bake", "bake-albedo") == true;
@@ -116,7 +116,8 @@ class Checks {
   void check_compress() const {
     const auto settings = settings_from(asset_.settings.at("compress"), compress_options);
     const int bands = value("bake", "bands").get<int>(), vector = bands * bands;
-    if (text("bake", "subsurface") != "none" || text("bake", "bounces") != "0") return;  // of more channels
+    if (text("bake", "subsurface") != "none" || text("bake", "bounces") != "0")
+      return;  // such a bake has more channels
     require(settings.components <= vector, "compress", "pca",
             fmt::format("at most {}, the length of a transfer vector", vector), "lower it, or bake more bands");
   }

@@ -9,8 +9,8 @@
 
 namespace kiln {
 
-/// Refuses settings that a stage would refuse, or that cannot work in a pipeline, each on its own in range. Throws
-/// BadInput that names where the setting stands.
+/// Refuses combinations of settings that a stage would refuse, or that cannot work in a pipeline, although each is in
+/// range. Throws BadInput that names where the setting stands.
 void check_settings(const Asset& asset);
 
 /// Refuses budgets for metrics that none of the asset's stages writes. Throws BadInput, with the nearest name.

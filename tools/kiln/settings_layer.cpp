@@ -39,7 +39,7 @@ class BlockReader {
   }
 
  private:
-  /// How the mesh file is read is for the first stage, whose record tells the others.
+  /// Adds `import`: the first stage reads the mesh file by it, and its record passes it on to the others.
   void add_import(const YAML::Node& block, SettingsLayer& layer) const {
     ImportSettings import;
     OptionSet options;
@@ -47,11 +47,11 @@ class BlockReader {
     std::vector<std::string> names;
     for (const Option& option : options.options()) names.push_back(option.name);
     file_.check_keys(block, names);
-    // Settings of the stage itself come first.
+    // Settings given for the stage itself take precedence.
     if (block.size() > 0) layer.blocks["simplify"].settings.merge(stage_settings(stage_info("simplify"), block));
   }
 
-  /// What a surface reflects is for every stage that has a use for it.
+  /// Adds `material` to every stage that uses the surface's albedo.
   void add_material(const YAML::Node& block, SettingsLayer& layer) const {
     static const std::map<std::string, std::string> names = {
         {"albedo", "albedo"}, {"texture", "albedo-texture"}, {"encoding", "albedo-encoding"}};
@@ -63,7 +63,7 @@ class BlockReader {
       if (stage->options().find("albedo-texture") == nullptr) continue;
       YAML::Node renamed;
       for (const auto& entry : block) renamed[names.at(entry.first.Scalar())] = entry.second;
-      // Settings of the stage itself come first.
+      // Settings given for the stage itself take precedence.
       layer.blocks[stage->name].settings.merge(stage_settings(*stage, renamed));
     }
   }
@@ -94,7 +94,7 @@ class BlockReader {
     return result;
   }
 
-  /// A list becomes one text, with semicolons, as the command line has it.
+  /// Turns a setting into text; a list becomes one text, with semicolons, as on the command line.
   std::string setting_text(const Option& option, const YAML::Node& node) const {
     if (option.names_file) return (prefix_ / file_.path(node)).lexically_normal().string();
     if (!node.IsSequence())
@@ -108,7 +108,7 @@ class BlockReader {
   const fs::path& prefix_;
 };
 
-/// Includes of includes, `depth` files deep.
+/// Reads included files and those that they include, `depth` files deep.
 std::vector<SettingsLayer> layers_of(const YamlFile& file, const YAML::Node& include, const fs::path& prefix,
                                      int depth) {
   file.require(include.IsScalar() || include.IsSequence(), include, "not a path", "a path, or a list of them");

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::int64_t nanoseconds_of_second = 1'000'000'000;
 
-/// File systems keep times in steps of up to two seconds (FAT): a file changed later in the step looks the same.
+/// Coarsest resolution of file times (FAT: two seconds): a file that changes later within it looks unchanged.
 constexpr std::int64_t youngest = 2 * nanoseconds_of_second;
 
 std::int64_t nanoseconds(const timespec& time) { return time.tv_sec * nanoseconds_of_second + time.tv_nsec; }
@@ -59,7 +59,7 @@ std::vector<std::string> words_of(const Json& json) {
   return words;
 }
 
-/// The record of a stage; null where there is none.
+/// Reads the record of a stage; null if there is none.
 Json record_of(const StagePlan& plan, const fs::path& folder) {
   std::error_code error;
   const fs::path file = folder / plan.run.outputs.front();
@@ -67,7 +67,7 @@ Json record_of(const StagePlan& plan, const fs::path& folder) {
   return Json::parse(read_text(file), nullptr, false);
 }
 
-/// One file of a state; whether it is as it was.
+/// Tests whether a file of a state is unchanged.
 bool holds(const fs::path& file, FileStamp& stamp, FileHashes& hashes, std::string& reason) {
   const std::optional<FileStamp> now = hashes.stamp(file, &stamp);
   if (!now)
@@ -141,7 +141,7 @@ std::optional<StageState> load_state(const fs::path& file) {
     return StageState{path_of_text(json.at("key").get<std::string>()).string(), stamps_of(json.at("inputs")),
                       stamps_of(json.at("outputs")), words_of(json.at("limits"))};
   } catch (const Json::exception&) {
-    return std::nullopt;  // cut off, or of another version: as if the stage had not run
+    return std::nullopt;  // truncated, or of another version: as if the stage had not run
   }
 }
 
@@ -184,7 +184,7 @@ StageState state_after(const StagePlan& plan, std::map<fs::path, FileStamp> inpu
   };
   for (const fs::path& output : plan.run.outputs) add(state.outputs, output);
   if (!record.is_object()) return state;
-  // Textures and material libraries, which only the stage knows of. What the record says was read is what counts.
+  // Adds textures and material libraries, which only the stage knows: the record lists what was read.
   const Json read = record.value("inputs", Json::object()), made = record.value("outputs", Json::object());
   for (const auto& [name, hash] : read.items()) {
     const fs::path file = path_of_text(name).lexically_normal();

@@ -13,26 +13,26 @@
 
 namespace kiln {
 
-/// A file's content, and what the file system said of it when that was read. While that is as it was, so is the
-/// content.
+/// Hash of a file's content, and what the file system reported when it was read. While that report is unchanged, so is
+/// the content.
 struct FileStamp {
   std::string hash;  ///< XXH3, 128 bits
   std::int64_t bytes = 0;
-  std::int64_t changed = 0;   ///< of the inode, nanoseconds; no program can set it
+  std::int64_t changed = 0;   ///< change time of the inode, nanoseconds; no program can set it
   std::int64_t modified = 0;  ///< nanoseconds
-  std::uint64_t inode = 0;    ///< 0: it was so young when it was read that a change might leave no trace
+  std::uint64_t inode = 0;    ///< 0: the file was too young when read, so that a later change might leave no trace
 };
 
-/// The hashes of files, each read once, and not at all where an earlier stamp still holds.
+/// Hashes of files; each file is read once, and not at all while an earlier stamp holds.
 class FileHashes {
  public:
-  /// `folder` is where relative paths start from.
+  /// Uses `folder` as the start of relative paths.
   explicit FileHashes(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// The stamp of a file as it is now; nothing where there is no such file. `earlier` may be null.
+  /// Returns the current stamp of a file; nothing if it does not exist. `earlier` may be null.
   std::optional<FileStamp> stamp(const std::filesystem::path& file, const FileStamp* earlier = nullptr);
 
-  /// Bytes of all files that had to be read.
+  /// Returns the number of bytes of all files that had to be read.
   std::int64_t bytes_read() const { return bytes_read_; }
 
  private:
@@ -41,41 +41,40 @@ class FileHashes {
   std::int64_t bytes_read_ = 0;
 };
 
-/// A stage of an asset as the Makefile has it run.
+/// A stage of an asset, as the Makefile has it run.
 struct StagePlan {
   std::string asset;
   StageRun run;
-  std::string key;              ///< what makes the command give another result, its limits aside: stamp_text()
-  std::filesystem::path state;  ///< the file of its StageState
+  std::string key;              ///< what determines the result of the command, except its limits: stamp_text()
+  std::filesystem::path state;  ///< file of its StageState
 };
 
 void save_plan(const std::filesystem::path& file, const StagePlan& plan);
 StagePlan load_plan(const std::filesystem::path& file);
 
-/// What a stage last read and made, by content. It is kept in the output folder's .kiln/, apart from the record, which
-/// says what the stage did.
+/// Hashes of what a stage last read and made. Kept in the output folder's .kiln/, apart from the record, which says
+/// what the stage did.
 struct StageState {
   std::string key;
   std::map<std::filesystem::path, FileStamp> inputs, outputs;
   std::vector<std::string> limits = {};
 };
 
-/// Nothing where there is none that can be read.
+/// Reads a state; nothing if there is none that can be read.
 std::optional<StageState> load_state(const std::filesystem::path& file);
 void save_state(const std::filesystem::path& file, const StageState& state);
 
-/// Why a stage has to run, in a few words; empty where it does not: its command, and the content of all that it read
-/// and made, are as they were. `other_limits` where nothing but its limits is not. Stamps in `state` are brought up to
-/// date.
+/// Says in a few words why a stage has to run; empty if it does not, because its command and the content of all inputs
+/// and outputs are unchanged; `other_limits` if only its limits have changed. Updates the stamps in `state`.
 std::string reason_to_run(const StagePlan& plan, std::optional<StageState>& state, FileHashes& hashes);
 
 inline constexpr const char* other_limits = "its budgets have changed";
 
-/// What a stage will read, before it runs.
+/// Stamps the inputs of a stage before it runs.
 std::map<std::filesystem::path, FileStamp> stamps_of_inputs(const StagePlan& plan, FileHashes& hashes);
 
-/// The state after a run that succeeded: `inputs` as they were before, those that the record names besides, and the
-/// outputs. The record's outputs are all that was made; where there is no record, the plan's are.
+/// Makes the state after a successful run from `inputs`, as they were before it, the further inputs that the record
+/// names, and the outputs: those of the record or, without a record, the plan's.
 StageState state_after(const StagePlan& plan, std::map<std::filesystem::path, FileStamp> inputs,
                        const std::filesystem::path& folder);
 

@@ -10,24 +10,24 @@
 
 namespace kiln {
 
-/// The stages that an asset passes, in this order. The list is that of CMake, KILN_STAGES.
+/// Lists the stages that an asset passes, in order: those of KILN_STAGES in CMakeLists.txt.
 std::span<const StageInfo* const> all_stages();
 
 std::vector<std::string> stage_names();
 
-/// The stage of that name, or null.
+/// Finds a stage by name; null if there is none.
 const StageInfo* find_stage(const std::string& name);
 
-/// The same of a name that is known. Throws std::logic_error for others.
+/// Finds a stage by a name that must exist. Throws std::logic_error otherwise.
 const StageInfo& stage_info(const std::string& name);
 
-/// Where a stage stands among all; nothing for what is none, such as the making of a mesh.
+/// Returns the position of a stage among all; nothing for other steps, such as the making of a mesh.
 std::optional<std::size_t> stage_position(const std::string& name);
 
-/// What a setting is: the text that is given, or the default.
+/// Returns the value of a setting: the text that is given, or the default.
 Json effective_setting(const AssetSettings& settings, const std::string& stage, const std::string& setting);
 
-/// The runs of the stages that the asset passes, in order.
+/// Lists the runs of the stages that the asset passes, in order.
 std::vector<StageRun> stage_runs(const AssetPlan& plan);
 
 }  // namespace kiln

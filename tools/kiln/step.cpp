@@ -44,7 +44,7 @@ std::vector<StepEvent> read_events(const fs::path& file) {
 
 namespace {
 
-/// Appends the event for the driver, if there is one. A run that it is not told of would count as none.
+/// Appends the event for the driver, if there is one; it counts runs by their events.
 void tell_driver(const StepEvent& event) {
   const char* file = std::getenv(step_environment::events);
   if (file == nullptr) return;
@@ -55,7 +55,8 @@ void tell_driver(const StepEvent& event) {
   if (!stream) fail_to_write(file, "");
 }
 
-/// Whether a checkpoint is of this very run; one of another is removed. What a run began with is kept beside the state.
+/// Tests whether a checkpoint belongs to this very run; removes one that does not. The state at a run's start is kept
+/// beside the state.
 bool may_resume(const StagePlan& plan, const StageState& begun) {
   std::error_code error;
   if (plan.run.checkpoint.empty()) return false;
@@ -70,7 +71,7 @@ bool may_resume(const StagePlan& plan, const StageState& begun) {
   return resumes;
 }
 
-/// Judges the report anew, without its program, which takes longer to start than this; whether that went well.
+/// Judges the report by new budgets without starting its program, which takes longer; returns whether that succeeded.
 bool judge_report(const StagePlan& plan) {
   const auto page = std::find_if(plan.run.outputs.begin(), plan.run.outputs.end(),
                                  [](const fs::path& output) { return output.extension() == ".html"; });
@@ -82,11 +83,11 @@ bool judge_report(const StagePlan& plan) {
     judge_anew(*page, budgets);
     return true;
   } catch (const std::exception&) {
-    return false;  // the program will say what is wrong
+    return false;  // the program will report what is wrong
   }
 }
 
-/// The command with what is of this run alone.
+/// Makes the command, with the options that differ from run to run.
 std::vector<std::string> command_of(const StagePlan& plan, const fs::path& programs, int threads) {
   std::vector<std::string> command = plan.run.whole_command();
   const bool is_own = command.front() == "kiln";
@@ -95,8 +96,8 @@ std::vector<std::string> command_of(const StagePlan& plan, const fs::path& progr
   return command;
 }
 
-/// Runs the command, from its checkpoint where that may be, its messages under the asset's name where others run
-/// beside.
+/// Runs the command, from its checkpoint if possible, with the asset's name before its messages if other stages run at
+/// the same time.
 ProcessEnd run_command(const StagePlan& plan, std::vector<std::string> command, bool resumes) {
   ProcessSettings settings;
   if (std::getenv(step_environment::alone) == nullptr)

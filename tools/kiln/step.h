@@ -7,33 +7,34 @@
 
 namespace kiln {
 
-/// What the driver tells the steps that make runs for it, through the environment.
+/// Environment variables by which the driver instructs the steps that make runs for it.
 namespace step_environment {
 inline constexpr const char* events = "KILN_EVENTS";      ///< file that every step appends a StepEvent to
 inline constexpr const char* messages = "KILN_MESSAGES";  ///< file descriptor for messages; make's own go elsewhere
-inline constexpr const char* alone = "KILN_ALONE";  ///< set: no other step runs beside, so a progress bar may be drawn
+/// Set if no other step runs at the same time, so that a progress bar may be drawn.
+inline constexpr const char* alone = "KILN_ALONE";
 }  // namespace step_environment
 
-/// One run of a stage, as the driver is told.
+/// One run of a stage, as reported to the driver.
 struct StepEvent {
   std::string asset;
   std::string stage;
-  int status = 0;  ///< exit status, 1 where a signal ended it
+  int status = 0;  ///< exit status, 1 if a signal ended it
   double seconds = 0;
 };
 
-/// The events in the order in which the steps ended.
+/// Reads the events, in the order in which the steps ended.
 std::vector<StepEvent> read_events(const std::filesystem::path& file);
 
-/// Runs the stage of a plan for make where it has to (reason_to_run): says how long it took, or that it failed. Runs in
-/// the folder that relative paths start from. Returns what make is to see: the exit status, but 0 for a missed budget,
-/// which leaves whole outputs and is the driver's to judge.
+/// Runs the stage of a plan for make if it has to run (reason_to_run); reports its time, or its failure. Runs in the
+/// folder that relative paths start from. Returns the exit status for make: that of the stage, but 0 for a missed
+/// budget, which leaves complete outputs and is for the driver to judge.
 int run_step(const std::filesystem::path& plan_file, const std::filesystem::path& programs, int threads);
 
-/// Writes `member` of a tar file to `mesh`. Throws BadInput where there is none.
+/// Writes `member` of a tar file to `mesh`. Throws BadInput if there is no such member.
 void extract_member(const std::filesystem::path& archive, const std::string& member, const std::filesystem::path& mesh);
 
-/// Whether a tar file has that member, as it is written.
+/// Tests whether a tar file has exactly that member.
 bool has_member(const std::filesystem::path& archive, const std::string& member);
 
 /// Writes a square about the origin of the xz plane, facing +Y, as an OBJ file with texture coordinates.

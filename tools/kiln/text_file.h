@@ -6,7 +6,7 @@
 
 namespace kiln {
 
-/// Leaves a file that holds the text already as it is, with its time.
+/// Writes a file, unless it holds the text already; then it keeps its time.
 void write_if_changed(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace kiln

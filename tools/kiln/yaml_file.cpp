@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The last line, from 1, up to `last` that a tab indents; 0 where none does.
+/// Finds the last line, counted from 1 and at most `last`, that is indented by a tab; 0 if there is none.
 int line_indented_by_tab(const std::string& text, int last) {
   std::istringstream lines(text);
   int line = 0, found = 0;
@@ -38,7 +38,7 @@ YamlFile::YamlFile(fs::path file) : file_(std::move(file)) {
   try {
     root_ = only_document(text);
   } catch (const YAML::Exception& error) {
-    // What yaml-cpp says of a tab is one of a dozen things, here or some lines further on.
+    // yaml-cpp reports a tab by one of a dozen messages, here or some lines further on.
     const int tab = line_indented_by_tab(text, error.mark.is_null() ? 1 << 30 : error.mark.line + 1);
     if (tab > 0)
       throw BadInput(fmt::format("{}:{}", file_.string(), tab), "a tab that indents", "blanks, which YAML indents with",
@@ -47,13 +47,13 @@ YamlFile::YamlFile(fs::path file) : file_(std::move(file)) {
   }
 }
 
-/// The document of a text; a second one would be passed by.
+/// Parses the only document of a text; yaml-cpp would ignore a second one.
 YAML::Node YamlFile::only_document(const std::string& text) const {
   const std::vector<YAML::Node> documents = YAML::LoadAll(text);
   if (documents.empty()) return YAML::Load(text);
   for (std::size_t k = 1; k < documents.size(); ++k) {
     if (documents[k].IsNull()) continue;
-    // Its mark is that of its first word; it begins at the "---" before that.
+    // The mark of a document is its first word; the document begins at the "---" before it.
     int line = 0, begin = 0;
     std::istringstream lines(text);
     for (std::string content; line <= documents[k].Mark().line && std::getline(lines, content);) {

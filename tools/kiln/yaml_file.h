@@ -8,32 +8,32 @@
 
 namespace kiln {
 
-/// A YAML file of one document, and what refuses its nodes with file and line.
+/// A YAML file of one document; refuses its nodes with file and line.
 class YamlFile {
  public:
-  /// Reads and parses it. Throws BadInput for what is no YAML, for tabs that indent, and for a second document.
+  /// Reads and parses a file. Throws BadInput for invalid YAML, for indentation by tabs, and for a second document.
   explicit YamlFile(std::filesystem::path file);
 
   const std::filesystem::path& file() const { return file_; }
   const YAML::Node& root() const { return root_; }
 
-  /// "FILE:LINE" of a node.
+  /// Returns "FILE:LINE" of a node.
   std::string where(const YAML::Node& node) const { return where(node.Mark()); }
   std::string where(const YAML::Mark& mark) const;
 
-  /// Throws BadInput at the node where `good` does not hold.
+  /// Throws BadInput at the node unless `good` holds.
   void require(bool good, const YAML::Node& node, const std::string& found, const std::string& expected) const;
 
-  /// Holds for a map whose keys are scalars, each there once, and each one of `known` (empty: any).
+  /// Requires a map whose keys are scalars, each there once, and each one of `known` (empty: any).
   void check_keys(const YAML::Node& map, const std::vector<std::string>& known) const;
 
-  /// The text of one value that is not empty.
+  /// Returns the text of one value that is not empty.
   std::string scalar(const YAML::Node& node, const std::string& expected) const;
 
-  /// A finite number, as it is written; nothing where the node is not there.
+  /// Returns a finite number as it is written; nothing if there is no node.
   std::string number(const YAML::Node& node) const;
 
-  /// A path as it is written: any bytes but NUL.
+  /// Returns a path as it is written: any bytes but NUL.
   std::filesystem::path path(const YAML::Node& node) const;
 
  private:

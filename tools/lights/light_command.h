@@ -8,12 +8,12 @@
 
 namespace kiln {
 
-/// The options of a command line that say which lights are on; what they are given goes into `settings`, whose defaults
-/// they show, and `light_file`.
+/// Adds the options for lights to a command line; their values go to `settings`, whose defaults they show, and
+/// `light_file`.
 void add_light_options(CommandLine& command, LightSettings& settings, std::filesystem::path& light_file);
 
-/// The lights after parsing: those of the file where there is one. Throws WrongUsage where lights were given both ways,
-/// BadInput as read_light_file does.
+/// Returns the lights after parsing: those of the file if there is one. Throws WrongUsage if lights were given both
+/// ways, BadInput as read_light_file does.
 LightSettings chosen_lights(const LightSettings& settings, const std::filesystem::path& light_file);
 
 }  // namespace kiln

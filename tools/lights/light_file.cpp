@@ -39,7 +39,7 @@ LightSettings read_light_file(const std::filesystem::path& file) {
   }
   try {
     light_specs(settings);
-  } catch (const WrongUsage& error) {  // an ambient light that is none
+  } catch (const WrongUsage& error) {  // an invalid ambient light
     throw BadInput(file.string(), error.what(), "a light file", remedy);
   }
   return settings;

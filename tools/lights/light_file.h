@@ -7,9 +7,9 @@
 
 namespace kiln {
 
-/// Reads the lights of a scene from a JSON file: {"lights": ["45,30", "sphere:1,2,1,0.1"], ...}, the other keys being
-/// those of light_options, and "environment", a path relative to the file. Throws BadInput for a file that is no such
-/// object, has a key that is none, or a value that the option refuses.
+/// Reads the lights of a scene from a JSON file: {"lights": ["45,30", "sphere:1,2,1,0.1"], ...}, whose other keys are
+/// those of light_options and "environment", a path relative to the file. Throws BadInput if the file is not such an
+/// object, has an unknown key, or a value that the option refuses.
 LightSettings read_light_file(const std::filesystem::path& file);
 
 }  // namespace kiln

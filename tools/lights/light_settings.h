@@ -12,22 +12,22 @@
 
 namespace kiln {
 
-/// The lights of a picture; they add up.
+/// Lights of a picture; they add up.
 struct LightSettings {
-  std::vector<std::string> lights;          ///< as parse_light_spec takes them; "45,30" where there is no light at all
+  std::vector<std::string> lights;          ///< as for parse_light_spec; "45,30" if there is no light at all
   std::string ambient = "none";             ///< radiance from everywhere, one number or R,G,B
-  std::filesystem::path environment;        ///< as load_environment takes it; empty: none
+  std::filesystem::path environment;        ///< as for load_environment; empty: none
   double environment_rotation_degrees = 0;  ///< about +Y
   LightWindow window = LightWindow::hann;
 };
 
-/// All but the lights and the environment.
+/// Makes the options for lights, except the lights themselves and the environment.
 OptionSet light_options(LightSettings& settings);
 
-/// The light specifications of `settings`, without the environment. Throws WrongUsage.
+/// Parses the lights of `settings`, without the environment. Throws WrongUsage.
 std::vector<LightSpec> light_specs(const LightSettings& settings);
 
-/// All lights of `settings`; an environment in `bands`. Throws WrongUsage, BadInput.
+/// Collects all lights of `settings`, an environment in `bands`. Throws WrongUsage, BadInput.
 SceneLights scene_lights(const LightSettings& settings, int bands);
 
 }  // namespace kiln

@@ -10,7 +10,7 @@
 int main(int argc, char** argv) {
   using namespace kiln;
   return run_program("kiln-render", [&] {
-    // Parse.
+    // Step 1: parse.
     CommandLine command("kiln-render", "Draws baked assets under lights in spherical harmonics.");
     RenderPaths paths;
     std::filesystem::path file;
@@ -45,12 +45,12 @@ int main(int argc, char** argv) {
     require_picture_name(file);
     picture_of(settings);
 
-    // Load.
+    // Step 2: load.
     const RenderScene scene = load_render_scene(paths, lights, settings);
     if (!scene.note.empty()) command.say(scene.note);
     OutputSet outputs(folder_of(file));
 
-    // Run, and save picture after picture.
+    // Step 3: draw, and save picture after picture.
     const Stopwatch watch;
     const Json metrics = render_to_files(outputs, file.filename().string(), scene, settings, command.threads(),
                                          command.progress("render"));

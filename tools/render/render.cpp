@@ -38,7 +38,7 @@ struct Uploaded {
   }
 };
 
-/// "picture.png" as "picture_007.png".
+/// Names a frame: "picture_007.png" from "picture.png".
 std::string frame_name(const std::string& name, int frame) {
   const fs::path path(name);
   return fmt::format("{}_{:03}{}", path.stem().string(), frame, path.extension().string());
@@ -52,7 +52,8 @@ struct Cell {
   std::string caption;
 };
 
-/// The asset by every technique that it, and its compressed form, can be drawn by; or each asset by itself.
+/// Lists the pictures of a sheet: the asset by every technique that it, or its compressed form, can be drawn by; or
+/// each asset by itself.
 std::vector<Cell> cells_of(const RenderScene& scene, const RenderSettings& settings) {
   std::vector<Cell> cells;
   if (settings.technique != TechniqueChoice::all) {
@@ -71,7 +72,7 @@ std::vector<Cell> cells_of(const RenderScene& scene, const RenderSettings& setti
     try {
       require_technique(technique, asset);
     } catch (const WrongUsage&) {
-      continue;  // a sheet shows what there is
+      continue;  // a sheet shows the techniques that there are data for
     }
     cells.push_back({&asset, scene.placements.front(), technique, technique_caption(technique, asset)});
   }
@@ -103,7 +104,7 @@ Json write_sheet(OutputSet& outputs, const std::string& name, const RenderScene&
   return metrics;
 }
 
-/// The name of an asset's folder: of what holds prt/, where that says more.
+/// Names an asset by its folder, or by the folder above prt/.
 std::string name_of(const fs::path& folder) {
   const fs::path whole = fs::absolute(folder / "x").lexically_normal().parent_path();
   return whole.filename() == "prt" ? (whole.parent_path().filename() / "prt").string() : whole.filename().string();
@@ -113,7 +114,7 @@ std::string text_of(const Eigen::Vector3d& place) {
   return fmt::format("{:.4g},{:.4g},{:.4g}", place.x(), place.y(), place.z());
 }
 
-/// The box of a placed asset along three axes, the rows of `axes`.
+/// Returns the box of a placed asset along three axes, the rows of `axes`.
 Eigen::AlignedBox3d box_along(const PrtAsset& asset, const Placement& placement, const Eigen::Matrix3d& axes) {
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3f& vertex : asset.mesh.positions)
@@ -121,8 +122,9 @@ Eigen::AlignedBox3d box_along(const PrtAsset& asset, const Placement& placement,
   return box;
 }
 
-/// Stands assets that have no place side by side as the camera sees them: the first where it is, each other to the
-/// right of all before it with a tenth of its width between, on the ground line of the first and as far away.
+/// Places assets that have no place side by side as the camera sees them: the first at its own origin, each other one
+/// to the right of all before it, with a tenth of its width between, on the ground line of the first and at the same
+/// distance.
 void place_the_rest(RenderScene& scene, double camera_azimuth_degrees) {
   const double azimuth = camera_azimuth_degrees * std::numbers::pi / 180;
   Eigen::Matrix3d axes;  // to the right, up, towards the camera
@@ -215,7 +217,7 @@ class PictureSeries {
                 const ProgressFunction& progress)
       : outputs_(outputs), name_(name), scene_(scene), settings_(settings), progress_(progress) {}
 
-  /// Draws assets `first` to `last` - 1 under all lights or each; gives the metrics of the first picture.
+  /// Draws assets `first` to `last` - 1 under all lights or each; returns the metrics of the first picture.
   Json draw(std::size_t first, std::size_t last, const EglContext& context) {
     Uploaded uploaded;
     for (std::size_t k = first; k < last; ++k) {
@@ -253,10 +255,10 @@ class PictureSeries {
   const RenderScene& scene_;
   const RenderSettings& settings_;
   const ProgressFunction& progress_;
-  int drawn_ = 0;  ///< pictures
+  int drawn_ = 0;  ///< number of pictures
 };
 
-/// The relit atlas of the only asset.
+/// Renders the relit atlas of the only asset.
 Json render_texture(OutputSet& outputs, const std::string& name, const RenderScene& scene,
                     const RenderSettings& settings) {
   const bool other_form = settings.technique == TechniqueChoice::compressed && scene.compressed;

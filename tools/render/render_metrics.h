@@ -11,8 +11,8 @@
 
 namespace kiln {
 
-/// What kiln-render says of a picture: the renderer, the sizes, the lights, the picture's coverage (0 to 1), the mean
-/// radiance (R, G, B) of what it covers, and of every asset how it was drawn and what it takes on the GPU.
+/// Makes the metrics of a picture: the renderer, the sizes, the lights, the picture's coverage (0 to 1), the mean
+/// radiance (R, G, B) of the covered part, and how each asset was drawn and its memory on the GPU.
 Json render_metrics(const std::vector<SceneAsset>& assets, const std::vector<LightSpec>& lights,
                     const Image<float>& radiance, const EglContext& context);
 

@@ -92,7 +92,7 @@ std::vector<SceneView> views_of(const RenderSettings& settings, std::span<const 
   }
   const double first_azimuth_degrees = camera.azimuth_degrees;
   std::vector<SceneView> views;
-  // Twice, so that the frame that needs the most distance sets that of all.
+  // Runs twice, so that the frame that needs the largest distance sets that of all.
   double distance = camera.distance;
   for (int pass = distance > 0 ? 1 : 0; pass < 2; ++pass) {
     views.clear();

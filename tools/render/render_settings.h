@@ -14,62 +14,62 @@
 
 namespace kiln {
 
-/// Which technique a picture is drawn by.
+/// Technique that a picture is drawn by.
 enum class TechniqueChoice { automatic, phong, normal_map, vertex_prt, textured_prt, compressed, all };
 
-/// What the pixels of a picture are.
+/// Meaning of a picture's pixels.
 enum class PictureSpace {
-  camera,   ///< what a camera sees
-  texture,  ///< the texels of the asset's atlas
+  camera,   ///< the view of a camera
+  texture,  ///< texels of the asset's atlas
 };
 
-/// How assets are drawn.
+/// Settings of how assets are drawn.
 struct RenderSettings {
   TechniqueChoice technique = TechniqueChoice::automatic;
   PictureSpace space = PictureSpace::camera;
   bool side_by_side = false;  ///< several assets, each by itself on a sheet
-  int incident_samples = 0;   ///< points of incident light around each asset; 0: 8 where a light is local, else 1
+  int incident_samples = 0;   ///< points of incident light around each asset; 0: 8 if a light is local, else 1
   Shading shading = Shading::forward;
-  double specular = 0;  ///< of the Phong techniques: reflectance of the highlight
+  double specular = 0;  ///< Phong techniques only: reflectance of the highlight
   double shininess = 32;
   std::string camera = "20,12";  ///< azimuth and elevation, degrees; the front is +Z
   double field_of_view_degrees = 30;
   FramingSettings framing;
-  int frames = 1;               ///< of a turntable
+  int frames = 1;               ///< more than 1: a turntable
   int width = 768;              ///< pixels
   int height = 768;             ///< pixels
   int supersample = 2;          ///< samples per pixel along each axis
-  std::string albedo = "auto";  ///< linear, one number or R,G,B, times the asset's own
+  std::string albedo = "auto";  ///< linear, one number or R,G,B, multiplied by the asset's own
   std::string background = "none";
   double exposure_stops = 0;
   ToneCurve tone = ToneCurve::srgb;
   std::string gl_device = "auto";
 };
 
-/// Whether the picture is a sheet of pictures.
+/// Tests whether the picture is a sheet of pictures.
 inline bool is_sheet(const RenderSettings& settings) {
   return settings.side_by_side || settings.technique == TechniqueChoice::all;
 }
 
 OptionSet render_options(RenderSettings& settings);
 
-/// Where the camera stands. Throws WrongUsage.
+/// Returns the position and direction of the camera. Throws WrongUsage.
 CameraSettings camera_settings_of(const RenderSettings& settings);
 
-/// How to draw a shape, given by its vertices, one view for each frame. Of several the camera goes around +Y and around
-/// the target, that of `auto` being the middle of the vertices' box, always as far away. Throws WrongUsage.
+/// Makes one view of a shape, given by its vertices, for each frame. Over several frames the camera goes around +Y and
+/// around the target (for `auto` the middle of the vertices' box), at a constant distance. Throws WrongUsage.
 std::vector<SceneView> views_of(const RenderSettings& settings, std::span<const Eigen::Vector3f> shape);
 
-/// The surface. Throws WrongUsage.
+/// Returns the look of the surface. Throws WrongUsage.
 SurfaceLook look_of(const RenderSettings& settings);
 
-/// How to show the radiance. Throws WrongUsage.
+/// Returns how radiance becomes pixels. Throws WrongUsage.
 PictureSettings picture_of(const RenderSettings& settings);
 
-/// The one technique that was asked for, of an asset; not of `all`.
+/// Returns the one technique that was asked for, for an asset; not for `all`.
 Technique technique_of(const RenderSettings& settings, const PrtAsset& asset);
 
-/// Incident-light sample points.
+/// Returns the number of incident-light samples.
 int incident_samples_of(const RenderSettings& settings, bool local_lights);
 
 }  // namespace kiln

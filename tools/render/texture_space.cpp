@@ -13,7 +13,7 @@ namespace {
 
 constexpr float unknown_albedo = 0.8f;  // as in AssetRenderer
 
-/// The share of light that a texel reflects.
+/// Returns the albedo of a texel.
 std::array<float, 3> albedo_at(const PrtAsset& asset, const SurfaceLook& look, int i, int j) {
   const PrtAlbedo& own = asset.albedo;
   const bool counts = own.known && look.own_albedo;

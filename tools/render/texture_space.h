@@ -9,12 +9,12 @@
 
 namespace kiln {
 
-/// Exit radiance of every texel of an atlas, gutters included, as the runtime computes it: four channels (linear RGB,
-/// and 1), rows from the bottom, of the planes' size. Radiance may be below 0 where truncated harmonics ring. Throws
-/// WrongUsage for an asset whose transfer stands at vertices.
+/// Computes the exit radiance of every texel of an atlas, gutters included, as the runtime does: four channels (linear
+/// RGB, and 1), rows from the bottom, of the planes' size. Radiance may be below 0 where truncated harmonics ring.
+/// Throws WrongUsage for an asset whose transfer is stored at vertices.
 Image<float> relit_atlas(const PrtAsset& asset, const SceneLights& lights, const SurfaceLook& look);
 
-/// What kiln-render says of such a picture.
+/// Makes the metrics of such a picture.
 Json texture_metrics(const PrtAsset& asset, const std::vector<LightSpec>& lights);
 
 }  // namespace kiln

@@ -7,12 +7,12 @@
 
 namespace kiln {
 
-/// The mean time of the last frames.
+/// Mean time of the last frames.
 class FrameClock {
  public:
   void begin() { begun_ = Clock::now(); }
 
-  /// Of every kind of frame the first does not count: it compiles shaders and uploads textures.
+  /// Ends a frame. The first frame of each kind does not count: it compiles shaders and uploads textures.
   void end() {
     const auto now = Clock::now();
     ++frames_;
@@ -28,22 +28,22 @@ class FrameClock {
     }
   }
 
-  /// From now on frames are of another kind.
+  /// Starts over, for frames of another kind.
   void restart() {
     last_.clear();
     is_first_ = true;
     steady_ = 0;
   }
 
-  /// Of up to 30 frames; 0 as long as there is none.
+  /// Returns the mean over up to 30 frames; 0 if there is none.
   double mean_milliseconds() const {
     return last_.empty() ? 0 : std::accumulate(last_.begin(), last_.end(), 0.0) / static_cast<double>(last_.size());
   }
 
-  /// The same, as it was up to a quarter of a second ago, so that it can be read.
+  /// Returns the mean of up to a quarter of a second ago, which changes slowly enough to be read.
   double steady_milliseconds() const { return steady_; }
 
-  /// How many frames the mean is of, and how many there were in all.
+  /// Returns how many frames the mean covers, and how many there were in all.
   int measured() const { return static_cast<int>(last_.size()); }
   int frames() const { return frames_; }
 

@@ -9,7 +9,7 @@
 int main(int argc, char** argv) {
   using namespace kiln;
   return run_program("kiln-view", [&] {
-    // Parse.
+    // Step 1: parse.
     CommandLine command("kiln-view", "Shows a baked asset in a window, under lights that can be moved.");
     ViewerSetup setup;
     setup.look.width = 1280;
@@ -22,13 +22,13 @@ int main(int argc, char** argv) {
     command.input_option("script", script,
                          std::string("Does what the file says, one step a line, then closes: ") + script_grammar);
     add_light_options(command, setup.lights, light_file);
-    // A window has a GL device and frames of its own.
+    // Leaves out options that the window decides: its GL device and its frames.
     command.options("Picture", render_options(setup.look).without({"frames", "gl-device"}));
     command.options("Window", viewer_options(setup));
     command.app().footer("Keys:\n" + key_help_text());
     command.parse(argc, argv);
 
-    // Load, before a window is opened: bad input is told of without a display, too.
+    // Step 2: load, before a window is opened, so that bad input is reported without a display, too.
     setup.say = [&](const std::string& line) { command.say(line); };
     setup.folders = find_asset_folders(folder, compressed);
     setup.lights = chosen_lights(setup.lights, light_file);
@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
     first_state(scene, setup.lights, setup.look);
     const std::vector<ScriptStep> steps = script.empty() ? std::vector<ScriptStep>() : read_script(script);
 
-    // Run.
+    // Step 3: run.
     const Stopwatch watch;
     Viewer viewer(setup, std::move(scene), command.threads());
     if (script.empty())

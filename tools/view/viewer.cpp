@@ -27,8 +27,7 @@ constexpr double idle_seconds = 0.1;
 constexpr auto reload_patience = std::chrono::seconds(300);
 constexpr auto resize_patience = std::chrono::seconds(60);
 constexpr int frames_to_measure = 8;
-// An asset is about as wide as the window is high. What is left on both sides, at 96 dots per inch, for a panel beside
-// it.
+// Width left for panels on both sides of an asset, which is about as wide as the window is high; at 96 dots per inch.
 constexpr double room_for_panel_pixels = 440;
 
 std::vector<fs::path> watched(const AssetFolders& folders) {
@@ -38,7 +37,7 @@ std::vector<fs::path> watched(const AssetFolders& folders) {
   return paths;
 }
 
-/// Whether the time of a frame of the one says something of the other's.
+/// Tests whether frames of two states take comparable times.
 bool same_kind(const ViewState& a, const ViewState& b) {
   return a.technique == b.technique && a.shading == b.shading && a.show == b.show && a.mesh == b.mesh &&
          a.light.preset == b.light.preset && a.bands == b.bands;
@@ -59,7 +58,7 @@ ViewState first_state(const ViewScene& scene, const LightSettings& lights, const
   ViewState state;
   state.technique = technique_of(look, main);
   require_technique(state.technique, scene.forms.of(state.technique));
-  views_of(look, main.mesh.positions);  // refuses what is no look
+  views_of(look, main.mesh.positions);  // throws if the look is invalid
   picture_of(look);
   state.orbit = home_orbit(camera_settings_of(look));
   state.shading = look.shading;
@@ -239,7 +238,7 @@ void Viewer::draw() {
   if (size.width == 0 || size.height == 0) return;
   try {
     draw_state(size.width, size.height);
-  } catch (const BadInput& error) {  // a file that is read when it is needed
+  } catch (const BadInput& error) {  // a file that is read only when needed is damaged
     if (state_.technique == home_.technique && state_.show == Show::picture && !state_.mesh) throw;
     state_.technique = home_.technique;
     state_.show = Show::picture;
@@ -249,13 +248,13 @@ void Viewer::draw() {
   }
   screen_.show(panels(), window_.content_scale());
   window_.swap(!is_scripted_);
-  // A few frames more, so that there is a time to tell.
+  // Draws a few more frames, so that there is a time to show.
   if (!is_scripted_ && clock_.measured() < frames_to_measure) has_to_draw_ = true;
 }
 
 void Viewer::draw_state(int width, int height) {
   if (!canvas_ || canvas_->width() != width || canvas_->height() != height) {
-    canvas_.reset();  // first, so that both need not be there at once
+    canvas_.reset();  // first, so that both need not exist at once
     canvas_ = std::make_unique<Canvas>(width, height, setup_.look.supersample);
     clock_.restart();
   }
@@ -270,11 +269,11 @@ void Viewer::draw_state(int width, int height) {
   how.picture.exposure_stops = state_.exposure_stops;
   if (state_.show == Show::difference) {
     how.gain = static_cast<float>(state_.difference_gain);
-    how.weights = {0.2126f, 0.7152f, 0.0722f};  // of Rec. 709's primaries in luminance
+    how.weights = {0.2126f, 0.7152f, 0.0722f};  // luminance of Rec. 709's primaries
   } else if (state_.show == Show::coefficient) {
     const auto [lowest, highest] = asset_->coefficient_range(state_.coefficient, state_.technique);
     how.gain = static_cast<float>(1 / std::max({std::abs(lowest), std::abs(highest), 1e-30}));
-    // Of three channels the two that are not shown are dark.
+    // Two of three channels are dark: only one is shown.
     how.weights.fill(asset_->limits().channels == 1 ? 1.f / 3 : 1.f);
   }
   screen_.resolve(*canvas_, how);

@@ -21,35 +21,35 @@
 
 namespace kiln {
 
-/// What the viewer was started with.
+/// Start settings of the viewer.
 struct ViewerSetup {
   AssetFolders folders;
   LightSettings lights;
   RenderSettings look;
-  std::string screenshots = ".";                ///< the folder they go to
-  std::function<void(const std::string&)> say;  ///< for what the terminal should know, too
+  std::string screenshots = ".";                ///< folder for screenshots
+  std::function<void(const std::string&)> say;  ///< called with lines for the terminal
 };
 
-/// Those that are of the window alone.
+/// Makes the options that concern the window alone.
 OptionSet viewer_options(ViewerSetup& setup);
 
-/// The state that the settings describe. Throws WrongUsage for settings that are none, and where the asset cannot be
-/// drawn so.
+/// Makes the state that the settings describe. Throws WrongUsage for invalid settings, and if the asset cannot be drawn
+/// so.
 ViewState first_state(const ViewScene& scene, const LightSettings& lights, const RenderSettings& look);
 
 /// A window with an asset in it.
 class Viewer {
  public:
-  /// Throws MachineLacks where no window can be opened.
+  /// Opens the window. Throws MachineLacks if that is impossible.
   Viewer(const ViewerSetup& setup, ViewScene scene, int software_threads);
 
-  /// Until the person closes it.
+  /// Runs until the person closes the window.
   void run();
 
-  /// Step by step, then closes. Throws BadInput where a picture cannot be written.
+  /// Runs a script step by step, then closes. Throws BadInput if a picture cannot be written.
   void run(const std::vector<ScriptStep>& script);
 
-  /// What was drawn by what, and how fast.
+  /// Reports what was drawn by what, and how fast.
   Json metrics() const;
 
  private:

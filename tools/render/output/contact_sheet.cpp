@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint8_t paper = 26;
 constexpr int gap = 16;
 
-/// A text size at which every line fits the width of a cell.
+/// Finds a text size at which every line fits the width of a cell.
 int text_size_for(const std::vector<SheetCell>& cells, int width) {
   int size = std::clamp(width / 24, 10, 28);
   for (const SheetCell& cell : cells)
@@ -22,7 +22,7 @@ int text_size_for(const std::vector<SheetCell>& cells, int width) {
   return size;
 }
 
-/// The columns that bring a sheet of cells nearest to 16:9 with few places left empty.
+/// Finds the number of columns that makes a sheet of cells close to 16:9 with few places left empty.
 int columns_for(int cells, int cell_width, int cell_height) {
   int best = 1;
   double least = 1e9;

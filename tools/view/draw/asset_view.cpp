@@ -11,13 +11,13 @@ namespace {
 
 constexpr float edge_width_pixels = 1.1f;
 
-/// The technique that a coefficient is decoded by.
+/// Returns the technique that a coefficient is decoded by.
 Technique decoding_technique(Technique technique, const PrtAsset& main) {
   const bool has_transfer = technique != Technique::phong && technique != Technique::normal_map;
   return has_transfer ? technique : natural_technique(main);
 }
 
-/// Lowest and highest of every coefficient, by decoding all texels.
+/// Finds the lowest and highest value of every coefficient by decoding all texels.
 std::vector<std::pair<double, double>> decoded_ranges(const PrtAsset& asset) {
   const std::size_t length = asset.vector_length();
   std::vector<std::pair<double, double>> ranges(length, {1e30, -1e30});
@@ -52,7 +52,7 @@ AssetRenderer& AssetView::renderer(const PrtAsset& asset, const LightChoice& cho
   wanted.incident_samples = wanted_samples_;
   const int samples = incident_samples_of(wanted, lights_of(choice, scene_.lights).is_local());
   std::unique_ptr<AssetRenderer>& found = renderers_[&asset];
-  // A small mesh has fewer points than were asked for: made for so many, it need not be made anew.
+  // A small mesh has fewer points than were asked for; its light need not be computed again for that.
   if (!found || samples != lit_samples_) {
     if (samples != lit_samples_) {
       for (auto& [other, renderer] : renderers_) renderer.reset();

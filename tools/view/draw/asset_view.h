@@ -17,25 +17,26 @@
 
 namespace kiln {
 
-/// A scene of the viewer on the GPU: draws whatever a state shows. Needs the GL context in which it was made.
+/// A scene of the viewer on the GPU, drawn as a state asks. Needs the GL context in which it was made.
 class AssetView {
  public:
-  /// Uploads what the state's technique needs. Throws as AssetRenderer does. Of `settings` it keeps the surface's look
-  /// and the number of incident-light samples.
+  /// Uploads the data of the state's technique. Throws as AssetRenderer does. Takes the surface's look and the number
+  /// of incident-light samples from `settings`.
   AssetView(ViewScene scene, const RenderSettings& settings, const ViewState& state);
 
   const ViewScene& scene() const { return scene_; }
   const ViewLimits& limits() const { return limits_; }
-  /// The vertices that cameras look at.
+  /// Returns the vertices that cameras look at.
   const std::vector<Eigen::Vector3f>& shape() const { return scene_.forms.main().mesh.positions; }
 
-  /// Draws the picture of the canvas; its reference where the state shows a difference; its edges where it has them.
+  /// Draws the picture of the canvas, with its reference if the state shows a difference and its edges if it shows
+  /// them.
   void draw(const ViewState& state, const Camera& camera, Canvas& canvas);
 
-  /// What was drawn last takes on the GPU by the state's technique.
+  /// Returns the GPU memory of what was drawn last, by the state's technique.
   std::uint64_t gpu_bytes(const ViewState& state);
 
-  /// The lowest and the highest value of a transfer coefficient over the asset.
+  /// Returns the lowest and the highest value of a transfer coefficient over the asset.
   std::pair<double, double> coefficient_range(int coefficient, Technique technique);
 
  private:
@@ -52,9 +53,9 @@ class AssetView {
   std::map<const PrtAsset*, std::unique_ptr<AssetRenderer>> renderers_;
   std::optional<Inspection> inspection_;
   std::vector<std::pair<double, double>> decoded_ranges_;  // of the compressed form
-  LightChoice lit_by_;                                     // what lights_ are of
+  LightChoice lit_by_;                                     // the choice that lights_ were made for
   int lit_samples_ = 0;
-  std::map<int, AssetLight> lights_;  // by the bands used
+  std::map<int, AssetLight> lights_;  // by the number of bands used
 };
 
 }  // namespace kiln

@@ -5,7 +5,7 @@ namespace kiln {
 
 namespace {
 
-/// Half a gigabyte of colour: a 4K window at two samples along each axis.
+/// Half a gigabyte of colour: a 4K window with two samples along each axis.
 constexpr double most_samples = 34e6;
 
 int fitting_supersample(int width, int height, int wanted) {

@@ -7,12 +7,11 @@
 
 namespace kiln {
 
-/// Where the pictures that the window is made of are drawn, supersampled; those that are rarely needed are made when
-/// they are.
+/// Framebuffers for the window's pictures, supersampled; those that are rarely needed are made on first use.
 class Canvas {
  public:
-  /// For a window of width x height pixels. `supersample` samples a pixel along each axis, or fewer, where the frames
-  /// would be too large.
+  /// Makes a canvas for a window of width x height pixels, with `supersample` samples per pixel along each axis, or
+  /// fewer if the framebuffers would be too large.
   Canvas(int width, int height, int supersample);
 
   int width() const { return width_; }

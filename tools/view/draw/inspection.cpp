@@ -14,7 +14,7 @@ namespace kiln {
 
 namespace {
 
-// As shaders/view_*.vert and .frag have them.
+// Locations of shaders/view_*.vert and .frag.
 constexpr GLint clip_from_object_location = 0, eye_location = 1, half_width_location = 1;
 constexpr GLuint normal_map_unit = 5;
 
@@ -45,7 +45,7 @@ void add_attribute(GLuint vertices, GLuint location, int components, std::size_t
 }  // namespace
 
 Eigen::Vector3f chart_colour(std::size_t chart) {
-  // Hues a golden ratio apart, so that neighbours in number are far apart in colour; two levels of lightness.
+  // Hues a golden ratio apart, so that neighbouring numbers get distant colours; two levels of lightness.
   const double hue = 6 * std::fmod(0.08 + 0.6180339887498949 * static_cast<double>(chart), 1.0);
   const float lightness = chart % 2 == 0 ? 0.92f : 0.72f, saturation = 0.62f;
   Eigen::Vector3f colour;

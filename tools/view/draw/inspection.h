@@ -10,21 +10,21 @@
 
 namespace kiln {
 
-/// Drawings of an asset that say how it is made, not how it looks: colours to be shown as they are. Needs the GL
+/// Drawings of an asset that show how it is made, not how it looks, in colours to be shown unchanged. Needs the GL
 /// context in which it was made.
 class Inspection {
  public:
-  /// Uploads the triangles, and the normal map where there is one. Throws BadInput where that is broken.
+  /// Uploads the triangles, and the normal map if there is one. Throws BadInput if that is damaged.
   explicit Inspection(const PrtAsset& asset);
 
-  /// Normals of the map, or of the mesh where there is none, n / 2 + 1/2.
+  /// Draws normals of the map, or of the mesh if there is none, as n / 2 + 1/2.
   void draw_normals(const Eigen::Matrix4f& clip_from_object, const Frame& frame) const;
 
-  /// Each chart of the atlas, that is each part of the mesh as it is split at seams, in a colour of its own.
+  /// Draws each chart of the atlas (a part of the mesh as split at seams) in a colour of its own.
   void draw_charts(const Eigen::Matrix4f& clip_from_object, const Eigen::Vector3f& eye_object,
                    const Frame& frame) const;
 
-  /// The edges of visible triangles, `width_samples` wide: coverage in alpha.
+  /// Draws the edges of visible triangles, `width_samples` wide: coverage in alpha.
   void draw_edges(const Eigen::Matrix4f& clip_from_object, float width_samples, const Frame& frame) const;
 
  private:
@@ -37,7 +37,7 @@ class Inspection {
   GlProgram normals_, charts_, edges_;
 };
 
-/// A colour for a chart, 0 to 1 as it is to be shown, far from those of the charts numbered next to it.
+/// Returns a chart's colour, 0 to 1 to be shown unchanged, distant from those of charts with neighbouring numbers.
 Eigen::Vector3f chart_colour(std::size_t chart);
 
 }  // namespace kiln

@@ -14,7 +14,7 @@ constexpr float title_brightness = 1.f, value_brightness = 0.92f, label_brightne
 constexpr std::uint8_t ground = 18;
 constexpr float ground_alpha = 0.78f;
 
-/// Sizes in pixels on a display of that scale.
+/// Sizes in pixels, on a display of the given scale.
 struct Metrics {
   int size, title_size, line, margin, gap, under_title, corner, descent;
 
@@ -32,7 +32,7 @@ struct Metrics {
   static int pixels(double at_96_dpi, double scale) { return static_cast<int>(std::lround(at_96_dpi * scale)); }
 };
 
-/// How much of a pixel lies within a rectangle of that size with round corners.
+/// Computes how much of a pixel lies within a rectangle of that size with round corners.
 float rounded_share(int i, int j, int width, int height, double radius) {
   const double x = std::max(std::abs(i + 0.5 - 0.5 * width) - (0.5 * width - radius), 0.0);
   const double y = std::max(std::abs(j + 0.5 - 0.5 * height) - (0.5 * height - radius), 0.0);

@@ -9,7 +9,7 @@
 
 namespace kiln {
 
-/// A row of a panel: a dim label, and what it is of.
+/// A row of a panel: a dim label, and its text.
 struct PanelRow {
   std::string label;
   std::string value;
@@ -22,11 +22,12 @@ struct Panel {
   bool operator==(const Panel&) const;
 };
 
-/// The same in as few lines as fit `width` pixels: for windows that have no room beside the asset.
+/// Makes a strip of as few lines as fit `width` pixels from a panel, for windows without room beside the asset.
 Panel strip_of(const Panel& panel, int width, double scale);
 
-/// The panel as a picture (RGBA, straight alpha): bright text in two aligned columns on dark, half-transparent ground
-/// with round corners. `scale` is the display's, 1 for about 96 dots per inch. Throws MachineLacks without the font.
+/// Draws the panel as a picture (RGBA, straight alpha): bright text in two aligned columns on a dark, half-transparent
+/// ground with round corners. `scale` is the display's, 1 for about 96 dots per inch. Throws MachineLacks without the
+/// font.
 Image<std::uint8_t> panel_picture(const Panel& panel, double scale);
 
 }  // namespace kiln

@@ -10,11 +10,11 @@ namespace kiln {
 
 namespace {
 
-// As shaders/view_*.frag have them.
+// Texture units of shaders/view_*.frag.
 constexpr GLuint picture_unit = 0, reference_unit = 1, edges_unit = 2;
 constexpr GLint supersample_location = 0, gain_location = 1, background_location = 2, srgb_location = 3,
                 weights_location = 4, window_pixels_location = 0, corner_location = 0;
-constexpr const char* whole_picture = "render_deferred.vert";  // one triangle over all of it
+constexpr const char* whole_picture = "render_deferred.vert";  // one triangle over the whole picture
 
 bool is_signed(Show show) { return show == Show::coefficient || show == Show::difference; }
 
@@ -31,19 +31,19 @@ GlTexture make_byte_texture(int width, int height, const std::uint8_t* values) {
   glTextureStorage2D(texture.name(), 1, GL_RGBA8, width, height);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   if (values != nullptr) glTextureSubImage2D(texture.name(), 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, values);
-  // Read texel by texel; without mipmaps no other filter makes a texture complete.
+  // Sets a filter without mipmaps, which the texture needs to be complete; texels are read one by one.
   glTextureParameteri(texture.name(), GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTextureParameteri(texture.name(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   return texture;
 }
 
-/// The panel at that scale, or smaller where the window is too small for it.
+/// Draws the panel at that scale, or smaller if the window is too small for it.
 Image<std::uint8_t> fitting_picture(const Panel& panel, double scale, const Extent& window) {
   Image<std::uint8_t> picture = panel_picture(panel, scale);
   const int margins = 2 * panel_margin(scale);
   const double share = std::min(static_cast<double>(window.width - margins) / picture.width(),
                                 static_cast<double>(window.height - margins) / picture.height());
-  constexpr double least_share = 0.5;  // text that is smaller cannot be read
+  constexpr double least_share = 0.5;  // smaller text cannot be read
   return share < 1 ? panel_picture(panel, std::max(share, least_share) * scale) : picture;
 }
 

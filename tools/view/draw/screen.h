@@ -21,9 +21,9 @@ namespace kiln {
 /// How the samples of a canvas become the pixels of the finished picture.
 struct Resolve {
   Show show = Show::picture;
-  PictureSettings picture;                   ///< of Show::picture
-  float gain = 1;                            ///< of signed numbers: what makes 1 of those to be fully coloured
-  std::array<float, 3> weights = {1, 0, 0};  ///< of red, green and blue in a signed number
+  PictureSettings picture;                   ///< for Show::picture
+  float gain = 1;                            ///< factor of signed numbers: 1 is fully coloured
+  std::array<float, 3> weights = {1, 0, 0};  ///< weights of red, green and blue in a signed number
   bool edges = false;
 };
 
@@ -34,7 +34,7 @@ struct PlacedPanel {
   Corner corner = Corner::upper_left;
 };
 
-/// How far panels are from the window's border, pixels.
+/// Returns the distance between panels and the window's border, pixels.
 int panel_margin(double scale);
 
 /// Finishes pictures, and shows them in the window with panels over them. Needs the GL context in which it was made.
@@ -45,20 +45,21 @@ class Screen {
   /// Finishes the picture of a canvas.
   void resolve(Canvas& canvas, const Resolve& how);
 
-  /// The picture that was finished last: RGBA, straight alpha, or RGB where it has a background; as kiln-render has it.
+  /// Returns the picture finished last as kiln-render would write it: RGBA, straight alpha, or RGB if it has a
+  /// background.
   Image<std::uint8_t> picture() const;
 
-  /// Draws it into the window's framebuffer, then the panels, at the display's scale.
+  /// Draws the picture into the window's framebuffer, then the panels, at the display's scale.
   void show(const std::vector<PlacedPanel>& panels, double scale);
 
-  /// What the window's framebuffer holds (RGB), after show() and before it is swapped.
+  /// Reads the window's framebuffer (RGB), after show() and before it is swapped.
   Image<std::uint8_t> window() const;
 
  private:
   struct DrawnPanel {
     Panel panel;
     double scale = 1;
-    Extent window;  ///< that it was made to fit
+    Extent window;  ///< size of the window that it was made to fit
     int width = 0, height = 0;
     GlTexture texture;
   };

@@ -23,7 +23,7 @@ bool is_asset_folder(const fs::path& folder) {
   return is_compressed_folder(folder) || fs::is_regular_file(folder / ranges_name, error);
 }
 
-/// The first by name, so that it is always the same.
+/// Finds a compressed form: the first by name, so that the choice does not vary.
 fs::path compressed_folder_in(const fs::path& folder) {
   std::vector<fs::path> found;
   for (const auto& entry : fs::directory_iterator(folder))
@@ -31,7 +31,7 @@ fs::path compressed_folder_in(const fs::path& folder) {
   return found.empty() ? fs::path() : *std::min_element(found.begin(), found.end());
 }
 
-/// "bunny" of out/bunny, of out/bunny/prt, and of other folders beside prt/.
+/// Names an asset: "bunny" for out/bunny, for out/bunny/prt, and for other folders beside prt/.
 std::string name_of(const fs::path& folder) {
   std::error_code error;
   fs::path whole = fs::weakly_canonical(folder, error);
@@ -41,7 +41,7 @@ std::string name_of(const fs::path& folder) {
   return (is_part ? whole.parent_path() : whole).filename().string();
 }
 
-/// Throws BadInput where the asset has no colours.
+/// Throws BadInput if the asset has no colours.
 void require_colours(const PrtAsset& asset) {
   const std::vector<float> dark(asset.vector_length() / static_cast<std::size_t>(asset.channels), 0.f);
   vector_weights(asset, {asset.bands, {dark, dark, dark}}, {1, 1, 1});
@@ -93,7 +93,7 @@ ViewLimits limits_of(const AssetForms& forms) {
       require_technique(technique, forms.of(technique));
       limits.techniques.push_back(technique);
     } catch (const WrongUsage&) {
-      continue;  // the folder lacks what it draws by
+      continue;  // the folder lacks the technique's data
     }
   limits.bands = forms.main().bands;
   limits.channels = forms.main().channels;

@@ -12,32 +12,32 @@
 
 namespace kiln {
 
-/// Where the forms of one asset lie.
+/// Folders of the forms of one asset.
 struct AssetFolders {
-  std::string name;                  ///< for the window's title
-  std::filesystem::path plain;       ///< of kiln-bake; empty: none
-  std::filesystem::path compressed;  ///< of kiln-compress; empty: none
+  std::string name;                  ///< title of the window
+  std::filesystem::path plain;       ///< folder of kiln-bake; empty: none
+  std::filesystem::path compressed;  ///< folder of kiln-compress; empty: none
 };
 
-/// Finds them: `folder` is such a folder itself, or an asset's folder with prt/ in it, beside which a compressed form
-/// may lie (the first by name of the folders that have a pca.json). `compressed` is named by itself, or empty. Throws
-/// BadInput where there is nothing to show.
+/// Finds the forms: `folder` is one itself, or an asset's folder with prt/ in it, beside which a compressed form may
+/// lie (the first by name of the folders that have a pca.json). `compressed` names one explicitly, or is empty. Throws
+/// BadInput if there is nothing to show.
 AssetFolders find_asset_folders(const std::filesystem::path& folder, const std::filesystem::path& compressed);
 
-/// An asset as kiln-bake made it, and as kiln-compress did; one of the two, or both.
+/// An asset as kiln-bake made it, as kiln-compress did, or both.
 struct AssetForms {
   std::optional<PrtAsset> plain, compressed;
 
   const PrtAsset& main() const { return plain ? *plain : *compressed; }
 
-  /// The form that a technique draws.
+  /// Returns the form that a technique draws.
   const PrtAsset& of(Technique technique) const;
 };
 
-/// Reads them. Throws BadInput for what kiln-render would not draw either.
+/// Reads the forms. Throws BadInput for folders that kiln-render would not draw either.
 AssetForms load_asset_forms(const AssetFolders& folders);
 
-/// What they allow. `has_environment` is left as it is.
+/// Finds what the forms allow. Leaves `has_environment` as it is.
 ViewLimits limits_of(const AssetForms& forms);
 
 }  // namespace kiln

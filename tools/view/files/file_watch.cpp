@@ -25,7 +25,7 @@ std::string FileWatch::stamp() const {
     std::vector<std::string> files;
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-      std::error_code gone;  // between being listed and being looked at
+      std::error_code gone;  // removed between being listed and being examined
       if (!entry->is_regular_file(gone)) continue;
       const auto time = entry->last_write_time(gone).time_since_epoch().count();
       files.push_back(entry->path().filename().string() + "/" + std::to_string(entry->file_size(gone)) + "/" +

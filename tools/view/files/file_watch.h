@@ -7,14 +7,14 @@
 
 namespace kiln {
 
-/// Notices that the files of folders changed: their names, sizes and times of modification. Folders within them are not
-/// looked into, so that what a stage writes before it is whole does not count.
+/// Notices changes of the files in some folders: their names, sizes and times of modification. Does not look into
+/// subfolders, so that files which a stage is still writing do not count.
 class FileWatch {
  public:
   explicit FileWatch(std::vector<std::filesystem::path> folders);
 
-  /// Whether they are not as they were at construction or when this last returned true, and have been left alone since
-  /// the call before: a folder that is being copied is not read half way.
+  /// Tests whether files differ from construction or from the last call that returned true, and have not changed since
+  /// the previous call: a folder that is being copied is not read half way.
   bool changed();
 
  private:

@@ -7,16 +7,16 @@
 
 namespace kiln {
 
-/// All that the viewer reads from files.
+/// Everything that the viewer reads from files.
 struct ViewScene {
   AssetForms forms;
   GivenLights lights;
 };
 
-/// Throws BadInput for what kiln-render would not draw either, WrongUsage for lights that are none.
+/// Reads a scene. Throws BadInput for folders that kiln-render would not draw either, WrongUsage for invalid lights.
 ViewScene load_view_scene(const AssetFolders& folders, const LightSettings& lights);
 
-/// What it allows.
+/// Finds what the scene allows.
 ViewLimits limits_of(const ViewScene& scene);
 
 }  // namespace kiln

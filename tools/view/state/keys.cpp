@@ -9,7 +9,7 @@ namespace kiln {
 
 namespace {
 
-/// What a key may look at and change.
+/// Data that a key may look at and change.
 struct Press {
   ViewState& state;
   const ViewLimits& limits;
@@ -17,15 +17,15 @@ struct Press {
   char key;
 };
 
-/// One row of the table that pressing, the help on the screen and --help all go by.
+/// One row of the table behind pressing, the help on the screen and --help.
 struct Binding {
-  std::string keys;  ///< each character of it is a key
+  std::string keys;  ///< each character is a key
   std::string shown;
   std::string does;
   std::function<KeyResult(const Press&)> act;
 };
 
-/// The next of `count` choices, or with a negative step the one before.
+/// Returns the next of `count` choices, or with a negative step the previous one.
 template <class Choice>
 Choice step(Choice choice, int by, int count) {
   return static_cast<Choice>((static_cast<int>(choice) + by + count) % count);
@@ -41,7 +41,7 @@ KeyResult choose_technique(const Press& press) {
   return {};
 }
 
-/// Shows that, or the picture again where it is shown already.
+/// Shows `show`, or the picture again if `show` is shown already.
 KeyResult toggle_show(const Press& press, Show show) {
   press.state.show = press.state.show == show ? Show::picture : show;
   return {};
@@ -77,7 +77,7 @@ KeyResult step_bands(const Press& press) {
   return {};
 }
 
-/// Of what is shown: a difference, or a picture.
+/// Changes the brightness of a difference or of a picture, whichever is shown.
 KeyResult step_brightness(const Press& press) {
   const double sign = press.key == '-' ? -1 : 1;
   if (press.state.show == Show::difference)

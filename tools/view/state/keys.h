@@ -12,24 +12,24 @@ namespace kiln {
 
 inline constexpr char escape_key = '\x1b';
 
-/// What a key asks for that is no change of state.
+/// Wish of a key that does not change the state.
 enum class Wish { none, screenshot, close };
 
 struct KeyResult {
   Wish wish = Wish::none;
-  std::string message;  ///< for the person: why nothing happened; empty: nothing to tell
+  std::string message;  ///< for the person: why nothing happened; empty if there is nothing to say
 };
 
-/// Does what the key stands for. `home` is the state that `r` goes back to. Keys without a meaning do nothing.
+/// Carries out a key's action. `home` is the state that `r` returns to. Keys without a meaning do nothing.
 KeyResult press(ViewState& state, const ViewLimits& limits, const ViewState& home, char key);
 
-/// Keys and what they do, in the order of the help; then what the pointer does.
+/// Lists the keys and what they do, in the order of the help; then what the pointer does.
 std::vector<std::pair<std::string, std::string>> key_help();
 
-/// The same as lines of text.
+/// Formats the key help as lines of text.
 std::string key_help_text();
 
-/// The key of a name as a script and the help have it: one character, or "escape". 0 where there is none of that name.
+/// Finds a key by its name in scripts and help: one character, or "escape". 0 if there is none of that name.
 char key_named(std::string_view name);
 
 }  // namespace kiln

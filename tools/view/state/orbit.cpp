@@ -42,7 +42,7 @@ Camera camera_of(const Orbit& orbit, std::span<const Eigen::Vector3f> shape, int
   const Camera home = make_camera(shape, orbit.home, width, height);
   const bool is_home = orbit.zoom == 1 && orbit.pan.isZero(0) && orbit.azimuth_degrees == orbit.home.azimuth_degrees &&
                        orbit.elevation_degrees == orbit.home.elevation_degrees;
-  if (is_home) return home;  // kiln-render's, to the bit
+  if (is_home) return home;  // kiln-render's camera, to the bit
   CameraSettings settings = orbit.home;
   settings.azimuth_degrees = orbit.azimuth_degrees;
   settings.elevation_degrees = orbit.elevation_degrees;

@@ -25,7 +25,7 @@ std::string window_name(LightWindow window) {
   return "none";
 }
 
-/// "1,234,567"
+/// Formats a number as "1,234,567".
 std::string with_commas(std::uint64_t number) {
   std::string digits = std::to_string(number);
   for (int k = static_cast<int>(digits.size()) - 3; k > 0; k -= 3) digits.insert(static_cast<std::size_t>(k), ",");

@@ -11,22 +11,22 @@
 
 namespace kiln {
 
-/// What the window measured.
+/// Measurements of the window.
 struct ViewFacts {
-  std::string asset;                                       ///< its name
+  std::string asset;                                       ///< name of the asset
   double frame_milliseconds = 0;                           ///< mean of the last frames; 0: not yet known
-  std::uint64_t gpu_bytes = 0;                             ///< of the mesh, the textures and the light by the technique
-  double coefficient_lowest = 0, coefficient_highest = 0;  ///< of the coefficient shown
+  std::uint64_t gpu_bytes = 0;                             ///< mesh, textures and light, by the current technique
+  double coefficient_lowest = 0, coefficient_highest = 0;  ///< range of the coefficient shown
 };
 
-/// The panel that says what is shown, and how.
+/// Makes the panel that says what is shown, and how.
 Panel readout(const ViewState& state, const ViewLimits& limits, const AssetForms& forms, const GivenLights& lights,
               const ViewFacts& facts);
 
-/// A message under a heading, in lines that fit a window.
+/// Makes a panel of a message under a heading, in lines that fit a window.
 Panel message_panel(const std::string& heading, const std::string& message);
 
-/// The panel of keys.
+/// Makes the panel of keys.
 Panel help_panel();
 
 }  // namespace kiln

@@ -22,7 +22,7 @@ namespace {
 using Kind = ScriptStep::Kind;
 using Words = std::vector<std::string>;
 
-/// A number within a range, or nothing.
+/// Reads a number within a range, or nothing.
 std::optional<double> number(const std::string& text, double lowest, double highest) {
   double value = 0;
   const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -30,7 +30,7 @@ std::optional<double> number(const std::string& text, double lowest, double high
   return value;
 }
 
-/// Two numbers, or one where `y` is null, into a step.
+/// Reads two numbers, or one if `y` is null, into a step.
 bool read_numbers(const Words& words, std::size_t first, double lowest, double highest, double& x, double* y) {
   if (words.size() != first + (y != nullptr ? 2 : 1)) return false;
   for (std::size_t k = first; k < words.size(); ++k) {
@@ -50,7 +50,7 @@ bool read_keys(const Words& words, std::vector<ScriptStep>& steps) {
   return words.size() > 1;
 }
 
-/// Whether the words are a step, which is added.
+/// Tests whether the words are a step, and adds it.
 bool read_step(const Words& words, std::vector<ScriptStep>& steps) {
   if (words[0] == "key") return read_keys(words, steps);
   ScriptStep step;

@@ -9,17 +9,17 @@
 
 namespace kiln {
 
-/// One line of a script: what a person at the window would do, or look at.
+/// One line of a script: an action of a person at the window, or something to look at.
 struct ScriptStep {
   enum class Kind {
     key,         ///< press `key`
-    drag,        ///< `what` by `x` pixels to the right and `y` downwards
-    wheel,       ///< `x` steps forwards
-    resize,      ///< the window to `x` x `y` pixels
-    frames,      ///< draw `x` of them
+    drag,        ///< drag `what` by `x` pixels to the right and `y` downwards
+    wheel,       ///< turn the wheel `x` steps forwards
+    resize,      ///< resize the window to `x` x `y` pixels
+    frames,      ///< draw `x` frames
     screenshot,  ///< write the picture to `file`
-    window,      ///< the same with the panels, as the window is
-    reload,      ///< wait until the files have changed and were read again
+    window,      ///< write the window with its panels to `file`
+    reload,      ///< wait until the files have changed and been read again
   };
   Kind kind = Kind::frames;
   char key = 0;
@@ -28,11 +28,11 @@ struct ScriptStep {
   std::filesystem::path file;
 };
 
-/// What scripts are made of, for --help and messages.
+/// Grammar of scripts, for --help and messages.
 extern const char* const script_grammar;
 
-/// Reads a script, one step a line; several keys to a line are several steps, # begins a comment. Throws BadInput that
-/// names the line.
+/// Reads a script, one step per line; several keys on a line are several steps, # begins a comment. Throws BadInput
+/// that names the line.
 std::vector<ScriptStep> read_script(const std::filesystem::path& file);
 
 }  // namespace kiln

@@ -25,13 +25,13 @@ Eigen::Vector3d from_centre(const LightSpec& ball, const BoundingBox& box) {
   return Eigen::Vector3d(ball.position.data()) - box.centre().cast<double>();
 }
 
-/// Moves a light to an azimuth and an elevation; a ball around the box' centre.
+/// Moves a light to an azimuth and an elevation; a ball moves around the box's centre.
 void move_light(LightSpec& spec, double azimuth_degrees, double elevation_degrees, const BoundingBox& box) {
   spec.azimuth_degrees = azimuth_degrees;
   spec.elevation_degrees = elevation_degrees;
   if (spec.kind != Kind::sphere) return;
   const Eigen::Vector3d centre = box.centre().cast<double>();
-  // The ball's own radiance stays: `colour` is what it makes of a surface at the origin, which is now nearer or
+  // Keeps the ball's own radiance: `colour` is the radiance of a white surface at the origin, which is now nearer or
   // farther.
   const double before = Eigen::Vector3d(spec.position.data()).norm();
   const Eigen::Vector3d place =
@@ -41,7 +41,7 @@ void move_light(LightSpec& spec, double azimuth_degrees, double elevation_degree
   spec.position = {place.x(), place.y(), place.z()};
 }
 
-/// A light of the viewer's own. All give a white surface that faces them about radiance 1.
+/// Makes a light of the viewer's own. Each gives a white surface that faces it a radiance of about 1.
 LightSpec preset_light(const LightChoice& choice, const BoundingBox& box) {
   LightSpec spec;
   spec.azimuth_degrees = choice.azimuth_degrees;
@@ -55,7 +55,7 @@ LightSpec preset_light(const LightChoice& choice, const BoundingBox& box) {
           distance * direction_from_angles(choice.azimuth_degrees, choice.elevation_degrees).cast<double>();
       spec.position = {place.x(), place.y(), place.z()};
       spec.radius = 0.1 * distance;
-      // Radiance 1 at the box' centre, where `colour` is that at the origin.
+      // Radiance 1 at the box's centre, while `colour` is that at the origin.
       const double at_origin = std::max(spec.radius, place.norm());
       spec.colour.fill(static_cast<float>(distance * distance / (at_origin * at_origin)));
       break;
@@ -125,7 +125,7 @@ SceneLights lights_of(const LightChoice& choice, const GivenLights& given) {
   else
     lights.specs = {preset_light(choice, given.box)};
   if (choice.environment) lights.environment = given.environment;
-  // Where nothing was dragged nothing moves, not even by rounding.
+  // Without a drag nothing moves, not even by rounding.
   const LightChoice still = given_choice(given, choice.window);
   if (choice.preset != LightPreset::given ||
       (choice.azimuth_degrees == still.azimuth_degrees && choice.elevation_degrees == still.elevation_degrees))

@@ -19,19 +19,19 @@ enum class Show {
   coefficient,  ///< one transfer coefficient as the technique decodes it, signed
   normals,
   charts,
-  difference,  ///< the technique's picture less that of full textured PRT, signed
+  difference,  ///< the technique's picture minus that of full textured PRT, signed
 };
 
-/// Which lights are on besides the environment.
+/// Lights that are on besides the environment.
 enum class LightPreset {
-  given,        ///< those of the command line
-  directional,  ///< a distant one
+  given,        ///< lights of the command line
+  directional,  ///< a distant light
   ball,         ///< a glowing ball near the asset: a local light
   hemisphere,   ///< a sky and a ground
-  ambient,      ///< the same from everywhere: a furnace
+  ambient,      ///< the same radiance from everywhere: a furnace
 };
 
-/// What can be told of the lights without the asset.
+/// Choice of lights, independent of the asset.
 struct LightChoice {
   LightPreset preset = LightPreset::given;
   double azimuth_degrees = 45;  ///< of the main light
@@ -42,20 +42,20 @@ struct LightChoice {
   bool operator==(const LightChoice&) const = default;
 };
 
-/// All that the person at the window chose.
+/// Everything that the person at the window chose.
 struct ViewState {
   Orbit orbit;
   Technique technique = Technique::textured_prt;
   Shading shading = Shading::forward;
   LightChoice light;
-  int bands = 1;  ///< of the light that are used
+  int bands = 1;  ///< number of the light's bands that are used
   Show show = Show::picture;
-  int coefficient = 0;  ///< shown: channel * bands^2 + l (l + 1) + m
+  int coefficient = 0;  ///< the one shown: channel * bands^2 + l (l + 1) + m
   double difference_gain = 8;
   double exposure_stops = 0;
-  bool mesh = false;    ///< the edges of the triangles over it all
-  bool readout = true;  ///< the panel of what is shown
-  bool help = false;    ///< the panel of keys
+  bool mesh = false;    ///< whether the edges of the triangles are drawn over everything
+  bool readout = true;  ///< whether the panel of what is shown is on
+  bool help = false;    ///< whether the panel of keys is on
 };
 
 /// What an asset allows.
@@ -63,7 +63,7 @@ struct ViewLimits {
   std::vector<Technique> techniques;
   int bands = 1;
   int channels = 1;
-  bool has_reference = false;  ///< there is a form to hold others against
+  bool has_reference = false;  ///< whether there is a form to compare others with
   bool has_charts = false;
   bool has_environment = false;
 
@@ -74,13 +74,13 @@ struct ViewLimits {
 /// Brings a state within limits, which a reload may have changed.
 void limit(ViewState& state, const ViewLimits& limits);
 
-/// Whether the technique is one whose shading may be deferred.
+/// Tests whether a technique supports deferred shading.
 bool can_defer(Technique technique);
 
 /// What the pointer's buttons drag.
 enum class Drag { orbit, pan, light };
 
-/// Drags by pixels of a picture of width x height pixels of a shape.
+/// Drags by pixels, in a picture of width x height pixels of a shape.
 void drag(ViewState& state, Drag what, double right_pixels, double down_pixels, std::span<const Eigen::Vector3f> shape,
           int width, int height);
 

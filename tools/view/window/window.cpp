@@ -14,7 +14,7 @@ namespace kiln {
 
 namespace {
 
-/// What GLFW says of its last failure.
+/// Returns GLFW's message about its last failure.
 std::string failure() {
   const char* text = nullptr;
   glfwGetError(&text);
@@ -46,7 +46,7 @@ struct Window::Implementation {
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 5);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    glfwWindowHint(GLFW_DEPTH_BITS, 0);  // pictures have depth of their own
+    glfwWindowHint(GLFW_DEPTH_BITS, 0);  // pictures have depth buffers of their own
     window = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
     if (window == nullptr)
       throw MachineLacks("no window with an OpenGL 4.5 core context (" + failure() +
@@ -83,7 +83,7 @@ struct Window::Implementation {
     const auto is_down = [&](int button) { return glfwGetMouseButton(window, button) == GLFW_PRESS; };
     const bool shift =
         glfwGetKey(window, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS || glfwGetKey(window, GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
-    // The pointer's coordinates are the window's, which on some displays are not pixels.
+    // Converts the pointer's coordinates, which on some displays are not pixels.
     int window_width = 1, window_height = 1, pixels_across = 1, pixels_up = 1;
     glfwGetWindowSize(window, &window_width, &window_height);
     glfwGetFramebufferSize(window, &pixels_across, &pixels_up);

@@ -10,19 +10,19 @@
 
 namespace kiln {
 
-/// What a window tells of the person in front of it.
+/// Callbacks for what a person does at a window.
 struct WindowEvents {
-  std::function<void(char)> key;                              ///< one character, as the layout has it; or escape
+  std::function<void(char)> key;  ///< one character, as typed in the keyboard's layout; or escape
   std::function<void(Drag, double right, double down)> drag;  ///< pixels
   std::function<void(double)> wheel;                          ///< steps forwards
   std::function<void()> redraw;                               ///< the content was lost, or has another size
 };
 
-/// A window and its OpenGL 4.5 core context, current on the thread that made it for as long as it lives. One at a time.
+/// A window and its OpenGL 4.5 core context, current on the thread that made it for its lifetime. One at a time.
 class Window {
  public:
-  /// `width` x `height` as the display counts: pixels, unless it says otherwise. A software renderer uses
-  /// `software_threads` threads. Throws MachineLacks where there is no display or no such context.
+  /// Opens a window of `width` x `height` screen units, which are pixels on most displays. A software renderer uses
+  /// `software_threads` threads. Throws MachineLacks if there is no display or no such context.
   Window(const std::string& title, int width, int height, int software_threads);
   ~Window();
   Window(const Window&) = delete;
@@ -30,15 +30,15 @@ class Window {
 
   void listen(WindowEvents events);
 
-  /// Tells of events as they come, for at most so long; returns after the first.
+  /// Waits for events and reports them; returns after the first, or after `seconds`.
   void wait(double seconds);
 
   bool is_closing() const;
 
-  /// Of what is drawn into: pixels. 0 x 0 while the window is iconified.
+  /// Returns the size of the framebuffer in pixels; 0 x 0 while the window is iconified.
   Extent framebuffer() const;
 
-  /// How much larger than at 96 dots per inch text should be.
+  /// Returns how much larger than at 96 dots per inch text should be.
   double content_scale() const;
 
   /// Shows what was drawn. `wait_for_display` waits until the display is ready for it.
@@ -46,7 +46,7 @@ class Window {
 
   void resize(int width, int height);
 
-  /// GL_RENDERER.
+  /// Returns GL_RENDERER.
   const std::string& renderer() const { return renderer_; }
 
  private:
