@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ambient occlusion beside another baker's: peers/blender_ao.py runs all of it.
+// Compares ambient occlusion with another baker's: peers/blender_ao.py runs all of it.
 //
 //   bench_ao export HIGH ATLAS FOLDER     both meshes as OBJ files with their normals, for the other program
 //   bench_ao compare REFERENCE MAP... [--against MAP]     the error of maps over the texels that the atlas covers,
 //                                                         against the reference or, over its texels, another map
 //
-// REFERENCE and MAP are folders of kiln-bake of one band, whose transfer coefficient over 0.282095 is the share of the
-// sky that a texel sees, weighed by the cosine; or a MAP is a picture of that share, an EXR file. The errors are root
-// mean squares over that of the reference.
+// REFERENCE and MAP are folders of kiln-bake with one band, whose transfer coefficient over 0.282095 is the share of
+// the sky that a texel sees, weighted by the cosine; or a MAP is a picture of that share, an EXR file. Errors are root
+// mean squares relative to that of the reference.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -34,10 +34,10 @@ namespace fs = std::filesystem;
 
 constexpr float unoccluded = 0.28209479f;
 
-/// Openness in one map, rows as Image has them.
+/// Open share of the sky in one map, rows as in Image.
 struct Occlusion {
   int width = 0, height = 0;
-  std::vector<float> open;  ///< per texel, 1 where nothing is in the way
+  std::vector<float> open;  ///< per texel; 1 if nothing is in the way
 };
 
 Occlusion of_asset(const PrtAsset& asset) {
@@ -59,8 +59,8 @@ Occlusion load_occlusion(const fs::path& file) {
   return occlusion;
 }
 
-/// Prints one JSON object: the relative error, that of the nearest 99 % of texels, the mean difference, and how many
-/// texels there are.
+/// Prints one JSON object: the relative error, that of the best 99 % of texels, the mean difference, and the number of
+/// texels.
 void compare(const Occlusion& reference, const UvRaster& covered, const fs::path& file) {
   const Occlusion map = load_occlusion(file);
   if (map.width != reference.width || map.height != reference.height)

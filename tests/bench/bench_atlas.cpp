@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Atlases of meshes, beside those of other tools. Prints Markdown rows.
+// Measures atlases of meshes, beside those of other tools. Prints Markdown rows.
 //
 //   bench_atlas low_5000.drc low_1000.drc --size 1024 --gutter 4          makes atlases, of both qualities
 //   bench_atlas low_5000.drc --to-obj low_5000.obj                        writes a mesh for other tools
@@ -29,7 +29,7 @@ void print_head() {
       "seam | gap | overlaps |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
 }
 
-/// `parts`: what of the seconds went where, where that is known.
+/// Prints a row; `parts` splits the seconds among steps, if that is known.
 void print_row(const std::string& way, const std::string& mesh, const Cost& cost, const std::string& parts,
                const AtlasMeasures& m) {
   fmt::print("| {} | {} | {:.2f} | {:.2f} | {} | {} | {:.1f} | {:.4f} | {:.2f} | {:.2f} | {:.2f} | {} | {} |\n", way,
@@ -41,7 +41,7 @@ TriangleMesh load_low(const std::filesystem::path& file) {
   return file.extension() == ".drc" ? load_draco(file) : load_mesh(file);
 }
 
-/// The fastest of several runs.
+/// Makes an atlas several times, and prints the fastest run.
 void make(const std::string& way, const std::filesystem::path& file, const AtlasSettings& settings, int repeats) {
   const TriangleMesh low = load_low(file);
   Cost cost;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The two bake backends on the Stanford bunny, in one run so that their ratio can be stated: receivers are the scan's
-// own points. `items_per_second` is texel-directions per second.
+// Times the two bake backends on the Stanford bunny, in one run so that their ratio can be stated; receivers are the
+// scan's own points. `items_per_second` is texel-directions per second.
 
 #include <benchmark/benchmark.h>
 

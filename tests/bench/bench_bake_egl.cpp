@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The EGL bake engine alone, on a bare machine: needs EGL, OpenGL 4.5 and this one executable. A closed, bumpy ball of
-// about 80,000 triangles shadows itself; receivers are points spread over it.
+// Times the EGL bake engine alone, on a bare machine: needs EGL, OpenGL 4.5 and this one executable. A closed, bumpy
+// ball of about 80,000 triangles shadows itself; receivers are points spread over it.
 //
 //   bench_bake_egl [--directions N] [--receivers N] [--bands N] [--shadow-size N] [--batch N] [--gl-device D]
 //
@@ -26,7 +26,7 @@ struct Surface {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// A point of the ball in the direction `d`, and its normal by finite differences.
+/// Computes a point of the ball in the direction `d`, and its normal by finite differences.
 Eigen::Vector3d on_ball(const Eigen::Vector3d& d) {
   return d * (1 + 0.15 * std::sin(9 * d.x()) * std::sin(8 * d.y()) * std::sin(7 * d.z()));
 }

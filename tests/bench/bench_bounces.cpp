@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a bounce costs beside the direct bake of the same backend, over the same directions: CPU seconds, and ratios.
+// Times bounces beside the direct bake of the same backend, over the same directions: CPU seconds, and ratios.
 //
 //   bench_bounces ASSET HIGH [--backend beams embree egl] [--directions N] [--bands N] [--shadow-size N]
 //                            [--bounce-memory MB]
@@ -27,7 +27,7 @@ void measure(const BakeScene& scene, const BakeSettings& settings, BakeBackend b
   order_coherently(directions, block_directions);
   const Receivers texels = scene.receivers.view();
 
-  // Step 1: direct transfer, of the texels and of the points that light bounces off; it keeps what it finds of rays.
+  // Step 1: direct transfer of the texels and of the points that light bounces off; what it finds of rays is kept.
   const std::size_t share = bounce_memory_share(settings);
   RayMemory texel_memory(share), point_memory(share);
   TracedPoints of_texels{{}, &texel_memory}, of_points{{}, &point_memory};
@@ -44,8 +44,8 @@ void measure(const BakeScene& scene, const BakeSettings& settings, BakeBackend b
     });
   }
 
-  // Step 2: the bounce, at the texels, and among the points, as each bounce more costs: the first of these finds what
-  // rays hit, the others know it.
+  // Step 2: one bounce at the texels, and two among the points, each at the cost of a further bounce: the first finds
+  // what rays hit, the second reuses it.
   const std::unique_ptr<GatherEngine> engine =
       make_gather_engine(backend, surface_of(cache, scene.occluders), settings, 0);
   SentLight light{3, at_points.coefficients, std::vector<float>(cache.size() * 3 * at_points.coefficients)};

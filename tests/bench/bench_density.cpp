@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The error of transfer in small atlases whose charts have even or signal-aware scales: `bench_density HIGH
+// Measures the error of transfer in small atlases whose charts have even or signal-aware scales: `bench_density HIGH
 // low.drc...`. Prints Markdown. Both atlases hold the transfer of the high mesh's points that their texels stand for;
-// what bilinear lookups give at points spread over the low mesh is compared with transfer taken right there.
+// bilinear lookups at points spread over the low mesh are compared with transfer computed at these points.
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
@@ -26,7 +26,7 @@ struct Points {
   Receivers view() const { return {positions, normals}; }
 };
 
-/// A point of the low mesh, and the one of the high mesh that it stands for.
+/// Adds a point of the low mesh, and the point of the high mesh that it stands for.
 void add_point(const TriangleMesh& high, const RayScene& scene, const Eigen::Vector3f& point,
                const Eigen::Vector3f& normal, Points& points) {
   const SurfacePoint found = scene.closest_facing_point(point, normal, std::numeric_limits<float>::infinity());
@@ -43,7 +43,7 @@ struct Lookup {
   float u, v;
 };
 
-/// Points evenly spread over the surface, the same for all atlases of one mesh.
+/// Spreads points evenly over the surface, the same for all atlases of one mesh.
 std::vector<Lookup> spread_points(const TriangleMesh& mesh, std::size_t count) {
   std::vector<double> sums;
   double sum = 0;
@@ -66,7 +66,7 @@ std::vector<Lookup> spread_points(const TriangleMesh& mesh, std::size_t count) {
   return points;
 }
 
-/// Bilinear lookups of an atlas with filled gutters.
+/// Looks up transfer bilinearly in an atlas with filled gutters.
 TransferVectors looked_up(const TriangleMesh& atlas, int size, const UvRaster& raster, const TransferVectors& texels,
                           const std::vector<Lookup>& points) {
   std::vector<std::uint8_t> covered;

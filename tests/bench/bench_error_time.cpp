@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Error against time: an asset baked by each of a list of settings with each of several numbers of directions, compared
-// with Embree's rays over many more directions from some of the receivers. Prints CSV, one row per bake:
+// Measures error against time: bakes an asset by each of a list of settings with each of several numbers of directions,
+// and compares it with Embree's rays over many more directions from some of the receivers. Prints CSV, one row per
+// bake:
 //   setting                                as `kiln-bake` takes it
 //   directions
 //   seconds, cpu_seconds                   of bake(), all receivers, the engine's start included; CPU of all threads
@@ -38,7 +39,8 @@ struct Series {
   std::vector<int> directions;
 };
 
-/// Depth maps on a software renderer get the fewest directions: they are the slowest there.
+/// Lists the built-in settings. Depth maps on a software renderer get the fewest directions: they are the slowest
+/// there.
 std::vector<Series> built_in() {
   return {{"--backend beams", {256, 1024, 4096, 16384}},
           {"--backend beams --sampling progressive", {256, 1024, 4096, 16384}},
@@ -51,7 +53,7 @@ std::vector<Series> built_in() {
           {"--backend egl --shadow-size 1024 --refine rays", {256, 1024}}};
 }
 
-/// "--name value ..." and "--switch ...".
+/// Parses "--name value ..." and "--switch ...".
 BakeSettings parse(const std::string& text) {
   BakeSettings settings;
   const OptionSet options = bake_options(settings);
@@ -66,7 +68,7 @@ BakeSettings parse(const std::string& text) {
   return settings;
 }
 
-/// Every `step`-th receiver, the transfer of those, and theirs in truth.
+/// Every `step`-th receiver, its transfer, and its reference transfer.
 class Truth {
  public:
   Truth(const BakeScene& scene, int directions, std::size_t receivers, int threads)
@@ -78,7 +80,7 @@ class Truth {
     const BakeSettings settings;
     const std::unique_ptr<TransferEngine> rays = make_engine(BakeBackend::embree, scene.occluders, settings, threads);
     rays->set_receivers({positions_, normals_}, settings.bands);
-    // Another rotation of the sphere than the bakes', so that no error is shared.
+    // Rotates the sphere differently from the bakes, so that no error is shared.
     rays->add(sample_directions(Sampling::fibonacci, directions, seed + 98), no_progress);
     transfer_ = rays->sums().transfer();
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The EGL engine against two hand-written probes of what it is made of, in one run, so that the ratio holds on any
+// Times the EGL engine against two hand-written probes of its parts, in one run, so that the ratio holds on any
 // machine: a depth map per direction, and a compute shader that compares every receiver with a batch of them.
 //   bench_gl_probes [--directions 256] [--asset FOLDER] [--mesh MESH] [--sizes 512 1024] [--repeats 2]
 // FOLDER is an asset of `kiln build` (atlas.drc and normals/): the receivers are its texels. Without one they are the
@@ -29,7 +29,7 @@ constexpr int coefficients = coefficient_count(bands);
 constexpr int row_floats = (coefficients + 3) / 4 * 4;
 constexpr int batch = 32;  // directions
 
-/// The probes: what one writes in an afternoon. Frames from the bounding sphere, one draw per depth map with back faces
+/// Probes as one writes them in an afternoon: frames from the bounding sphere, one draw per depth map with back faces
 /// culled, one dispatch per batch, float32 sums.
 class Probes {
  public:
@@ -73,7 +73,7 @@ class Probes {
     glViewport(0, 0, size_, size_);
   }
 
-  /// One map for each of `batch` directions.
+  /// Draws one map for each of `batch` directions.
   void draw(std::span<const Eigen::Vector3f> directions) {
     lights_of_batch_.clear();
     glUseProgram(depth_program_.name());
@@ -92,7 +92,7 @@ class Probes {
     glFinish();
   }
 
-  /// Every receiver against these maps.
+  /// Compares every receiver with these maps.
   void shade(std::span<const Eigen::Vector3f> directions) {
     std::vector<float> rows(batch * row_floats, 0.f);
     for (std::size_t d = 0; d < directions.size(); ++d)
@@ -126,7 +126,7 @@ class Probes {
   }
 
  private:
-  /// As probe_shade.comp has it (std140).
+  /// Layout of probe_shade.comp's buffer (std140).
   struct Light {
     Eigen::Matrix4f to_map;
     Eigen::Vector4f direction;
@@ -167,8 +167,8 @@ struct ProbeCosts {
   TransferVectors transfer;
 };
 
-/// `directions` in whole batches. The first goes ahead once more, untimed, because drivers compile when they first
-/// draw.
+/// Runs the probes over `directions` in whole batches. The first batch runs once more in advance, untimed, because
+/// drivers compile when they first draw.
 ProbeCosts run_probes(const BakeScene& scene, std::span<const Eigen::Vector3f> directions, int size_texels) {
   const EglContext context;
   Probes probes(scene.receivers.view(), scene.occluders.mesh, size_texels);
@@ -185,7 +185,7 @@ ProbeCosts run_probes(const BakeScene& scene, std::span<const Eigen::Vector3f> d
   return costs;
 }
 
-/// Likewise.
+/// Runs the engine in the same way.
 EngineCost run_engine(const BakeScene& scene, std::span<const Eigen::Vector3f> directions, int size_texels) {
   const Occluders& occluders = scene.occluders;
   ShadowMapSettings settings;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Normal maps beside another baker's: peers/blender_normals.py runs all of it.
+// Compares normal maps with another baker's: peers/blender_normals.py runs all of it.
 //
 //   bench_normals export HIGH ATLAS FOLDER     both meshes as OBJ files, positions shared, for the other program
 //   bench_normals bake HIGH ATLAS OUT.png      Kiln's map of the atlas: seconds and CPU seconds, the best of --repeat
@@ -77,7 +77,7 @@ int main(int argc, char** argv) {
     double seconds = 1e9, cpu = 1e9;
     for (int k = 0; k < repeat; ++k) {
       const std::clock_t before = std::clock();
-      std::clock_t made = before;  // when the maps are, which is before the metrics
+      std::clock_t made = before;  // time when the maps are ready, before the metrics
       result = make_normals(high, atlas, settings, read_asset_hints(fs::path(atlas_file).parent_path()),
                             [&](double fraction) { made = fraction >= 1 ? std::clock() : made; });
       seconds = std::min(seconds, result.seconds);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rays of a bake against a straightforward loop over Embree's streams, in one run, so that the ratio holds on any
-// machine:
+// Times the rays of a bake against a straightforward loop over Embree's streams, in one run, so that the ratio holds on
+// any machine:
 //   bench_rays [--directions 10000] [--threads 2] [--asset FOLDER] [--mesh MESH] [--reference 65536] [--repeats 1]
 //              [--visible] [--share 1]
 // FOLDER is an asset of `kiln build` (atlas.drc and normals/): the receivers are its texels. Without one they are the
@@ -44,8 +44,8 @@ struct Points {
   Receivers view() const { return {positions, normals}; }
 };
 
-/// The probe: what one writes in an afternoon. Direction outermost, 256 neighbouring receivers a stream, Embree's
-/// defaults with the incoherent flag, plain sums.
+/// Probe as one writes it in an afternoon: direction outermost, 256 neighbouring receivers a stream, Embree's defaults
+/// with the incoherent flag, plain sums.
 class Probe {
  public:
   explicit Probe(const TriangleMesh& mesh) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
@@ -125,7 +125,7 @@ class Probe {
   RTCScene scene_;
 };
 
-/// The covered texels of an asset in tiles of 16 x 16.
+/// Lists the covered texels of an asset in tiles of 16 x 16.
 Points texels_of(const std::string& folder) {
   constexpr int tile = 16;
   const DetailMaps maps = load_detail_maps(folder + "/normals", load_draco(folder + "/atlas.drc"));
@@ -155,7 +155,7 @@ Points vertices_of(const TriangleMesh& mesh) {
   return points;
 }
 
-/// The first of every `share` runs of 1,024 points, which stay neighbours.
+/// Keeps the first of every `share` runs of 1,024 points, so that points keep their neighbours.
 Points share_of(const Points& points, std::size_t share) {
   constexpr std::size_t run = 1024;
   Points kept;
@@ -167,7 +167,7 @@ Points share_of(const Points& points, std::size_t share) {
   return kept;
 }
 
-/// Without points that see nothing in 256 directions: kiln-bake sets aside those that are inside another part.
+/// Drops points that see nothing in 256 directions: kiln-bake sets aside those inside another part.
 Points visible_of(const Points& points, const TriangleMesh& mesh, float ray_offset) {
   const TransferVectors seen =
       transfer_by_rays(RayScene(mesh), points.view(), sample_directions(Sampling::fibonacci, 256, 1), 1, ray_offset);
@@ -189,7 +189,7 @@ Points every(const Points& points, std::size_t step) {
   return thinned;
 }
 
-/// The engine, from its scene and receivers to transfer vectors.
+/// Times the engine, from its scene and receivers to transfer vectors.
 TransferVectors by_beams(const BeamScene& scene, const Receivers& receivers,
                          const std::vector<Eigen::Vector3f>& directions, float ray_offset, BeamSavings* savings) {
   TransferSums sums(receivers.size(), coefficients);
@@ -233,7 +233,7 @@ int main(int argc, char** argv) {
   std::printf("%zu triangles, %zu receivers, %d directions, %d coefficients, %d threads, %s\n", mesh.triangles.size(),
               receivers.size(), direction_count, coefficients, threads, ray_library_name().c_str());
 
-  // Step 1: equal work.
+  // Step 1: time equal work.
   const auto print = [&](const char* name, int count, const Cost& cost) {
     const double pairs = static_cast<double>(receivers.size()) * count;
     std::printf("%-34s %7d directions %8.2f s %8.2f CPU s %8.1f M texel-directions/s\n", name, count, cost.wall,
@@ -280,14 +280,14 @@ int main(int argc, char** argv) {
                 relative_l2(beams_transfer, streams_transfer));
   if (reference_count == 0) return 0;
 
-  // Step 2: the error of the stratified set, and the least Fibonacci set that has it, over some receivers.
+  // Step 2: find the error of the stratified set, and the smallest Fibonacci set of that error, over some receivers.
   const Points sample = every(points, std::max<std::size_t>(1, receivers.size() / 2000));
   const BeamScene scene(mesh.positions, mesh.triangles);
   const auto transfer = [&](Sampling sampling, int count, int seed) {
     return by_beams(scene, sample.view(), coherent(sampling, count, seed), ray_offset, nullptr);
   };
   const TransferVectors reference = transfer(Sampling::fibonacci, reference_count, 99);
-  // Root mean square over seeds: one draw of a set of directions says little.
+  // Root mean square over seeds: a single set of directions says little.
   const auto error = [&](Sampling sampling, int count) {
     constexpr int seeds = 4;
     double squares = 0;

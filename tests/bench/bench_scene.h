@@ -7,8 +7,8 @@
 
 namespace kiln {
 
-/// Receivers are the texels of `asset`, a folder of `kiln build` (atlas.drc and normals/), or with an empty one the
-/// vertices of `mesh`, which casts the shadows.
+/// Loads a scene to bake. Receivers are the texels of `asset`, a folder of `kiln build` (atlas.drc and normals/), or,
+/// if that is empty, the vertices of `mesh`, which casts the shadows.
 inline BakeScene load_bench_scene(const std::filesystem::path& asset, const std::filesystem::path& mesh) {
   BakePaths paths;
   BakeSettings settings;
@@ -16,7 +16,7 @@ inline BakeScene load_bench_scene(const std::filesystem::path& asset, const std:
   if (asset.empty()) {
     paths.atlas = mesh;
     settings.per_vertex = true;
-    settings.receiver = BakeReceiver::low;  // the vertices themselves
+    settings.receiver = BakeReceiver::low;  // receivers at the vertices themselves
   } else {
     paths.atlas = asset / "atlas.drc";
     paths.detail = asset / "normals";

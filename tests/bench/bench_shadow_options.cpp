@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every shadow option of the EGL engine against rays over the same directions, so that only visibility differs:
+// Compares every shadow option of the EGL engine with rays over the same directions, so that only visibility differs:
 // relative L2 of the transfer vectors (bands^2 coefficients), in per cent. Receivers are points spread evenly over the
 // mesh.
 //
@@ -39,20 +39,20 @@ namespace kiln {
 namespace {
 
 const std::vector<std::string> built_in = {
-    // the remedies one by one
+    // remedies one by one
     "near offset=0", "2x2 offset=0", "3x3 offset=0", "near bias=0.001 offset=0", "2x2 bias=0.001 offset=0",
     "2x2 bias=0.003 offset=0", "near angle=1 offset=0", "2x2 angle=1 offset=0", "2x2 angle=1 bias=0.0005 offset=0",
     "2x2 angle=2 offset=0", "near offset=1", "2x2 offset=0.5", "2x2 offset=1", "3x3 offset=1", "3x3 offset=1.5",
     "near plane offset=0", "2x2 plane offset=0", "2x2 plane bias=0.0005 offset=0", "near ids offset=0",
     "2x2 ids offset=0", "2x2 back offset=0", "2x2 mid offset=0", "24 2x2 offset=1", "16 2x2 offset=1",
     "16 2x2 offset=0",
-    // together
+    // remedies together
     "near plane offset=0.25", "near plane offset=0.5", "2x2 plane offset=0.25", "2x2 plane offset=0.5",
     "3x3 plane offset=0.25", "3x3 plane offset=0.5", "2x2 plane angle=0.25 offset=0.25", "2x2 ids plane offset=0",
     "2x2 ids plane offset=0.25", "2x2 ids plane offset=0.5", "3x3 ids plane offset=0.25", "2x2 ids offset=0.5",
     "2x2 back plane offset=0", "near mid offset=0", "2x2 mid plane offset=0", "2x2 mid ids plane offset=0",
     "16 2x2 plane offset=0.25",
-    // rays where the map cannot tell
+    // rays where the map cannot decide
     "2x2 offset=1 refine", "2x2 plane offset=0.5 refine", "2x2 plane offset=1 refine", "3x3 plane offset=1 refine",
     "2x2 plane offset=1 band=1 refine", "2x2 ids plane offset=0.5 refine", "2x2 ids plane offset=0.5 band=1 refine",
     "2x2 mid plane offset=0 refine"};
@@ -108,7 +108,7 @@ struct Sample {
   std::vector<Eigen::Vector3f> positions, normals;
 };
 
-/// Points spread over the surface by area, with interpolated normals.
+/// Spreads points over the surface by area, with interpolated normals.
 Sample sample_surface(const TriangleMesh& mesh, int count) {
   std::vector<double> areas(mesh.triangles.size());
   for (std::size_t t = 0; t < areas.size(); ++t) {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Simplification beside what else there is: CGAL's edge collapse (Lindstrom-Turk; Garland-Heckbert planes),
-// meshoptimizer's and OpenMesh's quadrics, in one process and on one thread each but for ours. Prints Markdown rows:
-// CPU and wall seconds of the collapse (the mesh is in each library's own form before),
-// Hausdorff and RMS distance in % of the diagonal, worse direction (mesh_distance), RMS angle between normals, edges of
-// more than two triangles.
+// Compares simplification with other libraries: CGAL's edge collapse (Lindstrom-Turk; Garland-Heckbert planes),
+// meshoptimizer's and OpenMesh's quadrics, in one process and, except for Kiln, on one thread. Prints Markdown rows:
+// CPU and wall seconds of the collapse (without the conversion of the mesh to each library's form), Hausdorff and RMS
+// distance in % of the diagonal, worse direction (mesh_distance), RMS angle between normals, edges of more than two
+// triangles.
 //
 //   bench_simplify [--mesh MESH] [--faces 5000 1000 500] [--only TEXT...] [--repeat 3] [--subdivide N] [--threads 2]
 //   bench_simplify --measure HIGH LOW...    rows for meshes that others wrote, OBJ files of triangles
 //   bench_simplify --write FILE.obj         the mesh, subdivided, for the peers' scripts
 // --subdivide cuts each triangle into four, N times, and moves the vertices along their normals by noise of an eighth
-// of an edge, so that it is no plane's.
+// of an edge, so that no region is planar.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Count_ratio_stop_predicate.h>
@@ -92,7 +92,7 @@ TriangleMesh from_surface(const Surface& surface) {
   return mesh;
 }
 
-/// A simplifier: to `faces` triangles, adding to `cost`.
+/// A simplifier: reduces a mesh to `faces` triangles, adding its time to `cost`.
 using Simplifier = std::function<TriangleMesh(const TriangleMesh&, int faces, Cost& cost)>;
 
 TriangleMesh cgal_lindstrom_turk(const TriangleMesh& mesh, int faces, Cost& cost) {
@@ -174,7 +174,7 @@ Simplifier ours(SimplifyQuality quality) {
   };
 }
 
-/// Kiln's --engine cgal: CGAL on an OpenMesh mesh, with Kiln's borders and limits.
+/// Simplifies by Kiln's --engine cgal: CGAL on an OpenMesh mesh, with Kiln's borders and limits.
 Simplifier ours_by_cgal(CollapseCost collapse_cost) {
   return [collapse_cost](const TriangleMesh& mesh, int faces, Cost& cost) {
     TriangleMesh result;
@@ -187,8 +187,8 @@ Simplifier ours_by_cgal(CollapseCost collapse_cost) {
   };
 }
 
-/// Root mean square angle between the normals of `high` and those of `low` where it is nearest, degrees, over the
-/// triangles of `high` by area.
+/// Computes the root mean square angle between the normals of `high` and those of `low` at the nearest point, degrees,
+/// over the triangles of `high` by area.
 double normal_error(const TriangleMesh& high, const TriangleMesh& low) {
   const NearestSurface surface(low);
   double sum = 0, area = 0;
@@ -235,7 +235,7 @@ void print_row(const std::string& name, const Cost& cost, const TriangleMesh& hi
   std::fflush(stdout);
 }
 
-/// Triangles of an OBJ file as they are there: load_mesh would mend what is to be counted.
+/// Reads the triangles of an OBJ file unchanged: load_mesh would repair what is to be counted.
 TriangleMesh load_unrepaired(const std::string& file) {
   std::ifstream stream(file);
   if (!stream) throw std::runtime_error("cannot read " + file);
@@ -329,7 +329,7 @@ int main(int argc, char** argv) {
       if (wanted) chosen.push_back(entry);
     }
     for (const int target : faces) {
-      // Interleaved: what else the machine does falls on all.
+      // Interleaves the simplifiers, so that other load on the machine falls on all of them.
       std::vector<Cost> costs(chosen.size());
       std::vector<TriangleMesh> meshes(chosen.size());
       for (int i = 0; i < repeat; ++i)

@@ -30,7 +30,7 @@ struct Arguments {
   int width = 1280, height = 720, rounds = 20;
 };
 
-/// Milliseconds of a frame, of many.
+/// Milliseconds per frame, over many frames.
 struct FrameTime {
   double least = 0, median = 0;
 };
@@ -94,7 +94,8 @@ void compare_techniques(const Arguments& arguments, const PrtAsset& asset, const
     }
 }
 
-/// A queue of the same asset, each behind the one before, drawn from the last to the first: the worst order.
+/// Compares forward and deferred shading of a queue of the same asset, each behind the one before, drawn from the last
+/// to the first: the worst order.
 void compare_shading(const Arguments& arguments, const PrtAsset& asset) {
   const Frame frame(arguments.width, arguments.height);
   const AppearanceFrame appearance(arguments.width, arguments.height, false);
@@ -123,9 +124,9 @@ void compare_shading(const Arguments& arguments, const PrtAsset& asset) {
   }
 }
 
-/// The error of lighting an unshadowed mesh by `count` samples of incident light, against the light of every vertex:
-/// the relative L2 of exit radiance over 18 directions to a ball that stands `distance` half-diagonals from the centre.
-/// `inverse_distance`: contributions as [Chapter 2010] means them, 1 / D_s.
+/// Computes the error of lighting an unshadowed mesh by `count` samples of incident light, against the light at every
+/// vertex: the relative L2 of exit radiance over 18 directions to a ball that stands `distance` half-diagonals from the
+/// centre. `inverse_distance`: contributions as intended by [Chapter 2010], 1 / D_s.
 double error_of_samples(const TriangleMesh& mesh, int count, double distance, bool inverse_distance) {
   const BoundingBox box = bounding_box(mesh);
   const double unit = 0.5 * static_cast<double>(box.diagonal());

@@ -8,7 +8,7 @@
 
 namespace kiln {
 
-/// Wall-clock and processor seconds of a piece of work, of all threads.
+/// Wall-clock and processor seconds of a piece of work, over all threads.
 struct Cost {
   double wall = std::numeric_limits<double>::infinity(), cpu = std::numeric_limits<double>::infinity();
 

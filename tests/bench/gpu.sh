@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Measures on a machine with a GPU what the programs built elsewhere do there: the EGL bake engine, the techniques of
+# Measures, on a machine with a GPU, programs that were built elsewhere: the EGL bake engine, the techniques of
 # relighting, and bounces. Needs bash, coreutils and the GPU's own driver; libraries that the machine lacks are carried
 # along.
 #
@@ -11,8 +11,8 @@
 #                      [--receivers 262144] [--seconds 450] [--device auto]
 #       measures, and writes one text file, which says too what did not run and why
 #
-# ASSET is a folder of `kiln build` (prt/, and small/ where it is compressed), HIGH its high mesh; without them the
-# engine alone is measured. No step begins that would not end within --seconds, as far as the ones before tell.
+# ASSET is a folder of `kiln build` (prt/, and small/ if it is compressed), HIGH its high mesh; without them only the
+# engine is measured. A step begins only if, judging by earlier ones, it ends within --seconds.
 set -u
 
 bin=build/release/bin asset='' high='' out=gpu.txt directions=10000 receivers=262144 seconds=450 device=auto pack=''
@@ -27,7 +27,7 @@ while [ $# -gt 0 ]; do
   shift 2
 done
 
-# The machine's own: the C library, and what comes with a driver.
+# Tests for libraries that belong to the machine: the C library, and those that come with a driver.
 is_machines_own() { [[ $1 =~ ^(ld-linux|libc\.|libm\.|libdl\.|libpthread|librt\.|libresolv|libGLX|libEGL_|libnvidia|linux-vdso) ]]; }
 
 if [ -n "$pack" ]; then
@@ -52,7 +52,7 @@ left() { echo $((seconds - (SECONDS - started))); }
 say() { printf '%s\n' "$*" | tee -a "$out"; }
 quote() { sed 's/^/    /' | tee -a "$out"; }
 
-# A program's libraries that the machine lacks, or has too old, from those carried along.
+# Provides a program's libraries that the machine lacks, or has in too old a version, from those carried along.
 provide() {
   local missing file
   for _ in 1 2 3 4 5; do
@@ -67,7 +67,7 @@ provide() {
   LD_LIBRARY_PATH=$work/lib ldd "$1" 2>&1 | grep 'not found' | sed 's/^[[:space:]]*//' | sort -u
 }
 
-# run LIMIT PROGRAM ARGUMENT...: its output in $work/stdout; false, and the reason said, where it does not run.
+# run LIMIT PROGRAM ARGUMENT...: leaves its output in $work/stdout; false, with the reason printed, if it does not run.
 run() {
   local limit=$1 program=$2 lacks status
   shift 2
@@ -99,7 +99,7 @@ say "Machine"
     echo "no nvidia-smi"
   fi
 } | quote
-# Containers often have NVIDIA's EGL and not the file that tells the loader of it.
+# Containers often have NVIDIA's EGL, but not the file that tells the loader about it.
 nvidia_egl=$({ ldconfig -p 2> /dev/null; PATH=$PATH:/sbin:/usr/sbin ldconfig -p 2> /dev/null; } | sed -n 's/.*libEGL_nvidia\.so\.0 .*=> //p' | head -n 1)
 if [ -n "$nvidia_egl" ] && ! ls /usr/share/glvnd/egl_vendor.d/*nvidia* /etc/glvnd/egl_vendor.d/*nvidia* > /dev/null 2>&1; then
   printf '{"file_format_version": "1.0.0", "ICD": {"library_path": "%s"}}\n' "$nvidia_egl" > "$work/10_nvidia.json"
@@ -112,7 +112,7 @@ fi
 say
 say "Bake engine (bench_bake_egl): directions x receivers x coefficients"
 engine="--receivers $receivers --gl-device $device"
-# engine_row TITLE DIRECTIONS OPTION...: a row of the table; the seconds in $took.
+# engine_row TITLE DIRECTIONS OPTION...: prints a row of the table; leaves the seconds in $took.
 engine_row() {
   local title=$1 count=$2
   shift 2
@@ -126,7 +126,7 @@ calibration=256
 if run 200 bench_bake_egl $engine --directions $calibration; then
   say "    renderer: $(sed -n 's/.*"renderer":"\(.*\)","seconds".*/\1/p' "$work/stdout")"
   small=$(field seconds)
-  # Ten runs in half of the time.
+  # Ten runs take half of the time.
   most=$(awk -v s="$small" -v c=$calibration -v t="$seconds" 'BEGIN { printf "%d", t / 20 * c / (s > 1e-3 ? s : 1e-3) }')
   whole=$directions
   if [ "$most" -lt "$directions" ]; then
@@ -143,7 +143,7 @@ if run 200 bench_bake_egl $engine --directions $calibration; then
   done
   if [ -n "$least" ]; then
     scaled=$(times "$least" "$(awk -v a="$directions" -v b="$whole" 'BEGIN { print a / b }')")
-    # The depth pass does not know of receivers, and the projection is what more bands add.
+    # Few receivers leave the depth pass, which does not depend on them; more bands add projection only.
     engine_row "64 receivers: the depth pass, nearly" "$whole" --bands 5 --receivers 64 && depth=$took
     engine_row "1 coefficient: without most of the projection" "$whole" --bands 1 && flat=$took
     for batch in 8 32 64 128; do engine_row "batches of $batch" "$whole" --bands 5 --batch $batch; done

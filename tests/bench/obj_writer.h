@@ -11,8 +11,8 @@
 
 namespace kiln {
 
-/// Writes a mesh as an OBJ file for other programs: vertices at one place become one, so that seams of an atlas are no
-/// borders; uvs, where there are any, are those of the corners, and so are normals, where they are asked for.
+/// Writes a mesh as an OBJ file for other programs: vertices at the same position become one, so that seams of an atlas
+/// are no borders; uvs, if there are any, belong to corners, and so do normals, if they are asked for.
 inline void write_peer_obj(const std::filesystem::path& file, const TriangleMesh& mesh, bool with_normals = false) {
   std::ofstream out(file);
   out.precision(9);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// compare_pictures A.png B.png MOST: whether two 8-bit pictures of one size differ by at most MOST in any value. Says
-// how much; exit status 0, or 1 where they differ by more or in size. Where both are transparent no colour counts.
+// Tests whether two 8-bit pictures of one size differ by at most MOST in any value: compare_pictures A.png B.png MOST.
+// Prints the difference; exit status 0, or 1 if they differ by more or in size. Where both are transparent, colour does
+// not count.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

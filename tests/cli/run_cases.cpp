@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// run_cases PROGRAMS CASES.json: runs command lines and holds what they do against what the file says.
+// Runs command lines and compares their effects with a file: run_cases PROGRAMS CASES.json.
 //
 // The file: {"setup": [commands], "cases": [{"name", "steps": [step]}]}. Each case gets a folder of its own with
-// sphere.obj (512 triangles) and what the setup's commands made. A step, all of it but "run" optional:
+// sphere.obj (512 triangles) and what the setup's commands made. Keys of a step, all optional except "run":
 //   "write":    {file: text}   first; null removes the file
 //   "cut":      {file: bytes}  first; keeps that many bytes
 //   "time":     {file: seconds since 1970}  first, its time
 //   "run":      [program, argument...]
 //   "status":   its exit status (0)
-//   "stderr", "stdout": [words that are there]; "json": true: stdout is one JSON object (else it is empty, unless words
-//   are given) "makes":    [files that are there afterwards] "gone": [files or folders that are not] "remade":   [files
-//   with a new time], "kept": [files with the old time]
-// A step that fails must leave the folder as it was, to the byte and without further files; "writes": true lifts that.
-// A case with a step's own keys is that one step.
+//   "stderr", "stdout": [words that are there]
+//   "json":     true: stdout is one JSON object; without it stdout is empty, unless words are given
+//   "makes":    [files that are there afterwards]
+//   "gone":     [files or folders that are not]
+//   "remade":   [files with a new time]
+//   "kept":     [files with the old time]
+// A failing step must leave the folder unchanged, byte for byte and without further files; "writes": true lifts that. A
+// case with a step's own keys is that one step.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -47,7 +50,7 @@ fs::path make_folder() {
   return pattern;
 }
 
-/// Every file's bytes, every folder's name.
+/// Records every file's bytes and every folder's name.
 Snapshot snapshot(const fs::path& folder) {
   Snapshot files;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
@@ -66,7 +69,7 @@ void set_time(const fs::path& file, std::int64_t seconds) {
   if (utimensat(AT_FDCWD, file.c_str(), times, 0) != 0) throw std::runtime_error(file.string() + " has no time");
 }
 
-/// An octahedron whose faces are split into four again and again, each new corner on the unit sphere: 8 *
+/// Makes an octahedron whose faces are split into four again and again, each new corner on the unit sphere: 8 *
 /// 4^subdivisions triangles.
 std::string sphere_obj(int subdivisions) {
   struct Point {
@@ -122,7 +125,7 @@ class Runner {
     fs::remove_all(template_, ignored);
   }
 
-  /// Whether all steps of the case do as they should; says what does not.
+  /// Runs a case; reports the steps that do not do as they should, and returns whether all do.
   bool passes(const Json& test) {
     fs::remove_all(folder_);
     fs::copy(template_, folder_, fs::copy_options::recursive);
@@ -208,8 +211,8 @@ class Runner {
   }
 
   fs::path programs_;
-  fs::path folder_;    // of the case that runs
-  fs::path template_;  // what each case starts from
+  fs::path folder_;    // folder of the current case
+  fs::path template_;  // initial content of every case's folder
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# test_driver.sh PROGRAMS: what kiln's cases cannot hold: builds that run side by side, are interrupted or killed, names
-# that are no UTF-8, disks that are full, and the stages' lists of metrics against the records of a build.
+# Tests what kiln's cases cannot: builds that run side by side, are interrupted or killed, names that are not UTF-8,
+# full disks, and the stages' lists of metrics against the records of a build. Usage: test_driver.sh PROGRAMS
 set -eu
 programs=$1
 work=$(mktemp -d)
@@ -10,7 +10,7 @@ cd "$work"
 kiln=$programs/kiln
 fail() { echo "FAILED: $*" >&2; exit 1; }
 
-# A bumpy ball of 2,048 triangles.
+# Makes a bumpy ball of 2,048 triangles.
 awk 'BEGIN {
   pi = atan2(0, -1); n = 32;
   for (i = 0; i <= n; ++i) for (j = 0; j < n; ++j) {
@@ -35,7 +35,7 @@ pipeline() { # DIRECTIONS ASSET...
   for asset; do echo "  $asset"; done
 }
 
-# One build at a time: the second waits, says so, and finds all done.
+# One build at a time: the second waits, says so, and finds everything done.
 pipeline 20000 'a: {mesh: ball.obj}' >pipeline.yaml
 $kiln build --until normals --quiet
 $kiln build --until bake 2>first & building=$!
@@ -45,14 +45,14 @@ wait $building
 if grep -q "another build is at work in out (process" second; then grep -q "nothing to do" second || fail "the second built as well"; fi
 [ -e out/a/prt/bake.json ] || fail "no bake"
 
-# An interrupted bake goes on by itself, to the same bytes; a checkpoint of other settings is none.
+# An interrupted bake resumes by itself, to the same bytes; a checkpoint of other settings is not used.
 pipeline 60000 'a: {mesh: ball.obj}' >pipeline.yaml
 status=0
 $kiln build --until bake 2>interrupted & building=$!
 sleep 1.5
 kill -TERM $building
 wait $building || status=$?
-if [ -e out/a/prt.checkpoint ]; then # else the machine was so fast that nothing was left to stop
+if [ -e out/a/prt.checkpoint ]; then # otherwise the machine was so fast that nothing was left to stop
   [ $status -eq 143 ] || fail "exit status $status of a build that was stopped"
   $kiln build --until bake 2>resumed
   grep -q "bake goes on from its checkpoint" resumed || fail "$(cat resumed)"
@@ -67,7 +67,7 @@ pipeline 64 'a: {mesh: ball.obj}' >pipeline.yaml
 $kiln build --until bake --quiet
 [ ! -e out/a/prt.checkpoint ] || fail "a foreign checkpoint is still there"
 
-# A build that is killed leaves no lock once what it ran has ended.
+# A killed build leaves no lock once the processes that it started have ended.
 pipeline 10000 'a: {mesh: ball.obj}' >pipeline.yaml
 $kiln build --until bake --quiet 2>killed & building=$!
 sleep 0.7
@@ -75,7 +75,7 @@ kill -KILL $building
 wait $building 2>/dev/null || true
 timeout 120 $kiln build --until bake --quiet || fail "the lock of a killed build"
 
-# Names that are no UTF-8, in the shell, make, the records and the report.
+# Names that are not UTF-8 work in the shell, make, the records and the report.
 latin=$(printf 'caf\351 (2)\nit'\''s $x;\134.obj')
 cp ball.obj "$latin"
 pipeline 64 >pipeline.yaml
@@ -87,7 +87,7 @@ grep -q "nothing to do" latin || fail "$(cat latin)"
 echo >>"$latin"
 $kiln build -n | grep -q simplify || fail "a change of a file of that name is not seen"
 
-# Every number of the records is known as a metric, and every one that is known is there or is of another asset.
+# Every number of the records is known as a metric, and every known metric is in the records, here or of another asset.
 pipeline 64 >pipeline.yaml
 cat >>pipeline.yaml <<EOF
   all:
@@ -117,12 +117,12 @@ for name in names:
     assert run.returncode == 0, name + ": " + run.stderr
 EOF
 
-# What is printed and does not get there is a failure.
+# Output that cannot be written is a failure.
 status=0
 $kiln list >/dev/full 2>full || status=$?
 [ $status -eq 1 ] && grep -q "No space left" full || fail "stdout that is full: $status $(cat full)"
 
-# A full disk, where one may be mounted.
+# A full disk is reported, where one may be mounted.
 mkdir small
 if mount -t tmpfs -o size=400k none small 2>/dev/null; then
   pipeline 64 'a: {mesh: ball.obj}' | sed '1i output: small/out' >pipeline.yaml

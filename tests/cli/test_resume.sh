@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# A bake that is stopped by a signal goes on with --resume to the same bytes: test_resume.sh PROGRAM_FOLDER. So do shards that are merged.
+# Tests that a bake stopped by a signal goes on with --resume to the same bytes, and that merged shards do:
+# test_resume.sh PROGRAM_FOLDER
 set -euo pipefail
 programs=$1
 high=/usr/share/glmark2/models/bunny.obj
@@ -24,12 +25,12 @@ for _ in $(seq 600); do
 done
 kill -INT $running
 wait $running || status=$?
-if [ $status -ne 0 ]; then  # else the machine was so fast that nothing was left to stop
+if [ $status -ne 0 ]; then  # otherwise the machine was so fast that nothing was left to stop
   [ $status -eq 130 ]
   [ ! -e stopped/ranges.json ]
   [ -e stopped.checkpoint/slab_0000.sums ]
 fi
-# A checkpoint holds for what is decided after it, such as the seams, and for no other sums.
+# A checkpoint is valid for other settings of later steps, such as the seams, but not for other sums.
 if [ $status -ne 0 ]; then
   cp -r stopped.checkpoint seams.checkpoint
   status=0

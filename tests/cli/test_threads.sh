@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# One thread and many give the same bytes: test_threads.sh PROGRAM_FOLDER. The whole pipeline, both backends; only the records, which hold
-# timings, may differ.
+# Tests that one thread and many give the same bytes: test_threads.sh PROGRAM_FOLDER. Runs the whole pipeline, with both
+# backends; only the records, which hold timings, may differ.
 set -euo pipefail
 programs=$1
 high=/usr/share/glmark2/models/bunny.obj
@@ -24,5 +24,5 @@ done
 diff --recursive --brief --exclude '*.json' "$work/1" "$work/2"
 for file in egl/ranges.json embree/ranges.json; do cmp "$work/1/$file" "$work/2/$file"; done
 files=$(find "$work/1" -type f | wc -l)
-[ "$files" -gt 30 ]  # a comparison of nothing would pass
+[ "$files" -gt 30 ]  # comparing nothing must not pass
 echo "$files files are the same on one thread and two"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# kiln-view in a window of a display that nobody sees (Xvfb): test_view.sh PROGRAM_FOLDER.
+# Tests kiln-view in a window of an invisible display (Xvfb): test_view.sh PROGRAM_FOLDER
 set -euo pipefail
 programs=$1
 high=/usr/share/glmark2/models/bunny.obj
@@ -8,7 +8,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
 fail() { echo "FAILED: $*"; exit 1; }
-# A free display of its own; the software renderer, whatever the machine has.
+# Provides a free display, with the software renderer on any machine.
 display() { xvfb-run --auto-servernum --server-args="-screen 0 800x600x24" env LIBGL_ALWAYS_SOFTWARE=1 "$@"; }
 same() { "$programs/compare_pictures" "$@" || fail "$1 is not $2"; }
 differ() { if "$programs/compare_pictures" "$@"; then fail "$1 is $2"; fi; }
@@ -70,13 +70,13 @@ render -o r_compressed.png --width 320 --height 240 --technique compressed --com
 render -o r_phong.png --width 320 --height 240 --technique phong
 render -o r_vertex.png --width 320 --height 240 --technique vertex-prt
 render -o r_narrow.png --width 311 --height 200
-# The samples are the same; they are averaged and curved by the GPU here, by the CPU there, both in float32, so that a value
-# halfway between two bytes may fall to either.
+# The samples are the same; they are averaged and tone-mapped by the GPU here, by the CPU there, both in float32, so
+# that a value halfway between two bytes may be rounded either way.
 for name in textured compressed phong vertex narrow; do same $name.png r_$name.png 1; done
 same deferred.png r_textured.png 1
 same back.png r_narrow.png 1
 same shots/hare_001.png back.png 0
-# Pictures that are not to be the same are told apart by the same means.
+# The same comparison finds differences between pictures that must differ.
 for name in compressed phong vertex difference; do differ $name.png textured.png 3; done
 differ turned.png back.png 3
 differ keys.png readout.png 3

@@ -60,7 +60,7 @@ def refuses(name, value, changes):
 
 DROP = object()
 
-# The committed schema of pipeline.yaml is what the option tables make.
+# The committed schema of pipeline.yaml is the one that the option tables make.
 made = json.loads(run("kiln", "schema"))
 if made != schemas["pipeline"].schema:
     faults.append("docs/schema/pipeline.schema.json is old; make it by: kiln schema > docs/schema/pipeline.schema.json")
@@ -78,7 +78,7 @@ with tempfile.TemporaryDirectory() as folder:
     run("kiln-probes", "post.obj", "-o", "probes", "--grid", "2x1x2", "--bands", "2", "--directions", "64", "--quiet")
     read = lambda name: json.loads(pathlib.Path(name).read_text())
 
-    # What was written fits.
+    # Written files conform to the schemas.
     for name, files in {
         "ranges": ["out/post/prt/ranges.json", "vertices/ranges.json", "hollow/ranges.json"],
         "pca": ["pca/pca.json"],
@@ -101,7 +101,7 @@ with tempfile.TemporaryDirectory() as folder:
         fits("pipeline", yaml.safe_load((sources / file).read_text()), file)
     fits("pipeline", yaml.safe_load(PIPELINE), "the pipeline of this test")
 
-    # What is broken does not.
+    # Damaged files do not.
     refuses("ranges", read("out/post/prt/ranges.json"), [
         (("format",), "kiln-prt-pca"), (("version",), 3), (("requires",), DROP), (("requires",), []), (("requires",), ["holograms"]),
         (("basis",), "complex"), (("bands",), 0), (("bits",), 12), (("width",), DROP), (("mesh",), "../atlas.drc"),

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs Kiln into a scratch prefix and uses it as a stranger would: test_install.sh SOURCE_FOLDER BUILD_FOLDER
+# Installs Kiln into a scratch prefix and uses it as an outsider would: test_install.sh SOURCE_FOLDER BUILD_FOLDER
 set -eu
 source_folder=$1 build_folder=$2
 scratch=$(mktemp -d)
@@ -10,7 +10,7 @@ fault() { echo "FAULT: $*"; exit 1; }
 cmake --install "$build_folder" --prefix "$scratch/prefix" > "$scratch/install.log"
 programs=$scratch/prefix/bin
 
-# A small asset, by the installed programs.
+# Makes a small asset with the installed programs.
 awk 'BEGIN { pi = 3.14159265; for (j = 1; j < 8; ++j) for (i = 0; i < 16; ++i) print "v", sin(pi * j / 8) * sin(pi * i / 8),
   cos(pi * j / 8), sin(pi * j / 8) * cos(pi * i / 8); print "v 0 1 0\nv 0 -1 0"
   for (i = 0; i < 16; ++i) { n = (i + 1) % 16; print "f", 113, 1 + i, 1 + n; print "f", 114, 97 + n, 97 + i
@@ -22,7 +22,7 @@ cd "$scratch"
 "$programs/kiln-normals" ball.obj atlas.drc -o normals/ --quiet
 "$programs/kiln-bake" atlas.drc --detail normals/ --occluder ball.obj -o prt/ --bands 3 --directions 256 --quiet
 
-# The examples, by CMake; and one by pkg-config.
+# Builds the examples by CMake, and one by pkg-config.
 cmake -S "$source_folder/examples" -B examples -DCMAKE_PREFIX_PATH="$scratch/prefix" -DCMAKE_BUILD_TYPE=Release > cmake.log
 cmake --build examples > build.log || { cat build.log; fault "the examples do not build"; }
 export PKG_CONFIG_PATH
@@ -32,7 +32,7 @@ library_folder=$(pkg-config --variable=libdir kiln-runtime)
 g++ "$source_folder/examples/cpu_radiance/main.cpp" -o by_pkg_config $(pkg-config --cflags --libs kiln-runtime) \
   -Wl,-rpath,"$library_folder"
 
-# A convex solid whose facing side a light of radiance 1 reaches: texels of a furnace have radiance 1, in all forms.
+# A convex solid: texels of a furnace have radiance 1, in all forms of the asset.
 point=$((64 * 32 + 32))
 furnace=$(examples/cpu_radiance prt/ ambient:1 $point)
 echo "$furnace" | awk '{ exit !($2 > .97 && $2 < 1.01 && $2 == $3 && $3 == $4) }' || fault "in a furnace: $furnace"
@@ -40,7 +40,7 @@ echo "$furnace" | awk '{ exit !($2 > .97 && $2 < 1.01 && $2 == $3 && $3 == $4) }
 if examples/cpu_radiance nowhere/ 45,30 0 2> error.txt; then fault "a missing folder is no fault"; fi
 grep -q "nowhere.*expected" error.txt || fault "the fault says: $(cat error.txt)"
 
-# The worked numbers of docs/format.md, to their last digit but for rounding.
+# The worked numbers of docs/format.md agree to their last digit, up to rounding.
 rows=0
 while read -r column row light red green blue; do
   found=$(examples/cpu_radiance "$source_folder/examples/post" "$light" $((32 * row + column)))
@@ -52,13 +52,13 @@ done < <(sed -nE 's/^\| \(([0-9]+), ([0-9]+)\) \| `([^`]+)` \| ([0-9.]+) \| ([0-
   "$source_folder/docs/format.md")
 [ "$rows" -ge 6 ] || fault "docs/format.md has $rows worked rows"
 
-# A picture of it, in which the ball's box reaches the edges: its disc is pi / 4 of a third of 512 x 512, less what its
-# facets cut off, and more than a quarter of that is lit.
+# A picture in which the ball's box reaches the edges: its disc is pi / 4 of a third of 512 x 512, minus what its facets
+# cut off, and more than a quarter of that is lit.
 examples/gl_viewer prt/ --picture ball.ppm
 tail -c +16 ball.ppm | od -An -v -tu1 -w3 | awk '{ if ($1 > 160) ++lit; if ($1 != 89) ++seen } END { print lit, seen
   exit !(lit > 17000 && seen > 55000 && seen < 68700) }' || fault "the picture's lit and seen pixels"
 
-# Nothing but the runtime is shown, and nothing under the GPL is in it.
+# Libraries export the runtime only, and contain nothing under the GPL.
 for library in "$build_folder"/lib/libkiln-runtime*.so; do
   nm -DC --defined-only "$library" | grep " T " | grep -v "kiln::runtime" && fault "$library shows more than its headers"
   nm -C "$library" | grep -E "CGAL::" && fault "$library has code of CGAL in it"

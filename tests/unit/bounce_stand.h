@@ -13,14 +13,14 @@
 
 namespace kiln {
 
-/// Turned inside out.
+/// Turns a mesh inside out.
 inline TriangleMesh inverted(TriangleMesh mesh) {
   for (Triangle& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   for (Eigen::Vector3f& normal : mesh.normals) normal = -normal;
   return mesh;
 }
 
-/// A scene that light bounces in, and receivers of it.
+/// A scene with bounces, and receivers in it.
 struct BounceStand {
   Occluders occluders;
   std::vector<Eigen::Vector3f> positions, normals;
@@ -39,8 +39,8 @@ struct BounceStand {
 
   Receivers receivers() const { return {positions, normals}; }
 
-  /// What the receivers get of the bounces alone, where the surface has the direct transfer `direct` (one row for each
-  /// point of the cache); the report goes to `report`.
+  /// Computes what the receivers get from the bounces alone, given the direct transfer `direct` of the surface (one row
+  /// for each point of the cache); the report goes to `report`.
   std::vector<TransferVectors> bounced(const SurfaceCache& cache, const TransferVectors& direct,
                                        const BounceTarget& target, BounceReport& report,
                                        const TransferVectors& receivers_direct) const {
@@ -52,7 +52,7 @@ struct BounceStand {
     return channels;
   }
 
-  /// A whole bake of the receivers.
+  /// Bakes the receivers, direct light and bounces.
   BakeResult bake(int seed = 1) const {
     TexelReceivers texels{static_cast<int>(positions.size()), 1, {}, positions, normals};
     for (std::uint32_t r = 0; r < positions.size(); ++r) texels.texels.push_back(r);

@@ -11,7 +11,7 @@
 
 namespace kiln {
 
-/// Writes glTF files for tests, by hand.
+/// Builds glTF files for tests.
 class GltfBuilder {
  public:
   using Json = nlohmann::json;
@@ -63,7 +63,7 @@ class GltfBuilder {
     return corners;
   }
 
-  /// A primitive of a mesh's positions, normals and triangles.
+  /// Makes a primitive of a mesh's positions, normals and triangles.
   Json primitive(const TriangleMesh& mesh) {
     Json result = {{"attributes", {{"POSITION", floats("VEC3", mesh.positions)}}},
                    {"indices", indices<std::uint32_t>(5125, corners_of(mesh))}};

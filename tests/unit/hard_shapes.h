@@ -12,11 +12,11 @@
 #include "mesh/triangle_mesh.h"
 #include "shapes.h"
 
-/// Meshes for tests that simplifiers find hard, generated.
+/// Generated meshes that are hard for simplifiers.
 namespace kiln::shapes {
 
-/// A closed surface about the y axis: `around` points of each of `rings` rings, from the lowest to the highest of the
-/// outside, with a point at either end. at(ring, angle) is a point; facing outwards where rings go upwards.
+/// Makes a closed surface about the y axis: `around` points on each of `rings` rings, from the lowest to the highest of
+/// the outside, with a point at either end. at(ring, angle) is a point; faces outwards if rings go upwards.
 inline TriangleMesh turned(int around, int rings, const Eigen::Vector3f& first, const Eigen::Vector3f& last,
                            const std::function<Eigen::Vector3f(int, float)>& at) {
   TriangleMesh mesh;
@@ -39,7 +39,7 @@ inline TriangleMesh turned(int around, int rings, const Eigen::Vector3f& first, 
   return mesh;
 }
 
-/// A closed bowl of radius 1, open upwards, with a wall of `wall`.
+/// Makes a closed bowl of radius 1, open upwards, with a wall of thickness `wall`.
 inline TriangleMesh thin_bowl(int around, int rings, float wall) {
   const auto at = [&](int ring, float angle) {
     const bool outside = ring < rings;
@@ -52,7 +52,7 @@ inline TriangleMesh thin_bowl(int around, int rings, float wall) {
   return turned(around, 2 * rings, {0, -1, 0}, {0, wall - 1, 0}, at);
 }
 
-/// A gear of radius 1 with `teeth` teeth and chamfers.
+/// Makes a gear of radius 1 with `teeth` teeth and chamfers.
 inline TriangleMesh gear(int teeth, int around_tooth) {
   constexpr float heights[] = {-0.2f, -0.2f, -0.2f, -0.15f, -0.05f, 0.05f, 0.15f, 0.2f, 0.2f, 0.2f};
   constexpr float shares[] = {0.3f, 0.6f, 0.95f, 1, 1, 1, 1, 0.95f, 0.6f, 0.3f};
@@ -66,8 +66,8 @@ inline TriangleMesh gear(int teeth, int around_tooth) {
   return turned(teeth * around_tooth, 10, {0, -0.2f, 0}, {0, 0.2f, 0}, at);
 }
 
-/// A box from -0.5 to 0.5 whose edges have caps `thin` high on them, one at every edge of its triangles, as CSG leaves
-/// them: closed.
+/// Makes a closed box from -0.5 to 0.5 with slivers of height `thin`, one at every edge of its triangles, as CSG leaves
+/// them.
 inline TriangleMesh box_with_slivers(int cells, float thin) {
   TriangleMesh mesh = cube(cells);
   const std::vector<Triangle> whole = mesh.triangles;
@@ -96,7 +96,7 @@ inline TriangleMesh box_with_slivers(int cells, float thin) {
   return mesh;
 }
 
-/// A number of 0 to 1 by a linear congruence (Numerical Recipes).
+/// Returns a number of 0 to 1 from a linear congruential generator [Press].
 inline float next_random(std::uint32_t& state) {
   state = state * 1664525u + 1013904223u;
   return static_cast<float>(state >> 8) / static_cast<float>(1 << 24);
@@ -108,7 +108,7 @@ inline TriangleMesh scaled(TriangleMesh mesh, const Eigen::Vector3f& factors) {
   return mesh;
 }
 
-/// `mesh` with `count` cubes of `size` strewn over a box of twice its extent.
+/// Adds to `mesh` `count` cubes of `size`, strewn over a box of twice its extent.
 inline TriangleMesh with_specks(TriangleMesh mesh, int count, float size) {
   const BoundingBox box = bounding_box(mesh);
   const TriangleMesh speck = scaled(cube(1), Eigen::Vector3f::Constant(size));
@@ -121,7 +121,7 @@ inline TriangleMesh with_specks(TriangleMesh mesh, int count, float size) {
   return mesh;
 }
 
-/// `parts` ellipsoids that go through each other along a bent line, as characters are put together.
+/// Makes `parts` ellipsoids that intersect along a bent line, as characters are assembled.
 inline TriangleMesh character(int parts, int levels) {
   TriangleMesh mesh;
   std::uint32_t state = 3;

@@ -20,21 +20,21 @@ namespace kiln {
 
 using Reader = SourceMesh (*)(const std::filesystem::path&);
 
-/// Files that a reader is tried on, in a folder that goes with the test.
+/// Files for testing a reader, in a folder that is removed after the test.
 class ImportFiles {
  public:
   ImportFiles(Reader reader, std::string name) : reader_(reader), name_(std::move(name)) {}
 
   std::filesystem::path write(const std::string& bytes) const {
     const std::filesystem::path file = scratch_.folder() / name_;
-    std::filesystem::remove(file);  // ext4 waits for the disk where a file is cut and written again
+    std::filesystem::remove(file);  // ext4 waits for the disk if a file is truncated and written again
     std::ofstream(file, std::ios::binary) << bytes;
     return file;
   }
 
   SourceMesh read(const std::string& bytes) const { return reader_(write(bytes)); }
 
-  /// Expects a refusal whose message names the file and has all of `parts`.
+  /// Expects a refusal whose message names the file and contains all of `parts`.
   void expect_refused(const std::string& bytes, const std::vector<std::string>& parts) const {
     const std::filesystem::path file = write(bytes);
     try {
@@ -48,7 +48,7 @@ class ImportFiles {
     }
   }
 
-  /// Reads `count` variants of a good file with bytes changed, cut out, doubled or cut off: each has to be read as a
+  /// Reads `count` variants of a good file with bytes changed, cut out, doubled or cut off: each must be read as a
   /// sound mesh or refused. Returns how many were refused.
   int mutate(const std::string& good, int count) const {
     std::mt19937 random(7);
@@ -105,7 +105,7 @@ class ImportFiles {
   std::string name_;
 };
 
-/// The bytes of a number, little-endian or big-endian.
+/// Returns the bytes of a number, little-endian or big-endian.
 template <class Value>
 std::string number_bytes(Value value, bool is_big = false) {
   std::string bytes(sizeof value, '\0');
@@ -114,13 +114,13 @@ std::string number_bytes(Value value, bool is_big = false) {
   return bytes;
 }
 
-/// How many warnings have a part.
+/// Counts the warnings that contain a text.
 inline long warnings_with(const SourceMesh& mesh, const std::string& part) {
   return std::count_if(mesh.warnings.begin(), mesh.warnings.end(),
                        [&](const std::string& warning) { return warning.find(part) != std::string::npos; });
 }
 
-/// The places of a face's corners.
+/// Lists the positions of a face's corners.
 inline std::vector<std::uint32_t> places_of(const SourceMesh& mesh, std::size_t face) {
   std::vector<std::uint32_t> places;
   for (const SourceMesh::Corner& corner : mesh.corners_of(mesh.faces[face])) places.push_back(corner.place);

@@ -17,7 +17,7 @@
 
 namespace kiln {
 
-/// What tests of readers share.
+/// Helpers shared by tests of readers.
 namespace import_support {
 
 inline std::filesystem::path write(const std::filesystem::path& file, const std::string& bytes) {
@@ -32,7 +32,7 @@ void append(std::string& bytes, Value value) {
   bytes.append(raw, sizeof value);
 }
 
-/// The volume that the faces enclose; negative where they are inside out.
+/// Computes the volume that the faces enclose; negative if they are inside out.
 inline double signed_volume(const SourceMesh& mesh) {
   double sum = 0;
   for (const SourceMesh::Face& face : mesh.faces) {
@@ -43,7 +43,7 @@ inline double signed_volume(const SourceMesh& mesh) {
   return sum / 6;
 }
 
-/// The least cosine between a corner's normal and its face's.
+/// Finds the smallest cosine between a corner's normal and its face's.
 inline double worst_normal(const SourceMesh& mesh) {
   double worst = 1;
   for (const SourceMesh::Face& face : mesh.faces) {
@@ -57,7 +57,7 @@ inline double worst_normal(const SourceMesh& mesh) {
   return worst;
 }
 
-/// The message with which `read` refuses `file`; empty where it does not.
+/// Returns the message with which `read` refuses `file`; empty if it does not.
 inline std::string refusal(const std::function<SourceMesh(const std::filesystem::path&)>& read,
                            const std::filesystem::path& file) {
   try {
@@ -74,8 +74,8 @@ inline bool warns(const SourceMesh& mesh, const std::string& part) {
   return false;
 }
 
-/// Reads `rounds` damaged copies of a good file: each is read or refused, whatever was changed. What is read is sound.
-/// Gives how many were refused.
+/// Reads `rounds` damaged copies of a good file: each must be refused or read as a sound mesh. Returns how many were
+/// refused.
 inline int read_damaged(const std::function<SourceMesh(const std::filesystem::path&)>& read,
                         const std::filesystem::path& file, const std::string& good, int rounds, std::size_t first = 0) {
   std::mt19937 random(7);

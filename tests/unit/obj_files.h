@@ -27,7 +27,7 @@ class ObjFiles : public testing::Test {
 
   SourceMesh read(const std::string& obj) const { return read_obj(write("a.obj", obj)); }
 
-  /// What read() throws, or "no error".
+  /// Returns what read() throws, or "no error".
   std::string refusal(const std::string& obj) const {
     try {
       read(obj);
@@ -47,7 +47,7 @@ inline testing::AssertionResult says(const std::string& text, const std::vector<
   return testing::AssertionSuccess();
 }
 
-/// Whether there is one warning alone, which has all these parts.
+/// Tests whether there is exactly one warning, which contains all of `parts`.
 inline testing::AssertionResult warns_only(const SourceMesh& mesh, const std::vector<std::string>& parts) {
   if (mesh.warnings.size() != 1) {
     testing::AssertionResult failure = testing::AssertionFailure() << mesh.warnings.size() << " warnings:";

@@ -14,11 +14,11 @@
 
 namespace kiln {
 
-/// A path tracer for tests, which shares nothing with the bake but Embree: random paths by cosine, ray by ray, albedo
-/// by triangle, geometric normals of the triangles that were hit.
+/// A path tracer for tests, which shares nothing with the bake except Embree: random paths by cosine, ray by ray,
+/// albedo per triangle, geometric normals of the triangles that are hit.
 class PathTracer {
  public:
-  /// Albedo of each triangle.
+  /// Stores the albedo of each triangle.
   PathTracer(const TriangleMesh& mesh, std::vector<Eigen::Vector3f> albedos)
       : mesh_(mesh), albedos_(std::move(albedos)), device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -43,8 +43,8 @@ class PathTracer {
   PathTracer(const PathTracer&) = delete;
   PathTracer& operator=(const PathTracer&) = delete;
 
-  /// What one random path brings to a point of albedo 1 with this normal: the sky's light, `sky(direction)`, where the
-  /// path leaves the scene after at most `bounces` reflections, else 0.
+  /// Follows one random path from a point of albedo 1 with this normal; returns the sky's light, `sky(direction)`, if
+  /// the path leaves the scene after at most `bounces` reflections, else 0.
   template <class Sky>
   Eigen::Vector3d path(Eigen::Vector3f point, Eigen::Vector3f normal, int bounces, float offset, const Sky& sky,
                        std::mt19937& random) const {
@@ -72,7 +72,7 @@ class PathTracer {
       if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return throughput * sky(direction);
       const auto& [a, b, c] = mesh_.triangles[query.hit.primID];
       normal = (mesh_.positions[b] - mesh_.positions[a]).cross(mesh_.positions[c] - mesh_.positions[a]).normalized();
-      if (normal.dot(direction) >= 0) break;  // a back
+      if (normal.dot(direction) >= 0) break;  // a back face
       throughput = throughput.cwiseProduct(albedos_[query.hit.primID].cast<double>());
       point = origin + query.ray.tfar * direction;
     }
@@ -80,7 +80,7 @@ class PathTracer {
   }
 
  private:
-  /// A direction with the density cosine / pi.
+  /// Samples a direction with the density cosine / pi.
   static Eigen::Vector3f around(const Eigen::Vector3f& normal, std::mt19937& random) {
     std::uniform_real_distribution<float> uniform(0, 1);
     const float squared = uniform(random), angle = 2 * std::numbers::pi_v<float> * uniform(random);

@@ -24,7 +24,7 @@
 #include "runtime/draw/scene_renderer.h"
 #include "sh/basis.h"
 
-/// Baked folders for tests, written by the contract, and pictures of them.
+/// Baked folders for tests, written from the specification, and pictures of them.
 namespace kiln::test {
 
 /// A coefficient stack to be written; planes as in ranges.json, values in the planes' own units.
@@ -44,7 +44,7 @@ void write_plane(const std::filesystem::path& file, const Image<float>& plane, d
   write_png(file, stored);
 }
 
-/// Writes what kiln-bake would, by the contract.
+/// Writes a folder as kiln-bake would, from the specification.
 inline void write_asset(const std::filesystem::path& folder, const TriangleMesh& mesh, const Stack& stack) {
   nlohmann::json planes = nlohmann::json::array();
   for (std::size_t k = 0; k < stack.planes.size(); ++k) {
@@ -70,7 +70,7 @@ inline void write_asset(const std::filesystem::path& folder, const TriangleMesh&
   save_draco(folder / "atlas.drc", mesh);
 }
 
-/// Unoccluded transfer over the atlas of a convex mesh, the same in all channels; `tints` scales the channels.
+/// Makes unoccluded transfer over the atlas of a convex mesh, the same in all channels; `tints` scales the channels.
 inline Stack unoccluded_stack(const TriangleMesh& mesh, int width, int height, int bands, int bits,
                               std::vector<float> tints = {1}) {
   Stack stack{width, height, bands, static_cast<int>(tints.size()), bits, {}};
@@ -96,7 +96,7 @@ inline Stack unoccluded_stack(const TriangleMesh& mesh, int width, int height, i
   return stack;
 }
 
-/// Noise in every plane, of a range of its own; one plane is constant (min = max).
+/// Makes noise in every plane, each with a range of its own; one plane is constant (min = max).
 inline Stack noise_stack(int width, int height, int bands, int channels, int bits) {
   Stack stack{width, height, bands, channels, bits, {}};
   std::mt19937 random(7);
@@ -121,7 +121,7 @@ inline SceneView small_view(const TriangleMesh& mesh, double azimuth, double ele
   return views_of(settings, mesh.positions).front();
 }
 
-/// One asset under a distant light, without a window.
+/// Draws one asset under a distant light, without a window.
 inline Image<float> drawn(const PrtAsset& asset, const LightCoefficients& light, const SceneView& view) {
   AssetRenderer renderer(asset);
   return render_scene({{&renderer, {}, natural_technique(asset)}}, {{}, light, LightWindow::none}, view);

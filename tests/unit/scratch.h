@@ -8,7 +8,7 @@
 
 namespace kiln {
 
-/// A folder that goes with the test.
+/// A folder that is removed after the test.
 class Scratch {
  public:
   Scratch() {

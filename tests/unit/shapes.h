@@ -13,11 +13,11 @@
 
 #include "mesh/triangle_mesh.h"
 
-/// Meshes for tests, generated.
+/// Generated meshes for tests.
 namespace kiln::shapes {
 
-/// A square of `cells` x `cells` x 2 triangles in the plane y = `height`, from -side/2 to side/2 along x and z, facing
-/// +Y. One chart: +u along +x, +v along -z, `margin` of the atlas free at each border.
+/// Makes a square of `cells` x `cells` x 2 triangles in the plane y = `height`, from -side/2 to side/2 along x and z,
+/// facing +Y. One chart: +u along +x, +v along -z, `margin` of the atlas free at each border.
 inline TriangleMesh plane(int cells, float side = 1, float height = 0, float margin = 0.1f) {
   TriangleMesh mesh;
   for (int j = 0; j <= cells; ++j)
@@ -37,7 +37,7 @@ inline TriangleMesh plane(int cells, float side = 1, float height = 0, float mar
   return mesh;
 }
 
-/// A sphere about the origin: an icosahedron whose triangles are cut into four `levels` times. Normals, no uvs.
+/// Makes a sphere about the origin: an icosahedron whose triangles are cut into four `levels` times. Normals, no uvs.
 inline TriangleMesh icosphere(int levels, float radius = 1) {
   TriangleMesh mesh;
   const float golden = 1.6180339887f;
@@ -49,7 +49,7 @@ inline TriangleMesh icosphere(int levels, float radius = 1) {
         p[(axis + 2) % 3] = b;
         mesh.positions.push_back(p.normalized());
       }
-  // Twelve vertices; three that are an edge's length apart from each other are a face.
+  // Makes faces of the twelve vertices: any three that are an edge's length apart from each other.
   const float edge = 2 / std::sqrt(1 + golden * golden) * 1.01f;
   const auto near = [&](std::uint32_t a, std::uint32_t b) {
     return (mesh.positions[a] - mesh.positions[b]).norm() < edge;
@@ -85,9 +85,9 @@ inline TriangleMesh icosphere(int levels, float radius = 1) {
   return mesh;
 }
 
-/// A sphere about the origin made of a cube's six sides, each of `cells` x `cells` x 2 triangles and one chart of its
-/// own in a 3 x 2 grid, `margin` of the atlas free around each. Vertices are split at the charts' borders; normals are
-/// the sphere's.
+/// Makes a sphere about the origin from a cube's six sides, each of `cells` x `cells` x 2 triangles and one chart of
+/// its own in a 3 x 2 grid, with `margin` of the atlas free around it. Vertices are split at the charts' borders;
+/// normals are the sphere's.
 inline TriangleMesh cube_sphere(int cells, float radius = 1, float margin = 0.02f) {
   TriangleMesh mesh;
   for (int side = 0; side < 6; ++side) {
@@ -118,7 +118,8 @@ inline TriangleMesh cube_sphere(int cells, float radius = 1, float margin = 0.02
   return mesh;
 }
 
-/// A closed cube from -0.5 to 0.5, each side of `cells` x `cells` x 2 triangles, vertices shared. No normals, no uvs.
+/// Makes a closed cube from -0.5 to 0.5, each side of `cells` x `cells` x 2 triangles, vertices shared. No normals, no
+/// uvs.
 inline TriangleMesh cube(int cells) {
   TriangleMesh mesh;
   std::map<std::array<int, 3>, std::uint32_t> at_place;
@@ -149,8 +150,8 @@ inline TriangleMesh cube(int cells) {
   return mesh;
 }
 
-/// An open sheet of `cells` x `cells` x 2 triangles about the unit square of the xz plane, facing +Y, with a hill in
-/// the middle and a border of `waves` sine waves a side, `amplitude` high. No normals, no uvs.
+/// Makes an open sheet of `cells` x `cells` x 2 triangles about the unit square of the xz plane, facing +Y, with a hill
+/// in the middle and a border of `waves` sine waves a side, `amplitude` high. No normals, no uvs.
 inline TriangleMesh wavy_sheet(int cells, int waves = 3, float amplitude = 0.05f) {
   TriangleMesh mesh = plane(cells);
   mesh.normals.clear();
@@ -166,8 +167,8 @@ inline TriangleMesh wavy_sheet(int cells, int waves = 3, float amplitude = 0.05f
   return mesh;
 }
 
-/// A patch of a cylinder of radius 1 about the y axis, `height` high, that goes `angle` radians around, facing
-/// outwards. No normals, no uvs.
+/// Makes a patch of a cylinder of radius 1 about the y axis, `height` high, covering `angle` radians, facing outwards.
+/// No normals, no uvs.
 inline TriangleMesh cylinder_patch(int cells, float height, float angle) {
   TriangleMesh mesh = plane(cells);
   mesh.normals.clear();
@@ -179,7 +180,7 @@ inline TriangleMesh cylinder_patch(int cells, float height, float angle) {
   return mesh;
 }
 
-/// A torus about the y axis, `cells` x `cells` x 2 triangles: genus 1, closed. No normals, no uvs.
+/// Makes a torus about the y axis, `cells` x `cells` x 2 triangles: genus 1, closed. No normals, no uvs.
 inline TriangleMesh torus(int cells, float radius = 1, float tube_radius = 0.4f) {
   TriangleMesh mesh;
   const float step = 2 * 3.14159265f / static_cast<float>(cells);
@@ -199,7 +200,7 @@ inline TriangleMesh torus(int cells, float radius = 1, float tube_radius = 0.4f)
   return mesh;
 }
 
-/// Both meshes' positions and triangles, the second one moved; other attributes are dropped.
+/// Joins both meshes' positions and triangles, the second mesh moved; other attributes are dropped.
 inline TriangleMesh joined(const TriangleMesh& first, const TriangleMesh& second, const Eigen::Vector3f& move) {
   TriangleMesh mesh;
   mesh.positions = first.positions;

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The house keeps its arrows: test_house.sh SOURCE_FOLDER BENCH_BAKE_EGL
+# Checks the rules of the house: test_house.sh SOURCE_FOLDER BENCH_BAKE_EGL
 set -u
 source_folder=$1 engine_program=$2
 faults=0
@@ -15,7 +15,7 @@ for folder in "$source_folder"/stages/*/; do
   done
 done
 
-# The runtime stands on core alone, and its headers on none of the house.
+# The runtime includes core only, and its installed headers nothing of the house.
 grep -rnE '#include "(tools|lights|render|view|kiln)/' "$source_folder/runtime" --include=*.h --include=*.cpp |
   grep -v '"kiln/[a-z_/]*\.h"' && fault "the runtime includes tools"
 for stage in simplify atlas normals bake compress probes report; do
@@ -23,11 +23,11 @@ for stage in simplify atlas normals bake compress probes report; do
 done
 grep -rnE '^#include' "$source_folder/runtime/include" | grep -vE '#include (<[a-z_]+>|"kiln/)' && fault "installed headers include the house"
 
-# The EGL engine can be carried to a bare machine.
+# The EGL engine links nothing that a bare machine lacks.
 ldd "$engine_program" | grep -E 'OpenImageIO|embree|draco|OpenMesh|tbb|gmp|fmt|xxhash' && fault "the EGL engine links more than EGL, GL and Eigen"
 ldd "$engine_program" | grep -q EGL || fault "$engine_program does not look like the EGL engine"
 
-# Every source file says its licence; what the runtime is made of is not under the GPL.
+# Every source file states its licence; no part of the runtime is under the GPL.
 licence() { head -2 "$1" | grep -o 'SPDX-License-Identifier: .*' | cut -d' ' -f2; }
 while IFS= read -r file; do
   [ -n "$(licence "$file")" ] || fault "$file does not say its licence"

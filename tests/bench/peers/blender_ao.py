@@ -31,18 +31,18 @@ def inside_blender(arguments):
     import bpy
 
     folder, size, samples, cage, name = arguments[0], int(arguments[1]), int(arguments[2]), float(arguments[3]), arguments[4]
-    seed = 1 if name == "reference" else 0  # the samples of a map are not to be some of the reference's
+    seed = 1 if name == "reference" else 0  # the samples of a map must differ from the reference's
     bpy.ops.wm.read_factory_settings(use_empty=True)
 
     def load(file):
-        # No turning of axes: object space is that of the file. Normals are the file's.
+        # Keeps the axes: object space is that of the file. Normals are the file's.
         bpy.ops.wm.obj_import(filepath=os.path.join(folder, file), forward_axis="Y", up_axis="Z")
         return bpy.context.selected_objects[0]
 
     high, low = load("high.obj"), load("low.obj")
     scene = bpy.context.scene
     scene.world = bpy.data.worlds.new("world")
-    scene.world.light_settings.distance = 1000 * max(high.dimensions)  # as good as without an end
+    scene.world.light_settings.distance = 1000 * max(high.dimensions)  # practically unlimited
     scene.render.engine = "CYCLES"
     scene.cycles.device = "CPU"
     scene.cycles.samples = samples
@@ -57,7 +57,7 @@ def inside_blender(arguments):
     material.node_tree.nodes.active = node
     low.data.materials.clear()
     low.data.materials.append(material)
-    # The low mesh is no occluder: it would cover the high one.
+    # Hides the low mesh from rays: it would cover the high one.
     for kind in ("visible_diffuse", "visible_shadow", "visible_transmission", "visible_glossy"):
         setattr(low, kind, False)
     bpy.ops.object.select_all(action="DESELECT")

@@ -25,7 +25,7 @@ def inside_blender(arguments):
     bpy.ops.wm.read_factory_settings(use_empty=True)
 
     def load(name):
-        # No turning of axes: object space is that of the file.
+        # Keeps the axes: object space is that of the file.
         bpy.ops.wm.obj_import(filepath=os.path.join(folder, name), forward_axis="Y", up_axis="Z")
         loaded = bpy.context.selected_objects[0]
         for polygon in loaded.data.polygons:
