@@ -27,7 +27,7 @@ std::vector<std::uint8_t> all_unknown(const TexelReceivers& receivers) {
   return std::vector<std::uint8_t>(receivers.texels.size(), 0);
 }
 
-/// The open transfer less `taken(position)` of it.
+/// Makes open transfer minus the share `taken(position)` of it.
 template <class Taken>
 TransferVectors shadowed(const TexelReceivers& receivers, const Taken& taken) {
   const ShBasis basis(bands);
@@ -40,7 +40,7 @@ TransferVectors shadowed(const TexelReceivers& receivers, const Taken& taken) {
   return transfer;
 }
 
-/// Looks the truth up, and counts.
+/// An engine that looks transfer up in `truth`, and counts the texels that it is asked for.
 struct Oracle {
   const TransferVectors& truth;
   std::size_t asked = 0;
@@ -133,7 +133,7 @@ TEST(Adaptive, KnownTexelsAreNotAskedFor) {
   EXPECT_EQ(transfer.values, truth.values);
 }
 
-/// A ball over a floor, baked for real.
+/// Bakes a ball over a floor with a real engine.
 struct Scene {
   TexelReceivers receivers = plane_texels();
   Occluders occluders;

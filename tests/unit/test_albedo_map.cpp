@@ -20,12 +20,12 @@ Eigen::Vector3f vector_at(const Image<float>& image, int i, int j) {
   return Eigen::Map<const Eigen::Vector3f>(image.pixel(i, j).data());
 }
 
-/// A colour that changes slowly over the unit sphere.
+/// Computes a colour that changes slowly over the unit sphere.
 Eigen::Vector3f smooth(const Eigen::Vector3f& p) {
   return {0.5f + 0.4f * std::sin(3 * p.x()), 0.5f + 0.4f * p.y(), 0.3f + 0.2f * p.x() * p.z()};
 }
 
-/// Squares of black and white, as hard-edged as the triangles of `high` are small.
+/// Colours squares black and white, with edges as sharp as the triangles of `high` are small.
 Eigen::Vector3f checkered(const Eigen::Vector3f& p) {
   const float wave = std::sin(8 * p.x()) * std::sin(8 * p.y()) * std::sin(8 * p.z() + 0.5f);
   return Eigen::Vector3f::Constant(wave > 0 ? 0.9f : 0.1f);
@@ -43,7 +43,8 @@ NormalsResult make(const TriangleMesh& high, const TriangleMesh& low, const Norm
   return make_normals(high, low, settings, {}, no_progress, albedo);
 }
 
-/// Half a step of 1/255 in sRGB, times the steepest slope of its decoding, 1.055^-2.4 * 2.4 * 1.055^1.4 = 2.275.
+/// Tolerance: half a step of 1/255 in sRGB, times the steepest slope of its decoding, 1.055^-2.4 * 2.4 * 1.055^1.4 =
+/// 2.275.
 constexpr float half_step = 0.5f / 255 * 2.275f;
 
 TEST(AlbedoMap, HoldsTheColourOfEveryTexelsPoint) {
@@ -77,7 +78,7 @@ TEST(AlbedoMap, BothSidesOfSeamsAgree) {
   EXPECT_EQ(kept.seam_before.mean, kept.seam_after.mean);
   EXPECT_EQ(equal.seam_before.mean, kept.seam_after.mean);
   EXPECT_GT(kept.seam_after.mean, 0.015) << "the test needs seams that show";
-  // What is left is about the rounding of bytes: half a step a side.
+  // The rest is about the rounding of bytes: half a step a side.
   EXPECT_LT(equal.seam_after.mean, 2 * half_step);
   EXPECT_LT(equal.seam_after.largest, 0.25 * kept.seam_after.largest);
 }
@@ -120,7 +121,7 @@ TEST(AlbedoMap, OneThreadAndManyGiveTheSameBytes) {
 
 class AlbedoFolder : public testing::Test {
  protected:
-  /// As kiln-normals writes it.
+  /// Writes the map as kiln-normals does.
   void save(const NormalsResult& result) {
     write_png(path("normal.png"), result.normal);
     write_exr(path("position.exr"), result.position);

@@ -24,7 +24,7 @@ class AssetAlbedo : public testing::Test {
  protected:
   fs::path folder(const std::string& name = "prt") const { return scratch_.folder() / name; }
 
-  /// A baked folder of two bands whose ranges.json has `albedo`.
+  /// Writes a baked folder of two bands whose ranges.json has `albedo`.
   void write(const PrtAlbedo& albedo) const {
     OutputSet outputs(folder());
     const TriangleMesh mesh = shapes::plane(2);

@@ -49,7 +49,7 @@ class Copy {
     write(json);
   }
 
-  /// The same folder as version 2.
+  /// Rewrites the folder as version 2.
   void raise(const Json& required) const {
     set("/version", 2);
     set("/requires", required);
@@ -119,7 +119,7 @@ TEST(Versions, FoldersOfVersion1AreRead) {
     EXPECT_EQ(asset.albedo.known, c.albedo);
     EXPECT_EQ(asset.albedo.constant, c.albedo ? Eigen::Vector3f(0.8f, 0.5f, 0.2f) : Eigen::Vector3f(1, 1, 1));
     EXPECT_EQ(asset.normal_space == NormalSpace::tangent, c.tangent);
-    // No texel and no vertex sees more than all of the sky. PCA of so few components overshoots.
+    // No texel and no vertex sees more than the whole sky. PCA with so few components overshoots.
     const std::vector<float> transfer = all_transfer(asset);
     for (std::size_t k = 0; k < transfer.size() && !c.clusters; k += 4) EXPECT_LT(transfer[k], 0.2825);
   }
@@ -141,7 +141,7 @@ TEST(Versions, Version1StandsForTheSameAsVersion2) {
     copy.set("/of_a_later_day", {{"key", "that is ignored"}});
     EXPECT_EQ(joined(faults_of(copy.folder())), "");
     EXPECT_EQ(all_transfer(load_prt_asset(copy.folder())), all_transfer(before));
-    // What is written of it is what was read.
+    // A written description reads back as the one that was read.
     Json rewritten = Json::parse(description_text(load_prt_description(copy.folder()))), expected = copy.read();
     expected.erase("of_a_later_day");
     EXPECT_EQ(nlohmann::json(rewritten), nlohmann::json(expected));
@@ -250,7 +250,7 @@ TEST(Check, FindsFoldersInAnAssetsFolder) {
   EXPECT_NE(joined(faults_of(both.folder())).find("has both"), std::string::npos);
 }
 
-/// Rows of the table of docs/format.md: "| (i, j) | `light` | R | G | B |".
+/// Reads the rows of the table of docs/format.md: "| (i, j) | `light` | R | G | B |".
 TEST(WorkedNumbers, AreWhatKilnComputes) {
   const PrtAsset asset = load_prt_asset(source_folder / "examples" / "post");
   const std::string page = read_text(source_folder / "docs" / "format.md");

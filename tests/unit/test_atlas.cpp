@@ -40,7 +40,7 @@ const TriangleMesh& bunny() {
   return mesh;
 }
 
-/// Packing is not what most tests are about: few angles make it quick.
+/// Makes settings with few angles, which packs quickly: most tests are not about packing.
 AtlasSettings quick_settings(const Extent& size = 512, int gutter = 4) {
   AtlasSettings settings;
   settings.size = size;
@@ -61,7 +61,7 @@ std::map<std::string, TriangleMesh> test_meshes() {
   return meshes;
 }
 
-/// What must hold for every atlas: each triangle once, nothing flipped, nothing on top of another, the gutter kept.
+/// Checks the rules of every atlas: each triangle once, nothing flipped, no overlap, the gutter kept.
 void expect_sound(const TriangleMesh& mesh, const AtlasResult& result, const AtlasSettings& settings) {
   // Each triangle at its old place, with its old corners.
   ASSERT_EQ(result.mesh.triangles.size(), mesh.triangles.size());
@@ -174,7 +174,8 @@ TEST(Atlas, OfAFlatGridIsOneChartWithoutStretch) {
 TEST(Atlas, OfADevelopableSurfaceHasNoStretch) {
   AtlasSettings settings;
   settings.max_stretch = 1.001;
-  // Between two of 48 creases of 3.6 degrees a facetted cylinder is flat: it unrolls exactly, and uvs have 16 bits.
+  // Between two of 48 creases of 3.6 degrees a facetted cylinder is flat: it unrolls exactly, except that uvs have 16
+  // bits.
   const AtlasMeasures measures = written(make_atlas(shapes::cylinder_patch(48, 3, 3), settings)).measures;
   EXPECT_EQ(measures.charts, 1);
   EXPECT_NEAR(measures.stretch.l2, 1, 1e-3);
@@ -269,7 +270,7 @@ TEST(Atlas, RefusesWhatCannotBe) {
   EXPECT_THROW(make_atlas(nothing, {}), BadInput);
 }
 
-/// Every texel whose centre lies in a triangle of the turned and scaled chart.
+/// Lists the texels whose centre lies in a triangle of the turned and scaled chart.
 std::set<std::pair<int, int>> covered_centres(const Chart& chart, double angle, double scale,
                                               const Eigen::Vector2d& origin) {
   std::set<std::pair<int, int>> result;
@@ -306,7 +307,7 @@ TEST(ChartBitmap, HasEveryTexelOfTheTrianglesAndFewMore) {
     }
 }
 
-/// A strip 1 wide bent to a C in space, whose uvs leave `gap` between its ends, and its flat twin.
+/// Makes a strip 1 wide, bent to a C in space, whose uvs leave `gap` between its ends, and its flat twin.
 Chart c_shape(TriangleMesh& mesh, double gap, bool apart_in_space) {
   Chart chart;
   const int cells = 24;
@@ -411,7 +412,7 @@ TEST(Packing, AtAGivenScaleTakesTheLeastHeightOrSquare) {
   EXPECT_THROW(pack_charts(cut.charts, settings), WrongUsage);
 }
 
-/// A search that takes the height found for lower than itself, by a rounding, never ends.
+/// Regression: a search that takes the height found for lower than itself, by a rounding, never ends.
 TEST(Packing, EndsAtAnyScale) {
   const ChartSet cut = cut_into_charts(analyse_surface(shapes::torus(8)), {});
   PackSettings settings;
@@ -444,7 +445,7 @@ TEST(Packing, PutsACrowdDownOnceAndWell) {
   const double share = area * packing.texels_per_unit * packing.texels_per_unit / (512 * 256);
   EXPECT_GT(share, 0.5);  // of some 0.65: triangles of 22 texels lose a sixth to a gutter of 2
 
-  // No two need the same texel, gutters included, and none sticks out.
+  // No two charts need the same texel, gutters included, and none sticks out.
   std::vector<int> owner(512 * 256, -1);
   for (std::size_t c = 0; c < charts.size(); ++c) {
     BitmapSettings bitmap;

@@ -43,7 +43,7 @@ class AtlasLayout : public ::testing::Test {
   fs::path folder_;
 };
 
-/// Packing is not what is tested here: few angles make it quick.
+/// Makes settings with few angles, which packs quickly: packing is not tested here.
 AtlasSettings quick_settings(const Extent& size, int gutter = 4) {
   AtlasSettings settings;
   settings.size = size;
@@ -57,7 +57,7 @@ TriangleMesh with_normals(TriangleMesh mesh) {
   return mesh;
 }
 
-/// Every triangle's texels, or its entry in the list.
+/// Checks that every triangle without texels is reported.
 void expect_told(const AtlasMeasures& measures, const TriangleMesh& atlas, const Extent& size) {
   const UvRaster raster = rasterise_uvs(atlas, size.width, size.height);
   std::vector<int> texels(atlas.triangles.size());
@@ -232,7 +232,7 @@ TEST_F(AtlasLayout, OddTrianglesGetTexelsOrAreTold) {
   EXPECT_EQ(of_crowd.uncovered_charts, 0);
 }
 
-/// Two squares side by side in the plane and in the texture: 0.1 to 0.4 and 0.6 to 0.9 of its width.
+/// Makes two squares side by side in the plane and in the texture: 0.1 to 0.4 and 0.6 to 0.9 of its width.
 constexpr char two_squares[] =
     "v 0 0 0\nv 1 0 0\nv 1 0 -1\nv 0 0 -1\nv 2 0 0\nv 2 0 -1\n"
     "vt 0.1 0.1\nvt 0.4 0.1\nvt 0.4 0.4\nvt 0.1 0.4\nvt 0.6 0.1\nvt 0.9 0.1\nvt 0.9 0.4\nvt 0.6 0.4\n";
@@ -269,7 +269,7 @@ TEST_F(AtlasLayout, KeepsSoundUvs) {
     EXPECT_LT(nearest, 2e-5f);  // a step of 16 bits
   }
 
-  // What Kiln makes passes its own test.
+  // Kiln's own atlases pass its test of uvs.
   const AtlasSettings own = quick_settings(128);
   EXPECT_FALSE(find_uv_defects(written(make_atlas(shapes::torus(12), own)).mesh, own).any());
 }

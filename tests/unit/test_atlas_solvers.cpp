@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What cutting and packing stand on: the linear solver of relaxation, and the search for free places in a grid.
+// Tests of the parts beneath cutting and packing: the linear solver of relaxation, and the search for free places in a
+// grid.
 
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
@@ -12,7 +13,7 @@
 namespace kiln {
 namespace {
 
-/// The edges of a grid of squares, each with a diagonal, in an order and a numbering of no system.
+/// Lists the edges of a grid of squares, each with a diagonal, in random order and numbering.
 struct GridGraph {
   std::size_t vertices;
   std::vector<BlockCholesky::Edge> edges;
@@ -77,7 +78,7 @@ TEST(BlockCholesky, RefusesWhatIsNotPositiveDefinite) {
   EXPECT_FALSE(solver.factorise({{1, 2, 1}, {1, 0, 1}}, {{0, 0, 0}}));
 }
 
-/// A chart of one or two runs a row, as rasterising would not make it: nothing of it is convex.
+/// Makes a chart of one or two runs per row, unlike any rasterised one: no part of it is convex.
 ChartBitmap ragged_bitmap(int width, int height, std::mt19937& random) {
   const auto pick = [&](int count) { return static_cast<int>(random() % static_cast<unsigned>(count)); };
   ChartBitmap bitmap;

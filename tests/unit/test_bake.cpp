@@ -23,7 +23,7 @@ namespace {
 
 constexpr double t_0 = 0.28209479;
 
-/// A triangulated rectangle spanned by two edges.
+/// Makes a triangulated rectangle spanned by two edges.
 void add_rectangle(TriangleMesh& mesh, const Eigen::Vector3f& corner, const Eigen::Vector3f& a,
                    const Eigen::Vector3f& b) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -64,7 +64,7 @@ struct Bench {
   }
 };
 
-/// Points of the unit sphere, which shadows only itself: the furnace.
+/// Makes points of the unit sphere, which shadows only itself: the furnace.
 Bench furnace() {
   Bench bench;
   bench.occluders = shapes::icosphere(5);
@@ -73,7 +73,7 @@ Bench furnace() {
   return bench;
 }
 
-/// The bunny's points, every `step`-th, scaled as a whole.
+/// Takes every `step`-th of the bunny's points, scaled as a whole.
 Bench bunny_bench(std::size_t step, float scale = 1) {
   Bench bench;
   bench.occluders = load_mesh("/usr/share/glmark2/models/bunny.obj");

@@ -11,8 +11,8 @@
 namespace kiln {
 namespace {
 
-/// A sky of three bands: bright above and to one side, the same in all colours. Band-limited, so that the transfer has
-/// all of it.
+/// Radiance of a sky of three bands: bright above and to one side, grey. Band-limited, so that transfer represents all
+/// of it.
 std::vector<double> sky_light() {
   std::vector<double> light(9, 0.0);
   light[0] = 3;

@@ -19,14 +19,14 @@ namespace {
 
 constexpr double t_0 = 0.28209479;
 
-/// `value` at every point, of one coefficient.
+/// Makes transfer of one coefficient that is `value` at every point.
 TransferVectors even_transfer(std::size_t points, float value) {
   TransferVectors transfer(points, 1);
   std::fill(transfer.values.begin(), transfer.values.end(), value);
   return transfer;
 }
 
-/// A profile (distance from the axis, height) turned about +Y; a profile that winds counter-clockwise faces outwards.
+/// Turns a profile (distance from the axis, height) about +Y; a profile that winds counter-clockwise faces outwards.
 TriangleMesh revolved(const std::vector<Eigen::Vector2f>& profile, int steps) {
   TriangleMesh mesh;
   const auto rows = static_cast<std::uint32_t>(profile.size());
@@ -47,7 +47,7 @@ TriangleMesh revolved(const std::vector<Eigen::Vector2f>& profile, int steps) {
   return mesh;
 }
 
-/// Receivers at the centres of every `step`-th triangle that is so far from the y axis, with its normal.
+/// Places receivers at the centres of every `step`-th triangle that is far enough from the y axis, with its normal.
 void stand_on_faces(BounceStand& stand, const TriangleMesh& mesh, std::size_t step, float from_axis) {
   for (std::size_t t = 0; t < mesh.triangles.size(); t += step) {
     const auto& [a, b, c] = mesh.triangles[t];
@@ -61,7 +61,7 @@ void stand_on_faces(BounceStand& stand, const TriangleMesh& mesh, std::size_t st
   }
 }
 
-/// Of a software GL renderer less is asked.
+/// Tests of bounces with each backend; those on a software GL renderer are smaller.
 class Bounces : public testing::TestWithParam<BakeBackend> {
  protected:
   bool egl() const { return GetParam() == BakeBackend::egl; }
@@ -114,7 +114,7 @@ TEST_P(Bounces, InsideOfASphereIsTheSameEverywhere) {
 }
 
 TEST_P(Bounces, BacksReflectNothing) {
-  // The same sphere facing outwards: its inside is all backs.
+  // The same sphere facing outwards: seen from inside, all faces are backs.
   BounceStand stand = this->stand();
   stand.occluders = join_occluders({shapes::icosphere(3)}, {SurfaceAlbedo::constant(Eigen::Vector3f{1, 1, 1})});
   for (const Eigen::Vector3f& point : sample_directions(Sampling::fibonacci, 50, 4)) {
@@ -166,14 +166,15 @@ TEST_P(Bounces, WhiteBowlInAFurnaceShinesAsTheFurnaceDoes) {
     dark = std::min(dark, radiance);
   }
   EXPECT_NEAR(mean, 1, tolerance);
-  // Without the bounces the inside has what its sky view is, half.
+  // Without bounces, points inside see half the sky.
   stand.settings.bounces = "0";
   const BakeResult direct = stand.bake();
   EXPECT_LT(*std::min_element(direct.channels[0].values.begin(), direct.channels[0].values.end()) / t_0, 0.55);
 }
 
-/// The part of a point's hemisphere, weighted by the cosine, that a rectangle x0..x1, z0..z1 at height h above it and
-/// parallel to it takes (Howell, "A catalog of radiation heat transfer configuration factors", B-4, by corners).
+/// Computes the part of a point's hemisphere, weighted by the cosine, that a rectangle x0..x1, z0..z1 at height h above
+/// it and parallel to it covers (Howell, "A catalog of radiation heat transfer configuration factors", B-4, by
+/// corners).
 double rectangle_above(double x0, double x1, double z0, double z1, double h) {
   const auto corner = [&](double x, double z) {
     const double a = x / h, b = z / h, p = std::sqrt(1 + a * a), q = std::sqrt(1 + b * b);
@@ -233,7 +234,7 @@ TEST_P(Bounces, ParallelPlatesExchangeWhatFormFactorsSay) {
 INSTANTIATE_TEST_SUITE_P(Bake, Bounces, testing::Values(BakeBackend::egl, BakeBackend::beams, BakeBackend::embree),
                          [](const auto& backend) { return backend_name(backend.param); });
 
-/// The bunny on a floor, both coloured; receivers on the bunny.
+/// Makes the bunny on a floor, both coloured; receivers on the bunny.
 BounceStand bunny_on_floor(std::size_t step) {
   BounceStand stand;
   TriangleMesh bunny = load_mesh("/usr/share/glmark2/models/bunny.obj");
@@ -330,7 +331,8 @@ TEST(BounceCount, AutomaticStopsUnderTheFloor) {
   const std::size_t taken = automatic.bounces->energy.size();
   EXPECT_TRUE(automatic.bounces->reached);
   ASSERT_GE(taken, 1u);
-  // As many bounces by number give the same bytes; the next one is below the floor, the last one above.
+  // The same number of bounces, given explicitly, gives the same bytes; the next bounce is below the floor, the last
+  // above.
   stand.settings.bounces = std::to_string(taken + 1);
   const BakeResult more = stand.bake();
   for (std::size_t b = 0; b < taken; ++b) EXPECT_EQ(more.bounces->energy[b], automatic.bounces->energy[b]);
@@ -393,7 +395,7 @@ TEST(SurfaceCache, CreasesStaySharp) {
   EXPECT_EQ(cache.size(), 24u);
   for (std::size_t p = 0; p < cache.size(); ++p) {
     EXPECT_NEAR(cache.point_normals[p].cwiseAbs().maxCoeff(), 1, 1e-6);
-    // On its own side, inside the border.
+    // On the triangle's own side, inside the border.
     const Eigen::Vector3f out = (cache.point_positions[p] - Eigen::Vector3f::Constant(0.5f));
     EXPECT_NEAR(out.dot(cache.point_normals[p]), 0.5, 1e-6);
   }

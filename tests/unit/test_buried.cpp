@@ -26,7 +26,7 @@ struct Points {
   Receivers view() const { return {positions, normals}; }
 };
 
-/// `count` points spread over the triangles from `first` to `last`, with the triangles' normals.
+/// Spreads `count` points over the triangles from `first` to `last`, with the triangles' normals.
 Points points_on(const TriangleMesh& mesh, std::size_t first, std::size_t last, std::size_t count) {
   Points points;
   for (std::size_t k = 0; k < count; ++k) {
@@ -48,7 +48,7 @@ std::size_t count_buried(const TriangleMesh& mesh, const Points& points) {
   return static_cast<std::size_t>(std::count(marks.begin(), marks.end(), 1));
 }
 
-/// Triangles of both, the second ones turned inside out.
+/// Joins the triangles of both meshes, the second ones turned inside out.
 TriangleMesh turned(TriangleMesh mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   return mesh;
@@ -143,8 +143,8 @@ TEST(Buried, SameForAnyThreads) {
   EXPECT_EQ(marks(1), marks(4));
 }
 
-/// A floor with uvs, and a closed block that stands in it, turned so that its edges cross texels at all angles. The
-/// block's own uvs cover nothing.
+/// Makes a floor with uvs, and a closed block that stands in it, turned so that its edges cross texels at all angles.
+/// The block's own uvs cover nothing.
 struct Stage {
   TriangleMesh mesh;
   Occluders occluders;
@@ -165,15 +165,14 @@ struct Stage {
     ray_offset = rounding_offset(mesh.positions);
   }
 
-  /// t_0 of points.
+  /// Computes t_0 of points.
   std::vector<float> openness(const Receivers& points) const {
     const RayScene scene(occluders.mesh);
     const std::vector<Eigen::Vector3f> directions = sample_directions(Sampling::fibonacci, 1024, 1);
     return transfer_by_rays(scene, points, directions, 1, ray_offset).values;
   }
 
-  /// What lookups of a plane baked for `receivers` show at points of the floor that are seen, less the truth there: the
-  /// most negative.
+  /// Finds the most negative error of lookups, at visible points of the floor, in a plane baked for `receivers`.
   float darkest_difference(const TexelReceivers& receivers) const {
     Image<float> plane(receivers.width, receivers.height, 1);
     const std::vector<float> values = openness(receivers.view());
@@ -202,7 +201,7 @@ TEST(Buried, NothingBlackBleedsOntoTheFloorBesideABlock) {
   const Stage stage;
   TexelReceivers receivers = receivers_on_low(stage.mesh, 64, 64, nullptr);
   const std::size_t covered = receivers.texels.size();
-  // As it is texels beneath the block are black, and lookups beside it see half of that.
+  // Without the treatment, texels beneath the block are black, and lookups beside it see half of that.
   EXPECT_LT(stage.darkest_difference(receivers), -0.1f);
 
   const BuriedReport report = set_aside_buried(receivers, stage.mesh, stage.occluders, stage.ray_offset);

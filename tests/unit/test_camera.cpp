@@ -22,7 +22,7 @@ Shape corners_of(const Eigen::Vector3f& lowest, const Eigen::Vector3f& highest) 
   return corners;
 }
 
-/// Bunnies are no boxes: a lopsided cloud.
+/// Makes a lopsided cloud of points, since real meshes are no boxes.
 Shape cloud() {
   std::mt19937 random(3);
   std::normal_distribution<float> normal;
@@ -32,7 +32,7 @@ Shape cloud() {
   return points;
 }
 
-/// Where a shape lies in the picture: from -1 to 1 across and up.
+/// Finds the box of a shape in the picture: from -1 to 1 across and up.
 struct Extents {
   float left = 9, right = -9, bottom = 9, top = -9;
 };
@@ -63,7 +63,7 @@ TEST(Camera, SilhouetteFillsThePicture) {
           // Floats of a picture of a few hundred pixels.
           constexpr float rounding = 2e-4f;
           EXPECT_LE(std::max({-extents.left, extents.right, -extents.bottom, extents.top}), fill + rounding);
-          // It touches the margin on both sides of one of the axes.
+          // The shape touches the margin on both sides of one of the axes.
           EXPECT_GE(std::max(extents.right - extents.left, extents.top - extents.bottom), 2 * fill - 2 * rounding);
         }
 }

@@ -44,7 +44,7 @@ SimplifySettings by_cgal(int faces, CollapseCost cost = CollapseCost::lindstrom_
   return settings;
 }
 
-/// What a collapse may not change.
+/// Topology of a mesh, which no collapse may change.
 struct Topology {
   int euler = 0;  ///< vertices - edges + triangles
   std::size_t components = 0;
@@ -80,8 +80,8 @@ Topology topology_of(const TriangleMesh& mesh) {
           find_components(mesh).count, static_cast<int>(loop_roots.size())};
 }
 
-/// The largest distance of points of `low` (corners and 45 points in each triangle, its edges among them) from `high`,
-/// by trying every triangle of that: no hierarchy, nor anything else that the engine decides by.
+/// Finds the largest distance of points of `low` (corners and 45 points in each triangle, its edges among them) from
+/// `high`, by trying every triangle: no hierarchy, nor anything else that the engine uses.
 double largest_distance(const TriangleMesh& low, const TriangleMesh& high) {
   constexpr int steps = 8;
   const auto corner = [](const TriangleMesh& mesh, const Triangle& t, int k) {
@@ -108,7 +108,7 @@ double diagonal_of(const TriangleMesh& mesh) {
 
 class CgalEnvelope : public testing::Test, protected Scratch {
  protected:
-  /// Simplifies as far as the envelope lets, and holds the file to it.
+  /// Simplifies as far as the envelope allows, and checks the written file against the envelope.
   SimplifyResult check(const TriangleMesh& mesh, double envelope, CollapseCost cost = CollapseCost::lindstrom_turk) {
     SimplifySettings settings = by_cgal(4, cost);
     settings.envelope = envelope;

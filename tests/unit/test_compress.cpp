@@ -35,10 +35,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// Transfer vectors of a texel, by column and row.
+/// Transfer vector of a texel, as a function of column and row.
 using Transfer = std::function<Eigen::VectorXd(int, int)>;
 
-/// A plain asset of 16 bits with the plane of shapes::plane, which leaves a tenth of the atlas uncovered at each side.
+/// Makes a plain asset of 16 bits with the plane of shapes::plane, which leaves a tenth of the atlas free at each side.
 PrtAsset make_asset(int width, int height, int bands, int channels, const Transfer& transfer) {
   PrtAsset asset;
   asset.ranges_file = "made in memory";
@@ -72,7 +72,7 @@ PrtAsset make_asset(int width, int height, int bands, int channels, const Transf
   return asset;
 }
 
-/// Smooth weights of `rank` fixed vectors about a mean.
+/// Makes smooth weights of `rank` fixed vectors about a mean.
 Transfer of_rank(int rank, int length) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> value(-0.1, 0.1);
@@ -87,7 +87,7 @@ Transfer of_rank(int rank, int length) {
   };
 }
 
-/// Two parts of the atlas, each of rank two, in different subspaces.
+/// Makes two parts of the atlas, each of rank two, in different subspaces.
 Transfer of_two_clusters(int length, int border) {
   return [=](int i, int j) {
     Eigen::VectorXd vector = Eigen::VectorXd::Constant(length, 0.05);
@@ -112,7 +112,7 @@ double error_of(const TransferSource& source, double residual) {
   return std::sqrt(std::max(0.0, residual) / source.squared_norm());
 }
 
-/// Writes what the command line would, and reads it.
+/// Writes a compressed folder as the command line would, and reads it.
 PrtAsset written(const fs::path& folder, const PrtAsset& asset, const CompressResult& result, Json* metrics = nullptr) {
   const fs::path input = folder / "in", output = folder / "out";
   fs::create_directories(input);
@@ -171,7 +171,7 @@ TEST(Pca, OfTheRightRankLosesNothing) {
   EXPECT_GT(error_of(source, all.residual[3]), 0.02);
   for (int n = 0; n < 9; ++n) EXPECT_GE(all.residual[n], all.residual[n + 1]) << n;
 
-  // What the eigenvalues promise is what texels lose.
+  // Texels lose as much as the eigenvalues predict.
   for (const int n : {0, 2, 3, 4, 9}) {
     const TexelModel model = texel_model(source, all.model(n), gutter_owners(source, 4));
     if (n == 0) continue;
@@ -400,7 +400,7 @@ TEST(Compress, ShowsWhatMoreErrorWouldSave) {
     if (candidate.feasible) continue;
     ++beyond;
     EXPECT_LT(candidate.bytes, result.chosen.bytes);
-    // What the model leaves, and at most a quarter more for rounding.
+    // The model's residual, plus at most a quarter more for rounding.
     const double left =
         std::sqrt(all.residual[static_cast<std::size_t>(candidate.components)] / TransferSource(asset).squared_norm());
     EXPECT_GE(candidate.error, left);

@@ -136,7 +136,7 @@ assets:
   plain: {mesh: a.obj, compress: false}
 )");
   const std::vector<MakeRule> rules = make_rules(pipeline);
-  // Between the bake, whose record it waits for, and the report, which is told of it.
+  // Runs between the bake, whose record it waits for, and the report, which uses it.
   const StageRun& compress = run_of(rules, "smaller", "compress");
   EXPECT_EQ(compress.command, (std::vector<std::string>{"kiln-compress", "out/smaller/prt/", "-o", "out/smaller/small/",
                                                         "--max-error", "0.01", "--clusters", "64"}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the driver keeps between builds: what a stage read and made, by content; and what it tells people.
+// Tests of what the driver keeps between builds, the hashes of what a stage read and made, and of its messages.
 #include <fcntl.h>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A stage "cook" that reads a.obj and, as its record alone says, wood.png; it makes cook.json, pot.drc and, as its
-/// record alone says, spoon.png.
+/// A stage "cook" that reads a.obj and, by its record only, wood.png; it makes cook.json, pot.drc and, by its record
+/// only, spoon.png.
 class Stage : public testing::Test {
  protected:
   Stage() {
@@ -109,7 +109,7 @@ TEST_F(Stage, AStampSavesReading) {
   stamp.inode = status.st_ino;
   EXPECT_EQ(FileHashes(scratch_.folder()).stamp("a.obj", &stamp)->hash, "trusted");
   write("a.obj", "fIrst");
-  set_year("a.obj", 1999);  // which changes the time of the inode all the same
+  set_year("a.obj", 1999);  // changes the inode's own time all the same
   EXPECT_NE(FileHashes(scratch_.folder()).stamp("a.obj", &stamp)->hash, "trusted");
 }
 

@@ -21,7 +21,7 @@ using import_support::warns;
 using import_support::worst_normal;
 using import_support::write;
 
-/// A cube from `low` to `low` + 2 of six squares, as an FBX 7.4 file as text, whose parts tests change.
+/// Writes a cube from `low` to `low` + 2 of six squares, as an FBX 7.4 text file, whose parts tests change.
 struct Cube {
   std::string settings;                 // lines of GlobalSettings
   std::string model, parent, material;  // lines of properties
@@ -45,7 +45,7 @@ struct Cube {
   static constexpr int corners[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                         {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
 
-  /// x of vertex 0 to 7 is its lowest bit, y the next, z the highest.
+  /// Lists eight vertices: the lowest bit of a vertex's number is its x, the next its y, the highest its z.
   std::vector<double> vertices() const {
     std::vector<double> result;
     for (int i = 0; i < 8; ++i)
@@ -88,7 +88,7 @@ struct Cube {
   }
 };
 
-/// The records of a binary file.
+/// Writes the records of a binary file.
 class BinaryWriter {
  public:
   explicit BinaryWriter(std::uint32_t version) : wide_(version >= 7500), bytes_("Kaydara FBX Binary  \0\x1a\0", 23) {

@@ -76,7 +76,7 @@ class GltfPacked : public testing::Test {
     return import_support::refusal(read_gltf, write(scratch_.folder() / "packed.glb", builder.glb()));
   }
 
-  /// How far the vertices are off the unit sphere at most.
+  /// Returns the largest distance of the vertices from the unit sphere.
   static double worst_radius(const SourceMesh& mesh) {
     double worst = 0;
     for (const Eigen::Vector3d& place : mesh.places) worst = std::max(worst, std::abs(place.norm() - 1));

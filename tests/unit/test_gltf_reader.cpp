@@ -29,7 +29,7 @@ class GltfReader : public testing::Test {
   }
   fs::path path(const std::string& name) const { return scratch_.folder() / name; }
 
-  /// A sphere of radius 1 that a node of the scene places.
+  /// Makes a sphere of radius 1 that a node of the scene places.
   GltfBuilder sphere(const Json& node) const {
     GltfBuilder builder;
     Json placed = node;
@@ -45,7 +45,7 @@ class GltfReader : public testing::Test {
     return sum / 6;
   }
 
-  /// A square of two triangles in the plane z = 0, facing +z, with texture coordinates as glTF has them.
+  /// Makes a square of two triangles in the plane z = 0, facing +z, with texture coordinates in glTF's convention.
   Json square(GltfBuilder& builder) const {
     const std::vector<Eigen::Vector3f> positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
     const std::vector<Eigen::Vector2f> uvs = {{0, 1}, {1, 1}, {1, 0}, {0, 0.25f}};

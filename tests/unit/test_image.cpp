@@ -63,7 +63,7 @@ TEST_F(ImageFile, PngsComeBackBitByBit) {
   }
 }
 
-/// The chunks of a PNG in order: kind and body.
+/// Lists the chunks of a PNG in order: kind and body.
 std::vector<std::pair<std::string, std::string>> png_chunks(const std::string& bytes) {
   std::vector<std::pair<std::string, std::string>> chunks;
   const auto number = [&](std::size_t at) {

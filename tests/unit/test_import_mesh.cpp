@@ -125,7 +125,7 @@ std::string to_stl_binary(const TriangleMesh& mesh) {
   return bytes;
 }
 
-/// The triangles as corners' positions, the smallest first, sorted: the same for the same surface in any order.
+/// Lists the triangles as corners' positions, the smallest first, sorted: the same for the same surface in any order.
 std::vector<std::array<std::array<float, 3>, 3>> geometry(const TriangleMesh& mesh) {
   std::vector<std::array<std::array<float, 3>, 3>> triangles;
   for (const Triangle& t : mesh.triangles) {
@@ -178,7 +178,7 @@ TEST_F(MeshFile, MendsAndCounts) {
   EXPECT_EQ(repairs.degenerate_triangles, 1);
 }
 
-/// A colour that tells where a point of the unit sphere is; its values are whole 255ths.
+/// Computes a colour that identifies a point of the unit sphere; its values are whole 255ths.
 Eigen::Vector3f color_of(const Eigen::Vector3f& p) { return (127.5f * (p.array() + 1)).round() / 255; }
 
 TEST_F(MeshFile, EveryFormatGivesTheSameColors) {
@@ -425,7 +425,7 @@ TEST_F(MeshFile, AxesAndUnitsBecomeOurs) {
 
 // ---- Normals.
 
-/// A cube of -1 to 1, of quads; each corner has the normal `of_side` gives it.
+/// Makes a cube from -1 to 1, of quads; `of_side` gives each corner's normal.
 std::string cube_with_normals(const std::function<Eigen::Vector3d(int side)>& of_side,
                               const std::string& between = "") {
   std::string text = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";

@@ -335,7 +335,7 @@ TEST(ErrorDriven, StopsAtAnErrorThatRaysConfirm) {
     before = result.directions;
     const double error = relative_l2(result.channels.front(), truth);
     EXPECT_LT(error, std::stod(target));
-    // It does not take far more than it needs: on the safe side by 2 at most.
+    // The set is hardly larger than needed: by a factor of 2 at most.
     EXPECT_GT(error, 0.3 * result.choice->estimated_error);
   }
   settings.max_error = parse_error_target("1e-6");

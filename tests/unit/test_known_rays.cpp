@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is kept of rays: it is what searching again finds, and whatever is kept, or not, sums have the same bits.
+// Tests of kept rays: they equal what a new search finds, and sums have the same bits whatever is kept.
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -40,7 +40,7 @@ struct Stand {
   std::size_t blocks() const { return (directions.size() + block_directions - 1) / block_directions; }
   std::size_t block_bytes() const { return receivers.packets.size() * sizeof(BlockLanes); }
 
-  /// What the direct pass keeps, in two calls.
+  /// Runs the direct pass in two calls, and returns what it keeps.
   BlockedRays blocked(RayMemory& memory) const {
     BlockedRays kept(memory);
     TransferSums sums(positions.size(), 4);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array windows = {LightWindow::none, LightWindow::hann, LightWindow::lanczos, LightWindow::dering};
 
-/// Exit radiance of a white surface that nothing shadows, red.
+/// Computes the exit radiance of an unshadowed white surface, red.
 double radiance(const LightCoefficients& light, const Eigen::Vector3f& normal) {
   return dot_product(light.channels[0], unoccluded_transfer(ShBasis(light.bands), normal));
 }

@@ -80,8 +80,8 @@ TEST(LocalLight, ContributionsOfOddMeshesAreFinite) {
     EXPECT_TRUE(std::isfinite(contribution));
 }
 
-/// Relative L2 of the exit radiance of an unshadowed sphere's vertices: `count` samples of incident light against the
-/// light at every vertex itself, over balls in several directions, `distance` radii away.
+/// Computes the relative L2 error of the exit radiance of an unshadowed sphere's vertices: `count` samples of incident
+/// light against the light at every vertex itself, over balls in several directions, `distance` radii away.
 double error_of_samples(int count, double distance) {
   const int bands = 5;
   const TriangleMesh mesh = shapes::icosphere(2);
@@ -165,7 +165,7 @@ TEST(LocalLight, GpuAndCpuAgree) {
           const int left = static_cast<int>(x), low = static_cast<int>(y);
           const float a = x - static_cast<float>(left), b = y - static_cast<float>(low);
           for (int c = 0; c < 3; ++c) {
-            // What errors are a share of: contributions may be below 0, so that the sum can be less than its parts.
+            // Denominator of the error: contributions may be below 0, so that the sum can be less than its parts.
             float expected = 0;
             for (int k = 0; k < samples.count(); ++k) {
               float contribution = 0;

@@ -31,7 +31,7 @@ class Material : public testing::Test {
     return path(name);
   }
 
-  /// Red is u and green v, exactly so at a distance of half a texel from the border.
+  /// Makes a picture in which red is u and green v, exactly from half a texel inside the border on.
   fs::path write_ramp(const std::string& name) const {
     constexpr int side = 32;
     Image<float> ramp(side, side, 3, 0.25f);
@@ -79,7 +79,7 @@ void for_points_of(const TriangleMesh& mesh, const Visit& visit) {
     }
 }
 
-/// A texture's and a lookup's rounding: both are a few sums of floats below 1.
+/// Tolerance for the rounding of a texture and of a lookup: both are a few sums of floats below 1.
 constexpr float rounding = 2e-6f;
 
 #define EXPECT_COLOR(actual, expected, tolerance)                     \
@@ -232,8 +232,8 @@ TEST_F(Material, ColoursOutsideAreCountedAndThoseThatAreNoNumbersRefused) {
             std::string::npos);
 }
 
-/// A unit cube whose six sides each have vertices, a material and a chart of their own; sides alternate between a
-/// texture with an own turn of the chart, a colour, and both.
+/// Makes a unit cube whose six sides each have vertices, a material and a chart of their own; sides alternate between a
+/// texture, with the chart turned individually, a colour, and both.
 struct PaintedCube {
   std::string obj, mtl;
 
@@ -244,7 +244,7 @@ struct PaintedCube {
   static bool has_texture(int side) { return side % 3 != 1; }
   static int axis(int side) { return side / 2; }
 
-  /// The place on a side, 0 to 1 each way.
+  /// Returns the place on a side, 0 to 1 each way.
   static Eigen::Vector2f place(int side, const Eigen::Vector3f& p) {
     return {p[(axis(side) + 1) % 3], p[(axis(side) + 2) % 3]};
   }

@@ -20,7 +20,7 @@ class MtlFiles : public ObjFiles {
     return read("mtllib a.mtl\n" + triangle + "usemtl " + name + "\n" + face);
   }
 
-  /// The material of that triangle.
+  /// Returns the material of that triangle.
   SourceMaterial material(const std::string& mtl, const std::string& name = "m") const {
     const SourceMesh mesh = with(mtl, name);
     if (mesh.materials_fault) ADD_FAILURE() << mesh.materials_fault->what();
@@ -35,7 +35,7 @@ class MtlFiles : public ObjFiles {
     return mesh.materials_fault->what();
   }
 
-  /// What a picture is looked up with: file name, scale of u and v, offset of u and v.
+  /// Lists how a picture is looked up: file name, scale of u and v, offset of u and v.
   std::string lookup(const std::string& map) const {
     const SourceMaterial m = material("newmtl m\nmap_Kd " + map + "\n");
     if (!m.texture) return "no picture";

@@ -222,7 +222,7 @@ class DetailMapsFolder : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  /// As main does it.
+  /// Writes the maps as main does.
   void save(const NormalsResult& result) const {
     OutputSet outputs(folder_);
     write_png(outputs.add("normal.png"), result.normal);
@@ -244,7 +244,7 @@ class DetailMapsFolder : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-/// A sphere with dents, whose normals differ from the low sphere's by up to 40 degrees.
+/// Makes a sphere with dents, whose normals differ from the low sphere's by up to 40 degrees.
 TriangleMesh dented_sphere() {
   TriangleMesh mesh = shapes::icosphere(6);
   for (Eigen::Vector3f& p : mesh.positions)
@@ -353,7 +353,7 @@ TEST(Normals, AThinEarKeepsItsSides) {
   }
 }
 
-/// The bunny of so few triangles that its ears reach into each other, each triangle in a square of its own of 32 * 32.
+/// Makes the bunny of so few triangles that its ears intersect, each triangle in a square of its own of 32 * 32.
 TriangleMesh bunny_of_single_charts(const TriangleMesh& high) {
   const TriangleMesh low = simplify(high, {.faces = 300}).mesh;
   TriangleMesh charts;
@@ -397,14 +397,14 @@ TEST(Normals, TheBunnysEarsKeepTheirSides) {
           (high.positions[t[1]] - a).cross(high.positions[t[2]] - a).dot(low_normal) < 0 ? 1 : 0;
     });
     EXPECT_GT(on_ears, 2500);
-    // What the test is about: the nearest point often is the other side's.
+    // The subject of the test: the nearest point is often on the other side.
     EXPECT_GT(nearest_on_the_other_side, 0);
     EXPECT_EQ(result.disagreeing, 0);
   }
 }
 
 TEST(Normals, ASphereThroughABoxKeepsToItself) {
-  // Beside the line where they meet the box is as close as the sphere; its normals are 34 degrees and more from it.
+  // Near their intersection the box is as close as the sphere; its normals differ by 34 degrees and more.
   TriangleMesh high = shapes::joined(shapes::icosphere(5, 0.6f), shapes::cube(8), {0, 0, 0});
   compute_vertex_normals(high);
   const TriangleMesh low = shapes::cube_sphere(6, 0.6f);
@@ -461,7 +461,7 @@ TEST(Normals, SamplesFitWhatLookupsShow) {
     EXPECT_LT(many.map_error.mean_degrees, 0.95 * one.map_error.mean_degrees);
     for_each_covered(many, [&](int i, int j) { EXPECT_NEAR(decoded_at(many.normal, i, j).norm(), 1, 1e-4); });
   }
-  // What bilinear lookups can show exactly stays: a plane's one normal.
+  // Detail that bilinear lookups can show exactly is kept: a plane's single normal.
   const TriangleMesh plane = shapes::plane(4);
   const NormalsResult flat = make_normals(plane, plane, {.size = 32, .samples = 16});
   for_each_covered(flat, [&](int i, int j) {

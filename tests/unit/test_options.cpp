@@ -54,7 +54,7 @@ TEST(Extent, IsOneNumberOrTwo) {
   EXPECT_EQ(option.get(), Json("1024x64"));
   option.set("64x64");
   EXPECT_EQ(option.get(), Json(64));
-  // What get() gives, set() takes.
+  // set() accepts what get() returns.
   option.set("32x48");
   option.set(option.get().get<std::string>());
   EXPECT_EQ(size, Extent(32, 48));

@@ -72,7 +72,7 @@ TEST(LatitudeLongitude, PixelsOfManyAreThoseOfFewCutUp) {
   for (std::size_t i = 0; i < 64; ++i) EXPECT_NEAR(coarse.channels[0][i], fine.channels[0][i], 1e-5) << i;
 }
 
-/// A cube map that holds `value(face, i, j)`.
+/// Makes a cube map that holds `value(face, i, j)`.
 template <class Value>
 LightCoefficients cube(int bands, int size, const Value& value) {
   std::array<std::vector<float>, 6> texels;

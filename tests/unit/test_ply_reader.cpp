@@ -15,7 +15,7 @@ using Places = std::vector<std::uint32_t>;
 const std::vector<std::array<int, 3>> corners_of_tetrahedron = {{1, 2, 3}, {9, 2, 3}, {1, 7, 3}, {1, 2, 11}};
 const std::vector<Places> faces_of_tetrahedron = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
 
-/// A header of x, y and z, then `more` lines of vertices, then triangles or polygons.
+/// Writes a header of x, y and z, then `more` lines of vertices, then triangles or polygons.
 std::string header(int vertices, const std::string& more, int faces, const std::string& face_more = "",
                    const std::string& format = "ascii") {
   return "ply\nformat " + format + " 1.0\nelement vertex " + std::to_string(vertices) +
@@ -25,7 +25,7 @@ std::string header(int vertices, const std::string& more, int faces, const std::
 
 const std::string two_triangles = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
 
-/// A number in the type that PLY calls `type`, as text or bytes.
+/// Writes a number in the type that PLY calls `type`, as text or bytes.
 std::string value_in(const std::string& type, double value, const std::string& format) {
   if (format == "ascii") return std::to_string(value).substr(0, std::to_string(value).find('.')) + " ";
   const bool big = format == "binary_big_endian";
@@ -41,7 +41,7 @@ std::string value_in(const std::string& type, double value, const std::string& f
   return number_bytes(value, big);
 }
 
-/// A tetrahedron with `type` for all numbers, unused properties and elements everywhere.
+/// Writes a tetrahedron with `type` for all numbers, and unused properties and elements everywhere.
 std::string tetrahedron(const std::string& type, const std::string& format, bool faces_first) {
   const std::string list = "property list " + type + " " + type + " ";
   const std::string vertex = "element vertex 4\nproperty double weight\nproperty " + type + " x\n" + list +

@@ -26,8 +26,8 @@ ProbesResult at(const TriangleMesh& mesh, const std::vector<Eigen::Vector3f>& po
   return probe_matrices(mesh, light, place_probes(mesh, points, settings), settings, 1);
 }
 
-/// The integral of B_i B_j over the upper half sphere, +Y, by products of Gauss-Legendre points in height and equal
-/// steps in azimuth: polynomials of degree 2 (bands - 1) at most are exact but for rounding.
+/// Integrates B_i B_j over the upper half sphere, +Y, by products of Gauss-Legendre points in height and equal steps in
+/// azimuth: exact, except for rounding, for polynomials of degree up to 2 (bands - 1).
 std::vector<double> half_sphere_matrix(int bands) {
   // Gauss-Legendre on [0, 1] by Newton's method ([Press], section 4.6).
   constexpr int order = 16, steps = 64;
@@ -244,7 +244,7 @@ TEST(Probes, TheSameWithAnyThreads) {
 
 // ---- what a renderer asks ----
 
-/// Matrices of one band: the light times `value(position)`.
+/// Makes matrices of one band: the light times `value(position)`.
 template <class Value>
 ProbeSet scalar_probes(const ProbeGrid& grid, const Value& value) {
   ProbeSet probes;

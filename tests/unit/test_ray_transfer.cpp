@@ -23,7 +23,7 @@ struct Points {
   Receivers view() const { return {positions, normals}; }
 };
 
-/// Every `step`-th vertex, with its normal.
+/// Takes every `step`-th vertex, with its normal.
 Points vertices_of(const TriangleMesh& mesh, std::size_t step) {
   std::vector<Eigen::Vector3f> sums(mesh.positions.size(), Eigen::Vector3f::Zero());
   for (const Triangle& t : mesh.triangles) {
@@ -58,8 +58,8 @@ TransferSums by_streams(const TriangleMesh& mesh, const Points& points, std::spa
   return sums;
 }
 
-/// Receivers for which some direction was decided otherwise. The roundings of a block's sum come to some units of fixed
-/// point, a ray to its cosine times 2 million of them in the first plane.
+/// Lists the receivers for which some direction was decided differently. Rounding of a block's sum amounts to some
+/// units of fixed point, a ray to its cosine times 2 million of them in the first plane.
 int receivers_that_differ(const TransferSums& a, const TransferSums& b) {
   const std::int64_t roundings = 32 * ((a.directions + block_directions - 1) / block_directions);
   int differing = 0;
@@ -101,7 +101,7 @@ TEST(RayTransfer, BeamsSeeWhatEmbreeSees) {
   }
 }
 
-/// `count` points of the mesh in turn inside its triangles, computed in float32 as a stage does, with the triangles'
+/// Places `count` points inside the mesh's triangles in turn, computed in float32 as a stage does, with the triangles'
 /// normals.
 Points points_of_faces(const TriangleMesh& mesh, std::size_t count) {
   Points points;
@@ -117,7 +117,7 @@ Points points_of_faces(const TriangleMesh& mesh, std::size_t count) {
   return points;
 }
 
-/// The same points, and again with their normals turned round: receivers on both sides of a surface.
+/// Doubles the points, the second time with reversed normals: receivers on both sides of a surface.
 Points both_sides(Points points) {
   const std::size_t count = points.positions.size();
   for (std::size_t k = 0; k < count; ++k) {
@@ -251,7 +251,7 @@ TEST(RayTransfer, NothingIsTestedWhereNothingStands) {
   const BeamSavings savings = add_transfer_by_beams(BeamScene(mesh.positions, mesh.triangles),
                                                     BeamReceivers(points.view(), ray_offset), directions, sums);
   const auto pairs = static_cast<double>(points.positions.size() * directions.size());
-  // Of a sphere each direction faces one half, and sees all of it. Packets on the rim are in neither share.
+  // Each direction faces one half of a sphere, and sees all of it. Packets on the rim are in neither share.
   EXPECT_GT(static_cast<double>(savings.behind), 0.35 * pairs);
   EXPECT_GT(static_cast<double>(savings.lit), 0.4 * pairs);
 }
@@ -287,7 +287,7 @@ TEST(RayTransfer, SameBitsForAnyThreadsAndAnyCuts) {
 }
 
 TEST(RayTransfer, SumsAreTrueForAnyNumberOfDirections) {
-  // Nothing stands in the way, so that the sums are known: in float64, from the same float32 directions.
+  // Nothing is in the way, so that the sums are known: in float64, from the same float32 directions.
   Points points;
   for (const Eigen::Vector3f& normal : sample_directions(Sampling::fibonacci, 3, 7)) {
     points.positions.push_back(normal);

@@ -61,7 +61,7 @@ TEST(RayScene, RaysIntoASphereHitBothSides) {
   }
 }
 
-/// Closest point of triangle abc to p by searching its plane, edges and corners, in double: slow and simple.
+/// Finds the point of triangle abc closest to p by searching its plane, edges and corners, in double: slow and simple.
 double distance_to_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                             const Eigen::Vector3d& c) {
   const auto to_segment = [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {

@@ -14,7 +14,7 @@
 namespace kiln {
 namespace {
 
-/// Vertices less edges plus triangles: 2 for a sphere, 1 for a disk, 0 for a torus or a ring.
+/// Computes vertices - edges + triangles: 2 for a sphere, 1 for a disk, 0 for a torus or a ring.
 int euler_characteristic(const TriangleMesh& mesh) {
   std::set<std::uint32_t> vertices;
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
@@ -34,7 +34,7 @@ double volume(const TriangleMesh& mesh) {
   return six_volumes / 6;
 }
 
-/// Holds the repairs that were counted against `expected`, all others against 0.
+/// Compares the counted repairs with `expected`, and all others with 0.
 void expect_repairs(const MeshRepairs& found, const std::vector<std::pair<int MeshRepairs::*, int>>& expected) {
   for (const auto& [name, count] : MeshRepairs::kinds()) {
     int wanted = 0;

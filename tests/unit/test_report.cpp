@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the report computes by itself: budgets, pictures, the reference picture, and the text around them.
+// Tests of what the report computes itself: budgets, pictures, the reference picture, and the text around them.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -62,7 +62,7 @@ TEST(Budget, JudgesIncludingTheLimitItself) {
     EXPECT_THROW(judge_budget(parse_budget(text), metrics), WrongUsage) << text;
 }
 
-/// A report of one stage in `folder`, as if it had been drawn.
+/// Writes a report of one stage into `folder`, as if it had been drawn.
 AssetFolder write_report(const fs::path& folder, const std::vector<std::string>& budgets) {
   AssetFolder asset;
   asset.name = "pot";
@@ -182,7 +182,7 @@ TEST(Pictures, ThumbnailKeepsTheMean) {
   EXPECT_EQ(thumbnail(file, 16, 200).width(), 50);  // never enlarged
 }
 
-/// A unit sphere, its normals exact: rings of `rings` by 2 * `rings`.
+/// Makes a unit sphere with exact normals, of `rings` by 2 * `rings` cells.
 TriangleMesh sphere(int rings) {
   TriangleMesh mesh;
   const int columns = 2 * rings;
@@ -320,7 +320,7 @@ StageRecord compress_record() {
   return {"compress", "small/compress.json", json};
 }
 
-/// The number behind `name` in the first element after `mark`.
+/// Reads the number behind `name` in the first element after `mark`.
 double attribute(const std::string& svg, const std::string& mark, const std::string& name) {
   const std::size_t element = svg.find(mark), place = svg.find(name + "='", element);
   return element == std::string::npos || place == std::string::npos ? std::nan("")
@@ -400,7 +400,7 @@ TEST(Page, TransportNamesEveryBounceAndChannel) {
   const std::string table = transport_section(bounced);
   for (const char* word : {"bounce 1", "bounce 2", "25.0&#8239;%", "6.25&#8239;%", "width:25.0%"})
     EXPECT_NE(table.find(word), std::string::npos) << word << " in " << table;
-  // 10 s less what is told of: direct light took 4 s.
+  // 10 s, of which direct light took 4 s.
   EXPECT_NE(table.find(metric_value("seconds", 4.0)), std::string::npos) << table;
   const std::string beneath = transport_section(
       {{"subsurface", {{"reflectance", {0.5, 0.25, 0.125}}, {"energy", {0.4, 0.2, 0.1}}, {"seconds", 1.0}}}});

@@ -12,14 +12,15 @@
 namespace kiln {
 namespace {
 
-/// Profiles over the whole range that content may ask for, in mm.
+/// Lists profiles over the whole range that content may ask for, in mm.
 std::vector<ScatterProfile> usual_profiles() {
   return {ScatterProfile::dipole(2.19, 0.0021, 1.5), ScatterProfile::dipole(0.03, 1.45, 1.3),
           ScatterProfile::dipole(11.6, 0, 1.3), ScatterProfile::diffusion(0.83, 0.4),
           ScatterProfile::diffusion(0.1, 3)};
 }
 
-/// 2 pi times the integral of R r from 0 to `radius`: midpoints after r = x^3, which takes off the peak at the centre.
+/// Integrates 2 pi R r from 0 to `radius`: midpoints after the substitution r = x^3, which flattens the peak at the
+/// centre.
 double integrate(const ScatterProfile& profile, double radius) {
   constexpr int steps = 200'000;
   double sum = 0;
@@ -38,7 +39,7 @@ TEST(Scatter, DensityIntegratesToTheClosedForm) {
 
 TEST(Scatter, AllEnergyIsWithinALargeDisc) {
   for (const ScatterProfile& profile : usual_profiles()) {
-    // Without absorption the dipole falls as r^-3, so what is beyond r falls as 1/r: 1 mm of depth in 1e7.
+    // Without absorption the dipole falls as r^-3, so the share beyond r falls as 1/r: 1 mm of depth in 1e7.
     EXPECT_NEAR(profile.within(1e7), profile.total(), 1e-6 * profile.total());
     EXPECT_LE(profile.total(), 1 + 1e-12);
   }

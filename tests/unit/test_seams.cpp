@@ -14,7 +14,7 @@
 namespace kiln {
 namespace {
 
-/// A cube sphere whose six charts are turned and scaled, each in its own way. Positions are rounded as Draco rounds
+/// Makes a cube sphere whose six charts are turned and scaled, each differently. Positions are rounded as Draco rounds
 /// them, so that both sides of a seam have the same bits.
 TriangleMesh turned_charts(int cells) {
   TriangleMesh mesh = shapes::cube_sphere(cells);
@@ -49,7 +49,7 @@ class TurnedCharts : public ::testing::Test {
     return image;
   }
 
-  /// Root mean square difference between lookups on seams and the function.
+  /// Computes the root mean square difference between lookups on seams and the function.
   double error_at_seams(const Image<float>& image, const Function& function) const {
     double sum = 0;
     const std::vector<SeamPoint> points = seams_.points(7);
@@ -124,7 +124,7 @@ TEST_F(TurnedCharts, OnlyTexelsAtSeamsChangeAndCoveredOnesLittle) {
   Image<float> after = before;
   const SeamSolver solver(seams_, covered_);
   solver.equalise(after);
-  // What a lookup on a seam can see.
+  // The texels that a lookup on a seam can see.
   std::vector<std::uint8_t> seen(covered_.size(), 0);
   for (const SeamPoint& point : seams_.points(30))
     for (const SeamSide& side : point.sides)
@@ -203,7 +203,7 @@ TEST_F(TurnedCharts, SizesHaveToFit) {
   EXPECT_THROW(seams_.mismatch_degrees(grey, NormalSpace::object), std::invalid_argument);
 }
 
-/// A sphere with dents, the detail of which is a few texels wide.
+/// Makes a sphere with dents whose detail is a few texels wide.
 TriangleMesh dented_sphere() {
   TriangleMesh mesh = shapes::icosphere(6);
   for (Eigen::Vector3f& p : mesh.positions)

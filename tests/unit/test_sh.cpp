@@ -16,7 +16,7 @@
 namespace kiln {
 namespace {
 
-/// The Gram matrix of all basis functions by a quadrature that is exact for their products.
+/// Computes the Gram matrix of all basis functions by a quadrature that is exact for their products.
 template <class Real>
 Eigen::MatrixXd gram_matrix(int bands) {
   const ShBasis basis(bands);
@@ -108,8 +108,8 @@ TEST(Directions, FollowTheSeed) {
   EXPECT_NE(first[3], other[3]);
 }
 
-/// Relative error of the projection of a spherical cap's visibility times clamped cosine onto 5 bands, over many caps
-/// and normals.
+/// Computes the relative error of the projection of a spherical cap's visibility times clamped cosine onto 5 bands,
+/// over many caps and normals.
 double cap_error(Sampling sampling, int count) {
   constexpr int bands = 5, cases = 60;
   const ShBasis basis(bands);
@@ -199,7 +199,7 @@ TEST(Directions, ProgressivePrefixesAreNearlyAsAccurateAsFibonacci) {
   EXPECT_LT(2 * progressive, stratified) << "progressive " << progressive << ", stratified " << stratified;
 }
 
-/// The largest angle in degrees between a direction of a block of 32 and the block's mean, over all blocks.
+/// Finds the largest angle in degrees between a direction of a block of 32 and the block's mean, over all blocks.
 double widest_block_degrees(const std::vector<Eigen::Vector3f>& directions) {
   double widest = 0;
   for (std::size_t begin = 0; begin < directions.size(); begin += 32) {
@@ -301,7 +301,7 @@ TEST(Transfer, ErrorsAreWhatTheirDefinitionsSay) {
   // S is 1 in band 0 and 1/4 in band 1: t'St = 9 + 16/4 = 13.
   EXPECT_NEAR(expected_relighting_error(other, reference), std::sqrt(0.25 / 13), 1e-7);
   EXPECT_EQ(relative_l2(reference, reference), 0);
-  // Of several channels it is the whole's: a channel without error halves the square, one of zeros changes nothing.
+  // Several channels have one common error: a channel without error halves the square, one of zeros changes nothing.
   const TransferVectors zeros(reference.receivers, reference.coefficients);
   const std::vector<TransferVectors> others = {other, reference, zeros}, references = {reference, reference, zeros};
   EXPECT_NEAR(relative_l2(others, references), 0.1 / std::sqrt(2.0), 1e-12);

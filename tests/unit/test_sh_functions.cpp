@@ -32,7 +32,7 @@ std::vector<float> random_function(int bands, unsigned seed) {
   return function;
 }
 
-/// Rotations by angles and axes that meet no symmetry, and the ones that do.
+/// Lists rotations by angles and axes with and without symmetry.
 std::vector<Eigen::Matrix3d> rotations() {
   std::vector<Eigen::Matrix3d> all = {Eigen::Matrix3d::Identity()};
   for (int axis = 0; axis < 3; ++axis)
@@ -87,7 +87,7 @@ TEST(ShRotation, RefusesWhatIsNoRotation) {
   EXPECT_THROW(ShRotation(3, Eigen::Matrix3d::Constant(std::nan(""))), std::invalid_argument);
 }
 
-/// The projection of the product of both functions' values, by a quadrature that is exact for it.
+/// Projects the product of both functions' values, by a quadrature that is exact for it.
 TEST(ShProduct, IsTheProjectionOfTheProductOfValues) {
   for (int bands = 1; bands <= 6; ++bands) {
     const std::vector<float> f = random_function(bands, 3), g = random_function(bands, 4);
@@ -125,7 +125,7 @@ TEST(ShProduct, WithOneChangesNothing) {
   for (std::size_t i = 0; i < f.size(); ++i) EXPECT_NEAR(product[i], f[i], 1e-6);
 }
 
-/// Coefficients of a function by dense quadrature; discontinuities converge as the distance between directions.
+/// Computes a function's coefficients by dense quadrature; discontinuities converge as the distance between directions.
 template <class Function>
 std::vector<double> projected(int bands, const Function& function) {
   const ShBasis basis(bands);
@@ -168,7 +168,7 @@ TEST(ShLights, ThinConeIsADirectionalLight) {
   const LightCoefficients point = directional_light(24, axis, white);
   for (const double half_angle : {0.0, 0.999e-3, 1.001e-3}) {
     const LightCoefficients cone = cone_light(24, axis, half_angle, white);
-    // Of band 23 a cone of 1/1000 radian loses 1.5e-4 of at most 6.
+    // In band 23 a cone of 1/1000 radian loses 1.5e-4 of at most 6.
     for (std::size_t i = 0; i < 576; ++i) EXPECT_NEAR(cone.channels[0][i], point.channels[0][i], 2e-3);
   }
 }
@@ -236,8 +236,8 @@ TEST(ShLights, IrradianceIsTheClampedCosineIntegral) {
   EXPECT_EQ(doubled.channels, light.channels);
 }
 
-/// How far sums over directions are from telling the basis' functions apart: the largest eigenvalue of
-/// G - 1, G the Gram matrix.
+/// Measures how far sums over directions are from orthonormality of the basis: the largest eigenvalue of G - 1, where G
+/// is the Gram matrix.
 double gram_error(Sampling sampling, int count, int bands) {
   const ShBasis basis(bands);
   Eigen::MatrixXd values(basis.size(), count);

@@ -47,7 +47,7 @@ struct Stand {
     EmbreeEngine engine(scene(), rounding_offset(occluders.positions));
     return run(engine);
   }
-  /// What the same directions give with nothing in the way.
+  /// Computes the transfer of the same directions with nothing in the way.
   TransferVectors unshadowed() const {
     TransferSums sums(positions.size(), 16);
     const ShBasis basis(4);
@@ -63,7 +63,7 @@ struct Stand {
   }
 };
 
-/// Vertices of a ball, which shadows only itself.
+/// Takes the vertices of a ball, which shadows only itself.
 Stand furnace() {
   Stand stand;
   const TriangleMesh ball = shapes::icosphere(4);
@@ -73,7 +73,7 @@ Stand furnace() {
   return stand;
 }
 
-/// Points of a torus, which shadows parts of itself.
+/// Takes points of a torus, which shadows parts of itself.
 Stand torus() {
   Stand stand;
   stand.occluders = shapes::torus(96);
@@ -90,7 +90,7 @@ struct Tested {
   ShadowMapSettings settings;
 };
 
-/// For the names of failed tests.
+/// Names the parameters in failed tests.
 void PrintTo(const Tested& tested, std::ostream* stream) { *stream << tested.name; }
 
 template <class Change>
@@ -221,7 +221,7 @@ TEST(ShadowMaps, SumsAreTrueForAnyNumberOfDirections) {
   settings.size_texels = 16;
   const ShBasis basis(4);
   for (const int count : {1, 1000, 1000000}) {
-    // Of the sphere's upper part alone: where no receiver can look down at the plane.
+    // Only the sphere's upper part, where no receiver can look down at the plane.
     stand.directions = sample_directions(Sampling::fibonacci, count + 1, 1);
     std::erase_if(stand.directions, [](const Eigen::Vector3f& direction) { return direction.y() < 0.2f; });
     if (count == 1) stand.directions = {Eigen::Vector3f(0.3f, 0.8f, 0.5f).normalized()};
@@ -272,7 +272,7 @@ TEST(ShadowMaps, RefiningGivesWhatRaysGive) {
   EXPECT_EQ(stand.work.ambiguous, 0u);  // nobody asked
   settings.refine = true;
   const double refined = relative_l2(stand.egl(settings), rays);
-  // What remains: whole occluders between texels, and creases thinner than the offset. The torus has neither.
+  // Remaining errors: whole occluders between texels, and creases thinner than the offset. The torus has neither.
   EXPECT_LT(refined, 0.004);
   EXPECT_LT(refined, 0.4 * unrefined);
   EXPECT_EQ(stand.work.ambiguous, stand.work.refined);

@@ -32,7 +32,7 @@ namespace fs = std::filesystem;
 
 constexpr SimplifyQuality all_qualities[] = {SimplifyQuality::draft, SimplifyQuality::standard, SimplifyQuality::best};
 
-/// Vertices - edges + triangles: 2 for each closed surface without handles.
+/// Computes vertices - edges + triangles: 2 for each closed surface without handles.
 int euler_characteristic(const TriangleMesh& mesh) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
   std::set<std::uint32_t> vertices;
@@ -44,7 +44,7 @@ int euler_characteristic(const TriangleMesh& mesh) {
   return static_cast<int>(vertices.size()) - static_cast<int>(edges.size()) + static_cast<int>(mesh.triangles.size());
 }
 
-/// Edges with a triangle on one side only, from the one end to the other.
+/// Lists the edges with a triangle on one side only, from one end to the other.
 std::vector<std::pair<std::uint32_t, std::uint32_t>> border_edges(const TriangleMesh& mesh) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
   for (const Triangle& t : mesh.triangles)
@@ -55,7 +55,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> border_edges(const Triangle
   return border;
 }
 
-/// The largest distance from a border's points, 16 an edge, to the other border.
+/// Finds the largest distance from points of one border, 16 an edge, to the other border.
 double border_distance(const TriangleMesh& from, const TriangleMesh& to) {
   double largest = 0;
   const auto border = border_edges(to);
@@ -194,7 +194,7 @@ TEST(SimplifyShapes, MaxErrorIsHonouredAndUsed) {
   EXPECT_THROW(simplify(sphere, {.max_error = 1e-6}), WrongUsage);
 }
 
-/// Points of `places` that are no vertex of the mesh, to `tolerance`.
+/// Counts the points of `places` that are no vertex of the mesh, to `tolerance`.
 int count_missing(const TriangleMesh& mesh, const std::vector<Eigen::Vector3f>& places, float tolerance) {
   return static_cast<int>(std::count_if(places.begin(), places.end(), [&](const Eigen::Vector3f& place) {
     return std::none_of(mesh.positions.begin(), mesh.positions.end(),
@@ -202,7 +202,7 @@ int count_missing(const TriangleMesh& mesh, const std::vector<Eigen::Vector3f>& 
   }));
 }
 
-/// A tube about the y axis of radius 1 from -1 to 1, closed by two disks: vertices at the disks' middles last.
+/// Makes a tube about the y axis of radius 1 from -1 to 1, closed by two disks: vertices at the disks' middles last.
 TriangleMesh closed_cylinder(int around, int along) {
   TriangleMesh mesh;
   const auto vertex = [&](int i, int j) { return static_cast<std::uint32_t>(j * around + i % around); };
@@ -258,7 +258,7 @@ TEST(SimplifyCreases, OfACylinderStayCircles) {
     const SimplifyResult result = simplify(cylinder, {.faces = 200, .quality = quality, .crease = 45});
     EXPECT_LE(result.mesh.triangles.size(), 200u);
     EXPECT_TRUE(result.closed);
-    // What is left of the rims: closed lines in their planes, near the circles.
+    // The remaining rims are closed lines in their planes, near the circles.
     std::map<std::uint32_t, int> ends;
     for (const auto& [a, b] : find_feature_edges(result.mesh, 45)) {
       for (const std::uint32_t vertex : {a, b}) {
@@ -273,7 +273,7 @@ TEST(SimplifyCreases, OfACylinderStayCircles) {
   }
 }
 
-/// The edges of `cube` between its sides.
+/// Lists the edges of `cube` between its sides.
 std::vector<VertexPair> edges_between_sides(const TriangleMesh& cube) { return find_feature_edges(cube, 45); }
 
 double length_of(const TriangleMesh& mesh, const std::vector<VertexPair>& edges) {
@@ -441,7 +441,7 @@ TEST_F(Simplify, TheBunnyToAThousandTriangles) {
     EXPECT_LT(result.distance.rms, most.at(quality).first);
     EXPECT_LT(result.distance.hausdorff, most.at(quality).second);
 
-    // What was measured is what the file holds.
+    // The file holds what was measured.
     const TriangleMesh decoded = load_mesh(path("low.drc"));
     EXPECT_EQ(decoded.triangles, result.mesh.triangles);
     EXPECT_EQ(mesh_distance(high, decoded).hausdorff, result.distance.hausdorff);

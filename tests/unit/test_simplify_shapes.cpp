@@ -28,7 +28,7 @@ const char* name_of(SimplifyQuality quality) {
   return quality == SimplifyQuality::draft ? "draft" : quality == SimplifyQuality::standard ? "standard" : "best";
 }
 
-/// How many components have the extent of the unit box.
+/// Counts the components that have the extent of the unit box.
 int count_boxes(const TriangleMesh& mesh, float side) {
   int count = 0;
   for (const BoundingBox& box : component_boxes(mesh, find_components(mesh)))
@@ -203,8 +203,8 @@ TEST(EachQuality, IsNoWorseThanTheOneBelow) {
       }
       EXPECT_LE(best.distance.hausdorff, draft.distance.hausdorff);
       EXPECT_LE(best.distance.rms, draft.distance.rms);
-      // What standard makes small is the mean; its largest distance hangs on one triangle, and draft may have luck: of
-      // these, the worst is 2.2 times draft's, on the thin bowl. The mean may be a tie.
+      // `standard` minimises the mean distance; its largest distance depends on single triangles, where draft may be
+      // lucky: at worst it is 2.2 times draft's, on the thin bowl. The means may be a tie.
       EXPECT_LE(standard.distance.rms, 1.15 * draft.distance.rms + 1e-6);
       EXPECT_LE(standard.distance.hausdorff, 2.5 * draft.distance.hausdorff + 1e-6);
     }
@@ -228,7 +228,7 @@ TEST_F(ManyParts, AreTheSameOnOneThreadAndTwo) {
 
 TEST(FlippedTriangles, AreThoseThatFaceAgainstAllThatIsNear) {
   const TriangleMesh bowl = shapes::thin_bowl(32, 8, 0.001f);
-  // The same, a little smaller: each side lies on the other one or beyond it.
+  // The same, slightly smaller: each side lies on the other one or beyond it.
   const TriangleMesh smaller = shapes::scaled(bowl, Eigen::Vector3f::Constant(0.998f));
   EXPECT_EQ(count_flipped(smaller, bowl, flipped_reach(smaller, 0.002)), 0);
   TriangleMesh turned = shapes::icosphere(3);

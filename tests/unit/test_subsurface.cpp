@@ -23,7 +23,7 @@ const ScatterProfile marble = ScatterProfile::dipole(2.19, 0.0021, 1.5);  // red
 const ScatterProfile skin = ScatterProfile::dipole(0.88, 0.17, 1.3);      // green
 const ScatterProfile spectralon = ScatterProfile::dipole(11.6, 0, 1.3);
 
-/// Points of a square grid, `cells` a side and `spacing` mm apart, in the plane y = height, facing up or down.
+/// Makes points of a square grid, `cells` a side and `spacing` mm apart, in the plane y = height, facing up or down.
 void add_grid(SurfaceSamples& samples, int cells, float spacing, float height, float up) {
   const float middle = 0.5f * static_cast<float>(cells - 1);
   for (int j = 0; j < cells; ++j)
@@ -35,7 +35,7 @@ void add_grid(SurfaceSamples& samples, int cells, float spacing, float height, f
     }
 }
 
-/// The vertices of a mesh; positions in mm.
+/// Takes the vertices of a mesh; positions in mm.
 SurfaceSamples vertices_of(const TriangleMesh& mesh, double area) {
   const TexelReceivers receivers = receivers_on_vertices(mesh).receivers;
   SurfaceSamples samples{receivers.positions, receivers.normals, vertex_areas(mesh, receivers)};
@@ -44,7 +44,7 @@ SurfaceSamples vertices_of(const TriangleMesh& mesh, double area) {
   return samples;
 }
 
-/// One coefficient that is 1 everywhere.
+/// Makes transfer of one coefficient that is 1 everywhere.
 std::vector<TransferVectors> even_light(const SurfaceSamples& samples) {
   TransferVectors light(samples.size(), 1);
   std::fill(light.values.begin(), light.values.end(), 1.f);
@@ -90,7 +90,7 @@ TEST(Subsurface, HalfSpaceLitEvenlyHasTheTotalReflectance) {
     SurfaceSamples samples;
     add_grid(samples, cells, spacing, 0, 1);
     const float centre = scatter_even(samples, marble)[cells * cells / 2];
-    // What of the plane lies beyond the square: between the discs in and around it.
+    // The part of the plane beyond the square lies between that beyond the discs in and around it.
     const double inner = marble.within(0.5 * cells * spacing), outer = marble.within(0.7072 * cells * spacing);
     EXPECT_GT(centre, inner * 0.995) << spacing;
     EXPECT_LT(centre, outer * 1.005) << spacing;
@@ -238,7 +238,7 @@ TEST(Subsurface, EnergyIsConserved) {
   EXPECT_LE(ball.energy[0], 1.0001);
 }
 
-/// Random light of several coefficients on a bumpy ball.
+/// Makes random light of several coefficients on a bumpy ball.
 struct Bumpy {
   SurfaceSamples samples;
   std::vector<TransferVectors> light;
@@ -272,7 +272,7 @@ TEST(Subsurface, TheHierarchyIsWithinOnePercentOfEverySample) {
   EXPECT_LT(relative_l2(fast.transfer, exact.transfer), 0.01);
   EXPECT_GT(relative_l2(fast.transfer, exact.transfer), 0);
   EXPECT_EQ(exact.hierarchy_error, 0);
-  // What the result says of itself, from 500 of 10,242 points: within a third.
+  // The result's own estimate, from 500 of 10,242 points, is right within a third.
   EXPECT_NEAR(fast.hierarchy_error / relative_l2(fast.transfer, exact.transfer), 1, 0.33);
 }
 

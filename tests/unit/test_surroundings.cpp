@@ -21,7 +21,7 @@ constexpr double unoccluded = 0.28209479;  // t_0 of a receiver under the open s
 
 class SurroundingsTest : public testing::Test {
  protected:
-  /// A sphere of radius 1 about the origin, as an OBJ file.
+  /// Writes a sphere of radius 1 about the origin, as an OBJ file.
   fs::path sphere() const {
     const fs::path file = scratch_.folder() / "sphere.obj";
     std::ofstream stream(file);
@@ -36,7 +36,7 @@ class SurroundingsTest : public testing::Test {
     return load_surroundings(surroundings, {{-1, -1, -1}, {1, 1, 1}}, material, with_albedo);
   }
 
-  /// t_0 of a point at the origin of the asset's space, by rays.
+  /// Computes t_0 of a point at the origin of the asset's space, by rays.
   static double constant_term(const Surroundings& surroundings, const Eigen::Vector3f& normal) {
     std::vector<TriangleMesh> meshes;
     for (PlacedMesh& placed : load(surroundings)) meshes.push_back(std::move(placed.mesh));
@@ -84,7 +84,7 @@ TEST_F(SurroundingsTest, AreMovedIntoTheAssetsSpace) {
   EXPECT_LT((ground.centre() - Eigen::Vector3f(0, -1.5f, 0)).norm(), 1e-5f);
   EXPECT_NEAR(ground.highest.x() - ground.lowest.x(), 2 * 5 / 2.0, 1e-5);
   for (const Eigen::Vector3f& normal : placed[1].mesh.normals) EXPECT_GT(normal.y(), 0.999f);
-  // Without a size it is four diagonals of the asset each way.
+  // Without a size, the ground extends four diagonals of the asset each way.
   const BoundingBox wide = bounding_box(load({.place = "0,0,0", .ground = "0", .neighbours = {}})[0].mesh);
   EXPECT_NEAR(wide.highest.x(), 4 * std::sqrt(12), 1e-4);
 }
@@ -103,7 +103,7 @@ TEST_F(SurroundingsTest, ASphereHidesItsShareOfTheSky) {
   // 20,000 directions: the quadrature's error at a shadow's edge is some 1e-3 of the sky; the facets of 5,120 triangles
   // lie inside the sphere by 0.2 % of its radius.
   EXPECT_NEAR(constant_term(alone, Eigen::Vector3f::UnitY()), unoccluded * (1 - hidden), 0.0015);
-  // The same seen by an asset that is three times as large in the scene and turned.
+  // The same scene, seen by an asset that is three times as large in it and turned.
   const Surroundings turned{.place = {.azimuth_degrees = 70, .scale = 3},
                             .ground = {},
                             .neighbours = {sphere().string() + ";place=" + place(3, 110)}};

@@ -40,7 +40,7 @@ void visit_sphere(const SceneView& view, Visit visit) {
     }
 }
 
-/// A picture of a sphere, of an asset written to `folder`.
+/// Draws a picture of a sphere, of an asset written to `folder`.
 Image<float> sphere_drawn(const PrtAsset& asset, Technique technique, const std::vector<std::string>& lights,
                           const SceneView& view) {
   AssetRenderer renderer(asset);
@@ -295,7 +295,7 @@ TEST(Environment, CubeMapsAreLatitudeLongitudePictures) {
   }
   for (const double turn : {0.0, 90.0}) {
     const LightCoefficients light = load_environment(scratch.folder(), 3, turn);
-    // What was at azimuth a comes to a + turn: +Z (azimuth 0) goes to +X.
+    // Light from azimuth a then comes from a + turn: +Z (azimuth 0) goes to +X.
     for (const Eigen::Vector3d& direction :
          {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(0, 0, 1)}) {
       const Eigen::Vector3d before =

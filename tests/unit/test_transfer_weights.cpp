@@ -10,7 +10,7 @@
 namespace kiln {
 namespace {
 
-/// A cube of side 1 on a floor of side 6, with a gap that no ray offset closes.
+/// Makes a cube of side 1 on a floor of side 6, with a gap that no ray offset closes.
 TriangleMesh cube_on_floor() {
   const TriangleMesh floor = shapes::plane(48, 6);
   return shapes::joined(floor, shapes::cube(12), {0, 0.52f, 0});
@@ -49,7 +49,8 @@ TEST(TransferWeights, DoNotDependOnTheUnitOfLength) {
   for (std::size_t v = 0; v < small_weights.size(); ++v) EXPECT_NEAR(large_weights[v], small_weights[v], 1e-3);
 }
 
-/// Waves all over a sheet, a cube close above one half of it: transfer varies at the cube's rim and beneath it.
+/// Makes waves all over a sheet, and a cube close above one half of it: transfer varies at the cube's rim and beneath
+/// it.
 TEST(TransferWeights, PutTrianglesWhereTransferVaries) {
   const TriangleMesh mesh = shapes::joined(shapes::wavy_sheet(40), shapes::cube(4), {0.5f, 0.62f, 0});
   const auto share_near_cube = [&](SimplifyAwareness aware) {

@@ -40,7 +40,7 @@ class VertexBake : public testing::Test {
   fs::path folder_;
 };
 
-/// The transfer of receivers that nothing occludes, times `albedo`.
+/// Computes the transfer of receivers that nothing occludes, times `albedo`.
 TransferVectors furnace_transfer(const TexelReceivers& receivers, int bands, float albedo) {
   const ShBasis basis(bands);
   TransferVectors transfer(receivers.texels.size(), basis.size());
@@ -202,7 +202,7 @@ TEST_F(VertexBake, UnusedVerticesAreLeftOut) {
 
 TEST_F(VertexBake, ReceiversLieAlongACurve) {
   TriangleMesh mesh = shapes::icosphere(4);
-  // In no order at all, as a file may have them.
+  // In random order, as a file may have them.
   std::vector<std::uint32_t> shuffled(mesh.positions.size());
   for (std::uint32_t k = 0; k < shuffled.size(); ++k) shuffled[k] = k;
   std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(3));
@@ -254,7 +254,7 @@ TEST_F(VertexBake, VerticesOfAThinPlateStayOnTheirSide) {
     EXPECT_GT(found.receivers.normals[r].y(), 0.99f);
   }
 
-  // Where nothing faces up, the closest point will have to do, and it is told.
+  // If nothing faces up, the closest point must do, and a warning says so.
   const TriangleMesh floor = shapes::plane(4);
   for (Eigen::Vector3f& normal : low.normals) normal = -normal;
   EXPECT_EQ(receivers_on_high_of_vertices(low, floor).facing_away, low.positions.size());

@@ -217,7 +217,7 @@ TEST(ViewLights, TheMainLightIsDragged) {
   EXPECT_EQ(to_text(lights.specs[2]), to_text(given.specs[2]));
 }
 
-/// What a white surface at `place` that faces `direction` sends out, by harmonics that are ample for a cosine.
+/// Computes the exit radiance of a white surface at `place` that faces `direction`, by enough harmonics for a cosine.
 double facing_radiance(const LightSpec& spec, const Eigen::Vector3f& place, const Eigen::Vector3f& direction) {
   const LightCoefficients light = irradiance(light_coefficients(spec, 24, place.cast<double>()));
   return evaluate_at(light.channels[0], direction) / std::numbers::pi;
@@ -450,7 +450,7 @@ TEST(Screen, ShowsTheSamePictureAsARender) {
       ASSERT_EQ(picture.channels(), expected.channels());
       int largest = 0, brightest = 0;
       for (std::size_t k = 0; k < picture.values().size(); ++k) {
-        // Under a pixel that shows nothing lies no colour.
+        // A pixel that shows nothing has no colour.
         if (!has_background && expected.values()[k | 3] == 0 && picture.values()[k | 3] == 0) continue;
         largest = std::max(largest, std::abs(picture.values()[k] - expected.values()[k]));
         brightest = std::max<int>(brightest, expected.values()[k]);
@@ -478,7 +478,7 @@ TEST(Screen, ADifferenceIsThatOfThePictures) {
     return counted;
   };
   const auto covered = [](const auto&) { return true; };
-  // Nothing is 0.84 in all colours, 214 of 255.
+  // Empty parts are 0.84 in all colours, 214 of 255.
   const auto is_nothing = [](const auto& pixel) { return pixel[0] == 214 && pixel[1] == 214 && pixel[2] == 214; };
   const Image<std::uint8_t> same = shown.picture(how);
   EXPECT_GT(count(same, covered), 1000);
