@@ -41,5 +41,11 @@ while IFS= read -r file; do
   [ "$(lines "$file")" -le 600 ] || fault "$file has more than 600 lines"
 done < <(find "$source_folder/stages" "$source_folder/runtime" "$source_folder/tools" "$source_folder/examples" "$source_folder/shaders" "$source_folder/tests" \( -name '*.cpp' -o -name '*.h' -o -name '*.glsl' -o -name '*.comp' -o -name '*.vert' -o -name '*.frag' \))
 
+# Prose fits an editor's window: lines of Markdown have at most 120 columns, except tables and code.
+long_lines() { sed '/^```/,/^```/d' "$1" | LC_ALL=C.UTF-8 grep -E '^.{121,}' | grep -vE '^(\||    )'; }
+while IFS= read -r file; do
+  long_lines "$source_folder/$file" && fault "$file has lines of more than 120 columns"
+done < <(cd "$source_folder" && find . -name '*.md' -not -path './build/*' -not -path './out/*')
+
 [ $faults = 0 ] && echo "the house keeps its arrows"
 exit $faults

@@ -72,8 +72,9 @@ TEST_F(SurroundingsTest, AreMovedIntoTheAssetsSpace) {
   // The asset is turned by 90 degrees, of twice its size, and at (10, 0, 0): a neighbour's place (12, 4, 6) in the
   // scene is (2, 4, 6) away, which the turn back makes (-6, 4, 2), halved.
   const std::string file = sphere().string();
-  const std::vector<PlacedMesh> placed =
-      load({.place = "10,0,0,90,2", .ground = "-3,5", .neighbours = {file + ";place=12,4,6,0,0.5"}});
+  const std::vector<PlacedMesh> placed = load({.place = parse_scene_place("10,0,0,90,2"),
+                                               .ground = GroundPlane{-3, 5},
+                                               .neighbours = {file + ";place=12,4,6,0,0.5"}});
   ASSERT_EQ(placed.size(), 2u);
   EXPECT_EQ(placed[0].name, file);
   const BoundingBox box = bounding_box(placed[0].mesh);
@@ -85,7 +86,7 @@ TEST_F(SurroundingsTest, AreMovedIntoTheAssetsSpace) {
   EXPECT_NEAR(ground.highest.x() - ground.lowest.x(), 2 * 5 / 2.0, 1e-5);
   for (const Eigen::Vector3f& normal : placed[1].mesh.normals) EXPECT_GT(normal.y(), 0.999f);
   // Without a size, the ground extends four diagonals of the asset each way.
-  const BoundingBox wide = bounding_box(load({.place = "0,0,0", .ground = "0", .neighbours = {}})[0].mesh);
+  const BoundingBox wide = bounding_box(load({.place = {}, .ground = parse_ground("0"), .neighbours = {}})[0].mesh);
   EXPECT_NEAR(wide.highest.x(), 4 * std::sqrt(12), 1e-4);
 }
 
@@ -124,7 +125,7 @@ TEST_F(SurroundingsTest, TheGroundHidesItsShareOfWhatLooksDown) {
 
 TEST_F(SurroundingsTest, HaveAnAlbedoOfTheirOwn) {
   const std::string file = sphere().string();
-  const Surroundings around{.place = "0,0,0", .ground = "-2", .neighbours = {file + ";albedo=0.25", file}};
+  const Surroundings around{.place = {}, .ground = parse_ground("-2"), .neighbours = {file + ";albedo=0.25", file}};
   const std::vector<PlacedMesh> placed = load(around, true, {.albedo = {{0.75f, 0.75f, 0.75f}}});
   ASSERT_EQ(placed.size(), 3u);
   EXPECT_EQ(placed[0].material.albedo.at(0, 0, 0), Eigen::Vector3f::Constant(0.25f));
@@ -134,7 +135,7 @@ TEST_F(SurroundingsTest, HaveAnAlbedoOfTheirOwn) {
 
 TEST_F(SurroundingsTest, WhatCannotBeIsSaid) {
   EXPECT_THROW(load({.place = {}, .ground = {}, .neighbours = {"missing.obj"}}), BadInput);
-  EXPECT_THROW(load({.place = "0,0,0", .ground = "0,-1", .neighbours = {}}), WrongUsage);
+  EXPECT_THROW(parse_ground("0,-1"), WrongUsage);
   Surroundings surroundings;
   OptionSet options;
   add_surroundings_options(options, surroundings);
