@@ -5,6 +5,7 @@
 #   make demo     build the programs, then run pipeline.yaml; ends by naming the report
 #   make test     build, then run all tests
 #   make check    formatting, clang-tidy, sanitizers, a build with clang; CHECKS="format tidy" for some of them
+#   make docs     API pages of the runtime's headers and the stages' functions, by Doxygen, in build/docs
 #   make install  install programs, the runtime and its headers; PREFIX=/usr/local, DESTDIR for packagers
 #   make package  a .deb of the same, in build/release
 #   make clean    remove what was built and made
@@ -14,7 +15,7 @@ JOBS   ?= $(shell nproc)
 BUILD  := build/$(PRESET)
 PREFIX ?= /usr/local
 
-.PHONY: build programs pages configure demo test check install package clean
+.PHONY: build programs pages configure demo test check docs install package clean
 
 build: configure
 	cmake --build $(BUILD) -j $(JOBS)
@@ -37,6 +38,12 @@ test: build
 
 check:
 	.ci/check $(CHECKS)
+
+docs:
+	@tools/setup docs
+	@mkdir -p build/docs
+	doxygen docs/Doxyfile
+	@echo build/docs/html/index.html
 
 install: pages
 	cmake --install $(BUILD) --prefix $(PREFIX)

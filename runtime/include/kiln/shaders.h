@@ -12,7 +12,7 @@ namespace kiln::runtime {
 /// and describes the textures that it reads.
 KILN_RUNTIME_API std::vector<std::string_view> shader_names();
 
-/// Returns the GLSL 4.50 text of a file, empty for an unknown name. Files include one another by #include "NAME"
+/// Returns the GLSL 4.50 text of a file, empty for an unknown name. Files include one another by `#include "NAME"`
 /// (GL_GOOGLE_include_directive).
 KILN_RUNTIME_API std::string_view shader_text(std::string_view name);
 

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <iterator>
 #include <regex>
 #include <vector>
 
@@ -40,13 +41,15 @@ std::vector<std::string> names_of(const CLI::Option& option) {
   return names;
 }
 
-/// The words that an option takes, where its help ends in a list of them: "(default auto; auto, egl or beams)".
+/// Finds the words that an option takes, if its help ends in a list of them: "(default auto; auto, egl or beams)" or
+/// "The last stage: simplify, atlas, normals".
 std::vector<std::string> words_of(const CLI::Option& option) {
   const std::string help = option.get_description();
   std::smatch found;
-  static const std::regex list(R"(; ([a-z0-9-]+(?:, [a-z0-9-]+)* or [a-z0-9-]+)\)$)");
+  static const std::regex list(
+      R"((?:; ([a-z0-9-]+(?:, [a-z0-9-]+)* or [a-z0-9-]+)\)|: ([a-z0-9-]+(?:, [a-z0-9-]+){2,}))$)");
   if (!std::regex_search(help, found, list)) return {};
-  const std::string text = found[1];
+  const std::string text = found[1].matched ? found[1] : found[2];
   static const std::regex separator(", | or ");
   return {std::sregex_token_iterator(text.begin(), text.end(), separator, -1), std::sregex_token_iterator()};
 }
@@ -57,16 +60,30 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-/// Text as roff takes it.
+/// Escapes text for roff.
 std::string roff(const std::string& text) {
   std::string safe = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
   safe = replaced(safe, "\n", "\n.br\n");
   return !safe.empty() && (safe[0] == '.' || safe[0] == '\'') ? "\\&" + safe : safe;
 }
 
+/// Options that --help shows, those of one group together.
+Options grouped_options(const CLI::App& app) {
+  std::vector<std::string> groups;
+  const Options options = shown_options(app);
+  for (const CLI::Option* option : options)
+    if (std::find(groups.begin(), groups.end(), option->get_group()) == groups.end())
+      groups.push_back(option->get_group());
+  Options grouped;
+  for (const std::string& group : groups)
+    std::copy_if(options.begin(), options.end(), std::back_inserter(grouped),
+                 [&](const CLI::Option* option) { return option->get_group() == group; });
+  return grouped;
+}
+
 void add_man_options(const CLI::App& app, std::string& page) {
   std::string group;
-  for (const CLI::Option* option : shown_options(app)) {
+  for (const CLI::Option* option : grouped_options(app)) {
     if (option->get_group() != group) page += ".SS " + roff(group = option->get_group()) + "\n";
     const std::string names = fmt::format("{}", fmt::join(names_of(*option), ", "));
     const std::string value = takes_value(*option) && !option->get_positional() ? " \\fIVALUE\\fR" : "";
@@ -83,7 +100,7 @@ std::string man_page(const CLI::App& app) {
       inputs += " \\fI" + roff(option->get_name(true)) + "\\fR" + (option->get_items_expected_max() > 1 ? " ..." : "");
   const std::string purpose = app.get_description();
   std::string page =
-      fmt::format(".TH {} 1 \"\" \"Kiln {}\" \"Kiln\"\n.SH NAME\n{} \\- {}\n.SH SYNOPSIS\n\\fB{}\\fR", name,
+      fmt::format(".TH {} 1 \"\" \"Kiln {}\" \"Kiln\"\n.ad l\n.SH NAME\n{} \\- {}\n.SH SYNOPSIS\n\\fB{}\\fR", name,
                   KILN_VERSION, roff(name), roff(purpose.substr(0, purpose.find('\n'))), roff(name));
   page += (shown_subcommands(app).empty() ? "" : " \\fICOMMAND\\fR") + inputs + " [\\fIOPTIONS\\fR]\n";
   page += ".SH DESCRIPTION\n" + roff(purpose) + "\n.SH OPTIONS\n";
@@ -98,7 +115,7 @@ std::string man_page(const CLI::App& app) {
   return page;
 }
 
-/// Branches of a shell's `case` over the word before: what options take.
+/// Writes branches of a shell's `case` over the previous word: the words that options take.
 std::string value_cases(const CLI::App& app) {
   std::string cases;
   for (const CLI::Option* option : shown_options(app))
@@ -123,8 +140,11 @@ std::string bash_completion(const CLI::App& app) {
     command_names += " " + command->get_name();
     commands += fmt::format("    {}) names=\"{}\" ;;\n", command->get_name(), all_names(*command));
   }
-  std::string text = function + "() {\n  local word=${COMP_WORDS[COMP_CWORD]} names=\"" + all_names(app) + "\"\n";
-  text += "  case ${COMP_WORDS[COMP_CWORD-1]} in\n" + cases + "  esac\n";
+  std::string text = function + "() {\n  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n";
+  text += "  local names=\"" + all_names(app) + "\"\n";
+  // Bash splits --option=word at the equals sign.
+  text += "  if [[ $word == = ]]; then word=; elif [[ $before == = ]]; then before=${COMP_WORDS[COMP_CWORD-2]}; fi\n";
+  text += "  case $before in\n" + cases + "  esac\n";
   if (!commands.empty()) {
     text += "  case ${COMP_WORDS[1]} in\n" + commands + "  esac\n";
     text += "  if [[ $COMP_CWORD == 1 ]]; then COMPREPLY=($(compgen -W \"$names" + command_names +
@@ -136,7 +156,7 @@ std::string bash_completion(const CLI::App& app) {
   return text + "complete -o filenames -F " + function + " " + app.get_name() + "\n";
 }
 
-/// An option as zsh's _arguments takes it.
+/// Writes options as arguments of zsh's _arguments.
 std::string zsh_options(const CLI::App& app) {
   std::string text;
   for (const CLI::Option* option : shown_options(app)) {

@@ -62,7 +62,7 @@ struct StageRun {
   std::vector<std::string> command;                 ///< program (a bare name, found beside kiln) and arguments
   std::vector<std::string> helpers = {};            ///< further programs it runs
   std::vector<std::filesystem::path> inputs = {};   ///< files of the user, and of other stages of the asset
-  std::vector<std::filesystem::path> outputs = {};  ///< the record, <stage>.json, first
+  std::vector<std::filesystem::path> outputs = {};  ///< the record, `<stage>.json`, first
   std::filesystem::path checkpoint = {};            ///< a folder; where it is there, the stage goes on with --resume
   std::vector<std::string> limits = {};             ///< more arguments, budgets of a report: others alone judge it anew
 
@@ -98,15 +98,15 @@ struct AssetPlan {
 
 /// Metrics that a stage writes together.
 struct MetricGroup {
-  std::string names;                                   ///< parted by blanks, as <stage>.json has them
-  std::string prefix = {};                             ///< what those have in common that are not always written
-  std::string setting = {};                            ///< what has them written, for messages: "bounces of bake"
+  std::string names;                                   ///< separated by blanks, as in the stage's record
+  std::string prefix = {};                             ///< common beginning of those that are not always written
+  std::string setting = {};                            ///< setting that they depend on, for messages: "bounces of bake"
   bool (*is_written)(const AssetSettings&) = nullptr;  ///< null: always
 };
 
-/// All that the driver and other tools know of a stage: the one description, beside its settings.
+/// Description of a stage, beside its settings: all that the driver and other tools know of it.
 struct StageInfo {
-  std::string name;         ///< as pipeline.yaml has it; its program is kiln-<name>
+  std::string name;         ///< name in pipeline.yaml; the program's is kiln- and this
   bool on_request = false;  ///< an asset passes it only where pipeline.yaml has a block for it
   StageOptions (*options)() = nullptr;
   std::vector<std::pair<std::string, std::string>> rivals = {};  ///< settings that exclude each other
