@@ -18,8 +18,10 @@ done
 # The runtime includes core only, and its installed headers nothing of the house.
 grep -rnE '#include "(tools|lights|render|view|kiln)/' "$source_folder/runtime" --include=*.h --include=*.cpp |
   grep -v '"kiln/[a-z_/]*\.h"' && fault "the runtime includes tools"
-for stage in simplify atlas normals bake compress probes report; do
-  grep -rnE "#include \"$stage/" "$source_folder/runtime" --include=*.h --include=*.cpp && fault "the runtime includes $stage"
+for folder in "$source_folder"/stages/*/; do
+  stage=$(basename "$folder")
+  [ "$stage" = core ] && continue
+  grep -rnE "#include \"$stage/" "$source_folder/runtime" --include=*.cpp --include=*.h && fault "the runtime includes $stage"
 done
 grep -rnE '^#include' "$source_folder/runtime/include" | grep -vE '#include (<[a-z_]+>|"kiln/)' && fault "installed headers include the house"
 
