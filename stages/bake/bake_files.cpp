@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "bake/engines/engines.h"
+#include "bake/backends.h"
 #include "bake/planes/coefficient_planes.h"
 #include "bake/planes/vertex_planes.h"
 #include "bake/scene/vertex_receivers.h"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "bake/egl/shadow_settings.h"
+#include "bake/engines/shadow_settings.h"
 #include "bake/subsurface/subsurface_settings.h"
 #include "base/options.h"
 #include "detail/seam_choice.h"

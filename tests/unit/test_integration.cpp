@@ -7,8 +7,9 @@
 #include <unistd.h>
 
 #include "bake/bake.h"
-#include "bake/engines/engines.h"
+#include "bake/backends.h"
 #include "bake/integrate/error_driven.h"
+#include "bake/planes/quantisation_floor.h"
 #include "base/errors.h"
 #include "import/import_mesh.h"
 #include "shapes.h"

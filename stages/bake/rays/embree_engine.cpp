@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bake/engines/embree_engine.h"
+#include "bake/rays/embree_engine.h"
 
 #include "raycast/ray_transfer.h"
 #include "sh/basis.h"

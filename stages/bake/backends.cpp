@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bake/engines/engines.h"
+#include "bake/backends.h"
 
-#include "bake/bounce/ray_gather_engine.h"
+#include "bake/rays/ray_gather_engine.h"
 #include "bake/egl/bundle_engine.h"
 #include "bake/egl/egl_engine.h"
-#include "bake/engines/beam_engine.h"
-#include "bake/engines/embree_engine.h"
-#include "bake/engines/shadow_rays.h"
+#include "bake/rays/beam_engine.h"
+#include "bake/rays/embree_engine.h"
+#include "bake/rays/embree_shadow_rays.h"
 #include "gpu/egl_context.h"
 #include "sh/ray_offset.h"
 
