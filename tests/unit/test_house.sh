@@ -1,47 +1,106 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Checks the rules of the house: test_house.sh SOURCE_FOLDER BENCH_BAKE_EGL
+# The house keeps its arrows: test_house.sh SOURCE_FOLDER BENCH_BAKE_EGL
 set -u
 source_folder=$1 engine_program=$2
 faults=0
 fault() { echo "FAULT: $*"; faults=1; }
 
-for folder in "$source_folder"/stages/*/; do
-  stage=$(basename "$folder")
-  for other in "$source_folder"/stages/*/; do
-    other=$(basename "$other")
-    if [ "$stage" = "$other" ] || [ "$other" = core ]; then continue; fi
-    grep -rnE "#include \"(stages/)?$other/" "$folder" --include=*.h --include=*.cpp && fault "$stage includes $other"
+# Stages include core and themselves.
+stages=$(cd "$source_folder/stages" && ls -d */ | tr -d / | grep -vx core)
+[ "$(wc -w <<< "$stages")" -ge 7 ] || fault "found the stages $stages; expected at least 7"
+for stage in $stages; do
+  for other in $stages; do
+    [ "$stage" = "$other" ] && continue
+    grep -rnE "#include \"(stages/)?$other/" "$source_folder/stages/$stage" --include=*.h --include=*.cpp && fault "$stage includes $other"
   done
+  grep -rnE "#include \"(stages/)?$stage/" "$source_folder/stages/core" --include=*.h --include=*.cpp --include=*.inc && fault "core includes $stage"
 done
 
-# The runtime includes core only, and its installed headers nothing of the house.
+# What two stages need moves down: no two of them have the same run of code. Lines that any file has do not count.
+runs_of_code() {
+  awk -v run=8 '
+    FNR == 1 { n = split(FILENAME, path, "/stages/"); split(path[n], part, "/"); stage = part[1]; kept = 0 }
+    { gsub(/^[ \t]+|[ \t]+$/, "") }
+    /^#include|^\/\/|^[{}();]*$|^(public|private):$|^namespace |^using namespace |^}  \/\/ namespace/ { next }
+    {
+      line[kept++] = $0
+      if (kept < run) next
+      text = line[kept - run]
+      for (k = kept - run + 1; k < kept; ++k) text = text "\n" line[k]
+      if (text in home && home[text] != stage) print FILENAME ":" FNR ": also in " place[text]
+      else if (!(text in home)) { home[text] = stage; place[text] = FILENAME ":" FNR }
+    }' "$@"
+}
+mapfile -t sources < <(find "$source_folder"/stages -mindepth 2 \( -name '*.h' -o -name '*.cpp' \) -not -path '*/core/*' | sort)
+runs_of_code "${sources[@]}" | grep . && fault "two stages have the same code; what both need moves down into core"
+
+# Rooms of core, and folders inside the bake, include only what house_arrows.txt allows them, which is a list without circles.
+check_arrows() {
+  local section=$1 root=$2 listed=" " unit allowed other found
+  declare -A may=()
+  while IFS=: read -r unit allowed; do
+    for other in $allowed; do
+      [[ "$listed" == *" $other "* ]] || fault "house_arrows.txt, $section: $unit may include $other, which is not above it"
+    done
+    listed+="$unit "
+    may[$unit]=" $allowed $unit "
+  done < <(awk -v section="[$section]" '/^\[/ { on = $0 == section } on && /^[a-z_]+:/' "$(dirname "$0")/house_arrows.txt")
+  found=0
+  while IFS= read -r line; do  # "unit/…:#include "unit/…"
+    found=$((found + 1))
+    unit=${line%%:*} other=${line##*\"}
+    unit=${unit%%/*} unit=${unit%%.*} other=${other%%/*} other=${other%%.*}
+    [ "$unit" = main ] && continue
+    [ -n "${may[$unit]:-}" ] || { fault "$section/$unit is not in house_arrows.txt"; continue; }
+    [[ "${may[$unit]}" == *" $other "* ]] || fault "$section: $line"
+  done < <(cd "$source_folder/$section" && grep -roE "#include \"${root}[a-z_]+[/.]" --include=*.h --include=*.cpp --include=*.inc . | sed "s#^\./##; s#\"$root#\"#")
+  [ "$found" -gt 20 ] || fault "$section: found $found includes; expected more than 20"
+}
+check_arrows stages/core ""
+check_arrows stages/bake bake/
+
+# The runtime stands on core alone, and its headers on none of the house.
 grep -rnE '#include "(tools|lights|render|view|kiln)/' "$source_folder/runtime" --include=*.h --include=*.cpp |
   grep -v '"kiln/[a-z_/]*\.h"' && fault "the runtime includes tools"
-for folder in "$source_folder"/stages/*/; do
-  stage=$(basename "$folder")
-  [ "$stage" = core ] && continue
-  grep -rnE "#include \"$stage/" "$source_folder/runtime" --include=*.cpp --include=*.h && fault "the runtime includes $stage"
+for stage in $stages; do
+  grep -rnE "#include \"$stage/" "$source_folder/runtime" --include=*.h --include=*.cpp && fault "the runtime includes $stage"
 done
 grep -rnE '^#include' "$source_folder/runtime/include" | grep -vE '#include (<[a-z_]+>|"kiln/)' && fault "installed headers include the house"
 
-# The EGL engine links nothing that a bare machine lacks.
-ldd "$engine_program" | grep -E 'OpenImageIO|embree|draco|OpenMesh|tbb|gmp|fmt|xxhash' && fault "the EGL engine links more than EGL, GL and Eigen"
-ldd "$engine_program" | grep -q EGL || fault "$engine_program does not look like the EGL engine"
+# The EGL engine can be carried to a bare machine: besides the C++ runtime it needs EGL, GL and what loads them.
+needed=$(readelf -d "$engine_program" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p')
+grep -qE '^lib(EGL|epoxy)\.' <<< "$needed" || fault "$engine_program does not look like the EGL engine: it needs $needed"
+for library in $needed; do
+  case $library in
+    libEGL.so.* | libGL.so.* | libOpenGL.so.* | libGLdispatch.so.* | libepoxy.so.*) ;;
+    libstdc++.so.* | libgcc_s.so.* | libm.so.* | libc.so.* | libpthread.so.* | libdl.so.* | ld-linux*) ;;
+    libasan.so.* | libubsan.so.* | libtsan.so.*) ;;  # the presets of sanitizers
+    *) fault "the EGL engine links $library; it may link EGL, GL and the C++ runtime" ;;
+  esac
+done
 
-# Every source file states its licence; no part of the runtime is under the GPL.
-licence() { head -2 "$1" | grep -o 'SPDX-License-Identifier: .*' | cut -d' ' -f2; }
+# Every source file says its licence; what the runtime is made of is not under the GPL.
+cd "$source_folder" || exit 1
+lacking() { # lacking TEXT: those of the files on stdin, NUL-separated, whose first two lines lack it
+  xargs -0 awk -v text="SPDX-License-Identifier: $1" '
+    FNR == 1 { if (file != "" && !said) print file; file = FILENAME; said = 0 }
+    FNR <= 2 && index($0, text) { said = 1 }
+    END { if (file != "" && !said) print file }'
+}
+files() { find "$@" -type f -print0; }  # files FOLDERS... TESTS...
+cpp=(-name '*.cpp' -o -name '*.h' -o -name '*.inc')
+glsl=(-name '*.glsl' -o -name '*.comp' -o -name '*.vert' -o -name '*.frag')
 while IFS= read -r file; do
-  [ -n "$(licence "$file")" ] || fault "$file does not say its licence"
-done < <(find "$source_folder/stages" "$source_folder/runtime" "$source_folder/tools" "$source_folder/examples" "$source_folder/shaders" "$source_folder/tests" \( -name '*.cpp' -o -name '*.h' -o -name '*.inc' -o -name '*.glsl' -o -name '*.comp' -o -name '*.vert' -o -name '*.frag' -o -name '*.py' -o -name '*.sh' -o -name CMakeLists.txt \))
+  fault "$file does not say its licence"
+done < <(files stages runtime tools examples shaders tests \( "${cpp[@]}" -o "${glsl[@]}" -o -name '*.py' -o -name '*.sh' -o -name CMakeLists.txt \) | lacking "")
 while IFS= read -r file; do
-  [ "$(licence "$file")" = MIT ] || fault "$file is part of the runtime and not under the MIT licence"
-done < <(find "$source_folder/runtime" "$source_folder/examples" "$source_folder/shaders" -type f \( -name '*.cpp' -o -name '*.h' -o -name '*.glsl' -o -name '*.frag' -o -name '*.py' \))
+  fault "$file is part of the runtime and not under the MIT licence"
+done < <(files runtime examples shaders \( "${cpp[@]}" -o "${glsl[@]}" -o -name '*.py' \) | lacking MIT)
 
-lines() { wc -l < "$1"; }
 while IFS= read -r file; do
-  [ "$(lines "$file")" -le 600 ] || fault "$file has more than 600 lines"
-done < <(find "$source_folder/stages" "$source_folder/runtime" "$source_folder/tools" "$source_folder/examples" "$source_folder/shaders" "$source_folder/tests" \( -name '*.cpp' -o -name '*.h' -o -name '*.glsl' -o -name '*.comp' -o -name '*.vert' -o -name '*.frag' \))
+  fault "$file has more than 600 lines"
+done < <(files stages runtime tools examples shaders tests \( "${cpp[@]}" -o "${glsl[@]}" \) | xargs -0 awk 'FNR == 601 { print FILENAME }')
 
 # Prose fits an editor's window: lines of Markdown have at most 120 columns, except tables and code.
 long_lines() { sed '/^```/,/^```/d' "$1" | LC_ALL=C.UTF-8 grep -E '^.{121,}' | grep -vE '^(\||    )'; }

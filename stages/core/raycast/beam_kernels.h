@@ -54,6 +54,19 @@ struct BeamMeetings {
   std::uint32_t sheets;
 };
 
+/// Work done, counted: the same on every machine and for any number of threads.
+struct BeamWork {
+  std::uint64_t blocks = 0;     ///< packets times blocks of directions
+  std::uint64_t facing = 0;     ///< of their directions, those before some receiver
+  std::uint64_t boxes = 0;      ///< tests of a shaft against 16 boxes
+  std::uint64_t packed = 0;     ///< clusters whose triangles a quarter's shaft was tested against
+  std::uint64_t clusters = 0;   ///< clusters sheared along a direction
+  std::uint64_t triangles = 0;  ///< triangles tested against 16 receivers
+
+  BeamWork& operator+=(const BeamWork& more);
+  BeamWork operator-(const BeamWork& earlier) const;
+};
+
 /// One direction, and the candidates: triangles that may block it.
 struct BeamRay {
   const float* direction;
@@ -63,6 +76,7 @@ struct BeamRay {
   const BeamBoxes* boxes;
   bool outside;    ///< whether only triangles that face the ray count
   float doubtful;  ///< distance below which is_before decides hits
+  BeamWork* work;  ///< counts of boxes, clusters and triangles
 };
 
 /// Inner loops of the beam tracer, 16 lanes each.
