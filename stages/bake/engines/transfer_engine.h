@@ -23,17 +23,6 @@ struct TransferScene {
   bool closed = false;
 };
 
-/// The diagonal of the bounding box of points; 0 for none.
-inline float diagonal_of(std::span<const Eigen::Vector3f> points) {
-  if (points.empty()) return 0;
-  Eigen::Vector3f lower = points.front(), upper = points.front();
-  for (const Eigen::Vector3f& point : points) {
-    lower = lower.cwiseMin(point);
-    upper = upper.cwiseMax(point);
-  }
-  return (upper - lower).norm();
-}
-
 /// How many pairs of a receiver and a direction were decided how. What is in none of the skipped kinds was tested.
 struct TransferWork {
   std::uint64_t pairs = 0;           ///< all of them
