@@ -11,20 +11,12 @@
 #include "asset/prt_asset.h"
 #include "gpu/gl_objects.h"
 #include "runtime/draw/asset_uploads.h"
+#include "runtime/draw/scene_view.h"
 #include "runtime/draw/technique.h"
 #include "runtime/light/incident_samples.h"
 #include "runtime/light/scene_lights.h"
 
 namespace kiln {
-
-/// The surface, as far as it is not in the transfer.
-struct SurfaceLook {
-  /// Linear, times the asset's own; none: 1 where the asset knows its own, else a grey of 0.8.
-  std::optional<std::array<float, 3>> albedo;
-  bool own_albedo = true;  ///< whether the asset's own counts
-  float specular = 0;      ///< of the Phong techniques alone: reflectance of the highlight
-  float shininess = 32;    ///< of these: the power of its cosine
-};
 
 /// What a technique takes on the GPU, in bytes, as in Chapter 2010, table 6.2.
 struct GpuMemory {

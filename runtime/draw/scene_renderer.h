@@ -5,17 +5,14 @@
 #include <vector>
 
 #include "image/image.h"
-#include "mesh/camera.h"
 #include "mesh/placement.h"
 #include "runtime/draw/asset_renderer.h"
 #include "runtime/draw/frame.h"
+#include "runtime/draw/scene_view.h"
 #include "runtime/draw/technique.h"
 #include "runtime/light/scene_lights.h"
 
 namespace kiln {
-
-/// Whether light is computed for every sample drawn, or once for each that is visible.
-enum class Shading { forward, deferred };
 
 /// One asset in a scene.
 struct SceneAsset {
@@ -23,16 +20,6 @@ struct SceneAsset {
   Placement placement;
   Technique technique = Technique::textured_prt;
   const ProbeSet* probes = nullptr;  ///< the light where it stands, past what kiln-probes was given; none: nothing
-};
-
-/// One picture of a scene.
-struct SceneView {
-  Camera camera;    ///< in the scene's space
-  int width = 768;  ///< pixels
-  int height = 768;
-  int supersample = 2;  ///< samples per pixel along each axis
-  SurfaceLook look;
-  Shading shading = Shading::forward;
 };
 
 /// The vertices of all assets where they stand.

@@ -2,25 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <vector>
 
 #include "image/image.h"
+#include "view/state/panel_text.h"
 
 namespace kiln {
-
-/// A row of a panel: a dim label, and what it is of.
-struct PanelRow {
-  std::string label;
-  std::string value;
-};
-
-struct Panel {
-  std::string title;  ///< empty: none
-  std::vector<PanelRow> rows;
-
-  bool operator==(const Panel&) const;
-};
 
 /// The same in as few lines as fit `width` pixels: for windows that have no room beside the asset.
 Panel strip_of(const Panel& panel, int width, double scale);
