@@ -62,6 +62,9 @@ struct PrtAlbedo {
   Eigen::Vector3f constant = Eigen::Vector3f::Ones();  ///< linear; where there is no picture
   bool within_transfer = false;  ///< whether a bake has multiplied transfer by it, which leaves ones here
 
+  /// Returns the linear albedo of a texel, j * width + i; ones where it is not known.
+  Eigen::Vector3f at(std::size_t texel) const;
+
   static PrtAlbedo of_constant(const Eigen::Vector3f& linear) { return {true, "", {}, linear}; }
   static PrtAlbedo of_picture(const std::string& name) { return {true, name}; }
   static PrtAlbedo of_transfer() { return {true, "", {}, Eigen::Vector3f::Ones(), true}; }
