@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Every receiver against the depth maps of a batch of directions: clamped cosine times visibility
-// (stages/bake/egl/shadow_settings.h says what each option does).
+// (stages/bake/engines/shadow_settings.h says what each option does).
 //   TAPS            1, 2 or 3: so many texels a side are compared
 //   STEEPEST_SLOPE  largest tangent of the angle between normal and direction that a slope or bias follows
 //   RECEIVER_PLANE  1: a texel is compared with the receiver's tangent plane at the texel's centre

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bake/bounce/bounced_light.h"
-#include "bake/engines/engines.h"
+#include "bake/backends.h"
 #include "base/errors.h"
 #include "base/stopwatch.h"
 #include "sh/basis.h"

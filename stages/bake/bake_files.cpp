@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "bake/engines/engines.h"
+#include "bake/backends.h"
 #include "bake/planes/coefficient_planes.h"
 #include "bake/planes/vertex_planes.h"
 #include "bake/scene/vertex_receivers.h"
@@ -297,6 +297,7 @@ Json describe_bake(const BakeScene& scene, const BakeResult& result) {
                         {"behind_tiles", share(result.work.behind_tiles)},
                         {"lit_tiles", share(result.work.lit_tiles)},
                         {"shadowed_tiles", share(result.work.shadowed_tiles)}};
+  metrics["single_rays"] = share(result.work.single_rays);
   metrics["ambiguous"] = share(result.work.ambiguous);
   metrics["refined"] = share(result.work.refined);
   if (result.adaptive) metrics["adaptive"] = describe_adaptive(*result.adaptive, result.directions);

@@ -79,6 +79,7 @@ std::string error_text(const ErrorTarget& target) {
 
 const std::vector<std::pair<std::string, BakeBackend>> backend_words = {{"auto", BakeBackend::automatic},
                                                                         {"egl", BakeBackend::egl},
+                                                                        {"mixed", BakeBackend::mixed},
                                                                         {"beams", BakeBackend::beams},
                                                                         {"embree", BakeBackend::embree}};
 
@@ -138,7 +139,8 @@ void add_main_options(OptionSet& options, BakeSettings& settings) {
       .affects(Affects::sums)
       .choice("backend", settings.backend, backend_words,
               "Shadows from depth maps on the GPU, from beams of rays on the CPU, or ray by ray from Embree, the "
-              "reference; auto: egl if EGL has a GPU, else beams, but embree below 192 directions")
+              "reference; mixed: beams for texels for which a pilot finds them cheaper, else rays; auto: egl if EGL "
+              "has a GPU, else mixed, but embree below 192 directions")
       .affects(Affects::plan)
       .choice(
           "receiver", settings.receiver, {{"high", BakeReceiver::high}, {"low", BakeReceiver::low}},

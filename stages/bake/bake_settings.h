@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "bake/egl/shadow_settings.h"
+#include "bake/engines/shadow_settings.h"
 #include "bake/subsurface/subsurface_settings.h"
 #include "base/options.h"
 #include "detail/seam_choice.h"
@@ -16,9 +16,10 @@
 namespace kiln {
 
 enum class BakeBackend {
-  automatic,  ///< egl where EGL has a GPU, else beams
+  automatic,  ///< egl where EGL has a GPU, else mixed
   egl,        ///< depth maps
-  beams,      ///< rays in bundles, Kiln's own: the fast way on a CPU
+  mixed,      ///< beams for receivers for which they are cheaper than rays, else rays: the fast way on a CPU
+  beams,      ///< rays in bundles, Kiln's own
   embree      ///< ray by ray: the reference
 };
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bake/bounce/bounced_light.h"
-#include "bake/engines/engines.h"
+#include "bake/backends.h"
 #include "bench_scene.h"
 #include "cost.h"
 #include "sh/basis.h"

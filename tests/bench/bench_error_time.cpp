@@ -22,7 +22,7 @@
 #include <tbb/global_control.h>
 #include <vector>
 
-#include "bake/engines/engines.h"
+#include "bake/backends.h"
 #include "bench_scene.h"
 #include "cost.h"
 #include "sh/basis.h"

@@ -26,6 +26,7 @@
 #include "mesh/draco_file.h"
 #include "mesh/triangle_mesh.h"
 #include "raycast/beam_transfer.h"
+#include "raycast/mixed_transfer.h"
 #include "raycast/ray_scene.h"
 #include "raycast/ray_transfer.h"
 #include "sh/basis.h"
@@ -241,8 +242,9 @@ int main(int argc, char** argv) {
   };
   const std::vector<Eigen::Vector3f> stratified = sample_directions(Sampling::stratified, direction_count, 1);
   Cost probe_cost, stratified_cost, fibonacci_cost;
-  Cost streams_cost, build_cost;
-  TransferVectors streams_transfer, beams_transfer;
+  Cost streams_cost, build_cost, mixed_cost;
+  double beam_share = 1;
+  TransferVectors streams_transfer, beams_transfer, mixed_transfer;
   BeamSavings savings;
   for (int k = 0; k < repeats; ++k) {
     if (!skip_probe) {
@@ -264,20 +266,31 @@ int main(int argc, char** argv) {
                           by_beams(scene, receivers, coherent(sampling, direction_count, 1), ray_offset, &savings);
                     }));
     }
+    MixedTransfer mixed(mesh.positions, mesh.triangles, ray_offset);
+    mixed.set_receivers(receivers, coefficients, coherent(Sampling::fibonacci, direction_count, 1));  // builds trees
+    mixed_cost = lesser(mixed_cost, cost_of([&] {
+                          const auto directions = coherent(Sampling::fibonacci, direction_count, 1);
+                          mixed.set_receivers(receivers, coefficients, directions);
+                          mixed.add(directions, no_progress);
+                          mixed_transfer = mixed.sums().transfer();
+                        }));
+    beam_share = mixed.split().beam_share();
   }
   print("probe, stratified", direction_count, probe_cost);
   print("Embree streams, fibonacci", direction_count, streams_cost);
-  print("engine, stratified", direction_count, stratified_cost);
-  print("engine, fibonacci", direction_count, fibonacci_cost);
+  print("beams, stratified", direction_count, stratified_cost);
+  print("beams, fibonacci", direction_count, fibonacci_cost);
+  print("beams and streams, fibonacci", direction_count, mixed_cost);
   std::printf("building the scene: %.3f s\n", build_cost.wall);
-  std::printf("ratio at equal directions: %.2f (CPU time %.2f)\n", probe_cost.wall / fibonacci_cost.wall,
-              probe_cost.cpu / fibonacci_cost.cpu);
+  std::printf("ratio at equal directions: beams %.2f (CPU time %.2f), both %.2f (CPU time %.2f), %.1f %% by beams\n",
+              probe_cost.wall / fibonacci_cost.wall, probe_cost.cpu / fibonacci_cost.cpu,
+              probe_cost.wall / mixed_cost.wall, probe_cost.cpu / mixed_cost.cpu, 100 * beam_share);
   const double pairs = static_cast<double>(receivers.size()) * direction_count;
   std::printf("not tested: %.1f %% behind, %.1f %% lit\n", 100 * static_cast<double>(savings.behind) / pairs,
               100 * static_cast<double>(savings.lit) / pairs);
   if (!skip_probe)
-    std::printf("difference from Embree over the same directions: %.2e\n",
-                relative_l2(beams_transfer, streams_transfer));
+    std::printf("difference from Embree over the same directions: beams %.2e, both %.2e\n",
+                relative_l2(beams_transfer, streams_transfer), relative_l2(mixed_transfer, streams_transfer));
   if (reference_count == 0) return 0;
 
   // Step 2: the error of the stratified set, and the least Fibonacci set that has it, over some receivers.
@@ -310,7 +323,7 @@ int main(int argc, char** argv) {
                         }));
   std::printf("error of %d stratified directions: %.4f %%; of %d Fibonacci: %.4f %%\n", direction_count, 100 * wanted,
               enough, 100 * error(Sampling::fibonacci, enough));
-  print("engine, fibonacci, equal error", enough, equal_cost);
+  print("beams, fibonacci, equal error", enough, equal_cost);
   std::printf("ratio at equal error: %.2f (CPU time %.2f)\n", probe_cost.wall / equal_cost.wall,
               probe_cost.cpu / equal_cost.cpu);
   return 0;

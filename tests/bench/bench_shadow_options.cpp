@@ -25,8 +25,8 @@
 
 #include "bake/egl/shade_pass.h"
 #include "bake/egl/shadow_maps.h"
-#include "bake/engines/embree_engine.h"
-#include "bake/engines/shadow_rays.h"
+#include "bake/rays/embree_engine.h"
+#include "bake/rays/embree_shadow_rays.h"
 #include "bake/scene/occluders.h"
 #include "gpu/egl_context.h"
 #include "gpu/program.h"

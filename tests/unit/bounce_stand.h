@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bake/bake.h"
-#include "bake/engines/engines.h"
+#include "bake/backends.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/bounce/bounced_light.h"
 
-#include "bake/engines/engines.h"
+#include "bake/backends.h"
 #include "base/stopwatch.h"
 
 namespace kiln {

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/integrate/error_driven.h"
+#include "bake/planes/quantisation_floor.h"
 #include "base/stopwatch.h"
 #include "raycast/beam_transfer.h"
 #include "sh/basis.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bake/bake_settings.h"
-#include "bake/bounce/gather_engine.h"
+#include "bake/engines/gather_engine.h"
 #include "bake/engines/transfer_engine.h"
 #include "bake/scene/occluders.h"
 #include "raycast/known_rays.h"

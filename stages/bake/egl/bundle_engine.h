@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "bake/bounce/gather_engine.h"
-#include "bake/egl/shadow_settings.h"
+#include "bake/engines/gather_engine.h"
+#include "bake/engines/shadow_settings.h"
 
 namespace kiln {
 

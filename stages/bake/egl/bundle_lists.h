@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "bake/bounce/gather_engine.h"
-#include "bake/egl/shadow_settings.h"
+#include "bake/engines/gather_engine.h"
+#include "bake/engines/shadow_settings.h"
 #include "gpu/gl_objects.h"
 
 namespace kiln {

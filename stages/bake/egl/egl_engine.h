@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "bake/egl/shadow_maps.h"
+#include "bake/engines/shadow_rays.h"
 #include "bake/engines/transfer_engine.h"
 
 namespace kiln {

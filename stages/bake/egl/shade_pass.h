@@ -7,6 +7,7 @@
 
 #include "bake/egl/receiver_tiles.h"
 #include "bake/egl/shadow_maps.h"
+#include "bake/engines/shadow_rays.h"
 #include "bake/engines/transfer_engine.h"
 #include "gpu/gl_objects.h"
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "bake/egl/shadow_settings.h"
+#include "bake/engines/shadow_settings.h"
 #include "bake/engines/transfer_engine.h"
 #include "gpu/gl_objects.h"
 #include "sh/ray_offset.h"

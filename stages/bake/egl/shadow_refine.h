@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "bake/egl/shadow_settings.h"
+#include "bake/engines/shadow_rays.h"
 #include "bake/engines/transfer_engine.h"
 
 namespace kiln {

@@ -2,11 +2,10 @@
 #include "bake/integrate/error_driven.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <vector>
 
-#include "base/errors.h"
+#include "bake/planes/quantisation_floor.h"
 
 namespace kiln {
 
@@ -45,24 +44,6 @@ double half_difference(const TransferSums& first, const TransferSums& all) {
 }
 
 }  // namespace
-
-double quantisation_floor(const TransferVectors& transfer, int bits) {
-  return quantisation_floor(std::span(&transfer, 1), bits);
-}
-
-double quantisation_floor(std::span<const TransferVectors> channels, int bits) {
-  double error = 0, reference = 0;
-  for (const TransferVectors& transfer : channels)
-    for (int i = 0; i < transfer.coefficients; ++i) {
-      const std::span<const float> plane = transfer.plane(i);
-      if (plane.empty()) return 0;
-      const auto [lowest, highest] = std::minmax_element(plane.begin(), plane.end());
-      const double step = (static_cast<double>(*highest) - *lowest) / ((1 << bits) - 1);
-      error += static_cast<double>(plane.size()) * step * step / 12;
-      for (float value : plane) reference += static_cast<double>(value) * value;
-    }
-  return reference > 0 ? std::sqrt(error / reference) : 0;
-}
 
 DirectionChoice choose_directions(TransferEngine& engine, const Receivers& sample, const BakeSettings& settings,
                                   const ErrorTarget& target, int seed, const ProgressFunction& progress) {

@@ -1,20 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <span>
-#include <string>
-
 #include "bake/bake_settings.h"
 #include "bake/engines/transfer_engine.h"
 
 namespace kiln {
-
-/// Relative L2 that storing `transfer` costs: each plane's values are rounded to 2^bits - 1 steps of its range, an
-/// error of variance step^2 / 12.
-double quantisation_floor(const TransferVectors& transfer, int bits);
-
-/// The same over all channels together.
-double quantisation_floor(std::span<const TransferVectors> channels, int bits);
 
 struct DirectionChoice {
   int directions = 0;

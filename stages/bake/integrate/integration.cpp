@@ -5,7 +5,7 @@
 #include <charconv>
 #include <stdexcept>
 
-#include "bake/engines/engines.h"
+#include "bake/backends.h"
 #include "bake/integrate/unoccluded.h"
 #include "base/errors.h"
 #include "base/stopwatch.h"

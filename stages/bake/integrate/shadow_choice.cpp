@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "bake/engines/engines.h"
-#include "bake/integrate/error_driven.h"
+#include "bake/backends.h"
+#include "bake/planes/quantisation_floor.h"
 #include "sh/directions.h"
 
 namespace kiln {

@@ -58,6 +58,21 @@ namespace avx512 {
 
 }  // namespace
 
+BeamWork& BeamWork::operator+=(const BeamWork& more) {
+  blocks += more.blocks;
+  facing += more.facing;
+  boxes += more.boxes;
+  packed += more.packed;
+  clusters += more.clusters;
+  triangles += more.triangles;
+  return *this;
+}
+
+BeamWork BeamWork::operator-(const BeamWork& earlier) const {
+  return {blocks - earlier.blocks, facing - earlier.facing,     boxes - earlier.boxes,
+          packed - earlier.packed, clusters - earlier.clusters, triangles - earlier.triangles};
+}
+
 const BeamKernels& beam_kernels() {
 #ifdef KILN_WIDER_VECTORS
   if (__builtin_cpu_supports("avx512f")) return avx512::kernels;

@@ -53,6 +53,19 @@ struct BeamMeetings {
   std::uint32_t sheets;  ///< of these, all its triangles and their neighbours face all rays, or turn away from all
 };
 
+/// Work done, counted: the same on every machine and for any number of threads.
+struct BeamWork {
+  std::uint64_t blocks = 0;     ///< packets times blocks of directions
+  std::uint64_t facing = 0;     ///< of their directions, those before some receiver
+  std::uint64_t boxes = 0;      ///< tests of a shaft against 16 boxes
+  std::uint64_t packed = 0;     ///< clusters whose triangles a quarter's shaft was tested against
+  std::uint64_t clusters = 0;   ///< clusters sheared along a direction
+  std::uint64_t triangles = 0;  ///< triangles tested against 16 receivers
+
+  BeamWork& operator+=(const BeamWork& more);
+  BeamWork operator-(const BeamWork& earlier) const;
+};
+
 /// One direction, and what may stand before it.
 struct BeamRay {
   const float* direction;
@@ -61,6 +74,7 @@ struct BeamRay {
   const BeamBoxes* boxes;  ///< theirs, less the box of the packet's origins (Minkowski), 16 at a time
   bool outside;            ///< only triangles that face the ray count
   float doubtful;          ///< hits nearer than this are decided by is_before
+  BeamWork* work;          ///< counts boxes, clusters and triangles
 };
 
 /// The inner loops of the beam tracer, 16 lanes each.

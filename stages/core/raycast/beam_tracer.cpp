@@ -137,6 +137,7 @@ bool BeamTracer::culls_backs(const BeamShaft& shaft) {
   while (!queue_.empty()) {
     const BeamScene::Node& node = scene_.nodes[queue_.back()];
     queue_.pop_back();
+    ++work_.boxes;
     const std::uint32_t met = kernels_.meet(facing, node.boxes).met & first_bits(node.count);
     if ((met & node.is_cluster) != 0) return false;
     for (std::uint32_t left = met; left != 0; left &= left - 1) queue_.push_back(node.child[__builtin_ctz(left)]);
@@ -190,6 +191,7 @@ bool BeamTracer::stands_outside() {
   while (!queue_.empty()) {
     const BeamScene::Node& node = scene_.nodes[queue_.back()];
     queue_.pop_back();
+    ++work_.boxes;
     std::uint32_t children = kernels_.meet(shaft, node.boxes).met & ((2u << (node.count - 1)) - 1);
     for (; children != 0; children &= children - 1) {
       const int i = __builtin_ctz(children);
@@ -219,6 +221,7 @@ BeamTracer::Verdict BeamTracer::search(const Front& from, const BeamShaft& shaft
   found.clear();
   std::size_t edges = 0;
   // Step 1: the clusters and sheets.
+  work_.boxes += from.boxes.size() + from.sheet_boxes.size();
   const BeamShaft about_zero = from_zero(shaft);
   for (std::size_t group = 0; group < from.boxes.size(); ++group) {
     const auto [met, sheets] = kernels_.meet(about_zero, from.boxes[group]);
@@ -263,6 +266,7 @@ std::size_t BeamTracer::open(std::uint32_t index, const BeamShaft& shaft, Front&
     known_nodes_.push_back(index);
   }
   if (places.above == 0) return 0;
+  ++work_.boxes;
   const auto [met, sheets] = kernels_.meet(shaft, node.boxes);
   const std::uint32_t may_be_sheets = places.whole & places.apart;
   std::size_t edges = 0;
@@ -292,6 +296,7 @@ void BeamTracer::open_sheets(const BeamShaft& shaft, Front& front) {
   while (!queue_.empty()) {
     const BeamScene::Node& node = scene_.nodes[queue_.back()];
     queue_.pop_back();
+    ++work_.boxes;
     for (std::uint32_t left = kernels_.meet(shaft, node.boxes).met & first_bits(node.count); left != 0;
          left &= left - 1) {
       const int i = __builtin_ctz(left);
@@ -328,6 +333,7 @@ bool BeamTracer::meets_sheet(const Front& front, const BeamShaft& shaft) {
   while (!queue_.empty()) {
     const BeamScene::Node& node = scene_.nodes[queue_.back()];
     queue_.pop_back();
+    ++work_.boxes;
     for (std::uint32_t left = kernels_.meet(ray, node.boxes).met & first_bits(node.count); left != 0;
          left &= left - 1) {
       const int i = __builtin_ctz(left);
@@ -348,6 +354,7 @@ bool BeamTracer::add_cluster(const BeamScene::Node& node, int child, bool whole,
     if (slot == none) return false;
     if (slot == unknown) {
       known_clusters_.push_back(cluster);
+      ++work_.packed;
       if (local_count_ == local_.size()) local_.emplace_back();
       LocalCluster& fresh = local_[local_count_];
       if (kernels_.keep_above(packet_, span_, scene_.clusters[cluster], fresh.triangles, fresh.lower, fresh.upper) ==
@@ -384,6 +391,8 @@ void BeamTracer::settle(Verdict verdict, std::uint32_t which, BeamWeights& weigh
 void BeamTracer::trace(const BeamBlock& block, BeamWeights& weights) {
   weights.facing = kernels_.face(packet_, block.direction, block.count, weights);
   weights.lit = 0;
+  ++work_.blocks;
+  work_.facing += static_cast<std::uint64_t>(std::popcount(weights.facing));
   if (weights.facing == 0) return;
   const BeamShaft shaft = shaft_within(nullptr, block.direction, weights.facing);
   const Verdict verdict = search(root_, shaft, most_of_block, of_block_);
@@ -395,6 +404,7 @@ void BeamTracer::trace(const BeamBlock& block, BeamWeights& weights) {
 
 void BeamTracer::pack(const BeamShaft& shaft) {
   Front& front = of_quarter_;
+  work_.packed += front.clusters.size();
   const std::size_t count = static_cast<std::size_t>(kernels_.pack(shaft, span_, front.clusters.data(),
                                                                    static_cast<int>(front.clusters.size()),
                                                                    packed_.data(), front.boxes.data()));
@@ -433,7 +443,8 @@ void BeamTracer::trace_quarter(const BeamBlock& block, std::uint32_t facing, con
                       static_cast<int>(front->clusters.size()),
                       front->boxes.data(),
                       outside,
-                      scene_.doubtful};
+                      scene_.doubtful,
+                      &work_};
     const auto shade = ray.candidate_count > few_clusters ? kernels_.shade_crowded : kernels_.shade;
     if (!shade(packet_, span_, ray, first, weights.weight[d])) weights.lit |= 1u << d;
   }

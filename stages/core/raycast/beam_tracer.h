@@ -40,6 +40,9 @@ class BeamTracer {
   /// Casts the rays of a block.
   void trace(const BeamBlock& block, BeamWeights& weights);
 
+  /// What the tracer has done so far.
+  const BeamWork& work() const { return work_; }
+
  private:
   /// A cluster without the triangles under all receivers' tangent planes, and its box.
   struct LocalCluster {
@@ -109,6 +112,7 @@ class BeamTracer {
   std::size_t local_count_ = 0;
   std::vector<BeamScene::Cluster> packed_;  ///< of the quarter
   std::vector<std::uint32_t> queue_;
+  BeamWork work_;
   Front root_, of_block_, of_quarter_, of_direction_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bake/bounce/ray_gather_engine.h"
+#include "bake/rays/ray_gather_engine.h"
 
 #include <numeric>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bake/engines/shadow_rays.h"
+#include "bake/rays/embree_shadow_rays.h"
 
 #include <algorithm>
 #include <limits>

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "bake/bounce/gather_engine.h"
+#include "bake/engines/gather_engine.h"
 #include "raycast/beam_scene.h"
 #include "raycast/beam_transfer.h"
 #include "raycast/ray_scene.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bake/engines/beam_engine.h"
+#include "bake/rays/beam_engine.h"
 
 #include "sh/basis.h"
 

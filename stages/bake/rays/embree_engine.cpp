@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bake/engines/embree_engine.h"
+#include "bake/rays/embree_engine.h"
 
 #include "raycast/ray_transfer.h"
 #include "sh/basis.h"
@@ -17,6 +17,7 @@ void EmbreeEngine::set_receivers(const Receivers& receivers, int bands) {
 void EmbreeEngine::add(std::span<const Eigen::Vector3f> directions, const ProgressFunction& progress) {
   add_transfer_by_rays(scene_, receivers_, directions, ray_offset_, sums_, progress);
   work_.pairs += static_cast<std::uint64_t>(receivers_.size()) * directions.size();
+  work_.single_rays = work_.pairs;
 }
 
 }  // namespace kiln

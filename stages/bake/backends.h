@@ -6,7 +6,7 @@
 #include <span>
 
 #include "bake/bake_settings.h"
-#include "bake/bounce/gather_engine.h"
+#include "bake/engines/gather_engine.h"
 #include "bake/engines/transfer_engine.h"
 #include "bake/scene/occluders.h"
 
