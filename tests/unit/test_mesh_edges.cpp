@@ -64,7 +64,7 @@ TEST(TriangleEdges, ListEverySideOnceInOrder) {
     ++next;
   });
   EXPECT_EQ(next, wanted.end());
-  TriangleEdges({}).for_each([](auto) { FAIL() << "an edge of no triangles"; });
+  TriangleEdges(std::vector<Triangle>{}).for_each([](auto) { FAIL() << "an edge of no triangles"; });
 }
 
 TEST(TriangleEdges, OfACubeWeldedAtItsCorners) {
