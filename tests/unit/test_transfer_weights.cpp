@@ -56,9 +56,9 @@ TEST(TransferWeights, DoNotDependOnTheUnitOfLength) {
 /// A sheet with a cube close above one half of it: transfer varies at the cube's rim and beneath it. The sheet is
 /// nearly flat, or its own slopes would vary transfer everywhere.
 TEST(TransferWeights, PutTrianglesWhereTransferVaries) {
-  TriangleMesh sheet = shapes::wavy_sheet(40);
-  for (Eigen::Vector3f& position : sheet.positions) position.y() *= 0.25f;
-  const TriangleMesh mesh = shapes::joined(sheet, shapes::cube(4), {0.5f, 0.62f, 0});
+  TriangleMesh flat = shapes::wavy_sheet(40);
+  for (Eigen::Vector3f& position : flat.positions) position.y() *= 0.25f;
+  const TriangleMesh mesh = shapes::joined(flat, shapes::cube(4), {0.5f, 0.62f, 0});
   const auto share_near_cube = [&](SimplifyAwareness aware) {
     SimplifySettings settings;
     settings.faces = 400;
