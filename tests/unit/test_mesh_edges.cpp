@@ -68,7 +68,13 @@ TEST(TriangleEdges, ListEverySideOnceInOrder) {
 }
 
 TEST(TriangleEdges, OfACubeWeldedAtItsCorners) {
-  const TriangleMesh split = shapes::cube(1);  // each side has vertices of its own
+  TriangleMesh split;  // each triangle has vertices of its own
+  const TriangleMesh cube = shapes::cube(1);
+  for (const Triangle& t : cube.triangles) {
+    const auto next = static_cast<std::uint32_t>(split.positions.size());
+    for (const std::uint32_t vertex : t) split.positions.push_back(cube.positions[vertex]);
+    split.triangles.push_back({next, next + 1, next + 2});
+  }
   EXPECT_FALSE(is_closed(split));
   const TriangleMesh whole = join_at_positions(split);
   EXPECT_TRUE(is_closed(whole));
