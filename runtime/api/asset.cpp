@@ -6,7 +6,6 @@
 
 #include "api/report_errors.h"
 #include "asset/prt_asset.h"
-#include "image/srgb.h"
 
 namespace kiln::runtime {
 
@@ -78,16 +77,11 @@ void Asset::transfer(std::span<const std::uint32_t> points, std::span<float> vec
 bool Asset::knows_albedo() const { return asset_->albedo.known; }
 
 Colour Asset::albedo(std::uint32_t point) const {
-  const PrtAlbedo& albedo = asset_->albedo;
-  if (!albedo.known) return {1, 1, 1};
-  if (albedo.picture.width() == 0) return {albedo.constant.x(), albedo.constant.y(), albedo.constant.z()};
   if (point >= points())
     throw Error("Asset::albedo: found point " + std::to_string(point) + "; expected less than " +
                 std::to_string(points()));
-  Colour colour;
-  for (std::size_t channel = 0; channel < 3; ++channel)
-    colour[channel] = linear_from_srgb(static_cast<float>(albedo.picture.values()[3 * point + channel]) / 255);
-  return colour;
+  const Eigen::Vector3f albedo = asset_->albedo.at(point);
+  return {albedo.x(), albedo.y(), albedo.z()};
 }
 
 }  // namespace kiln::runtime

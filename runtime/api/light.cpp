@@ -28,9 +28,10 @@ LightWindow window_of(Window window) {
   return LightWindow::hann;
 }
 
-/// Adds a light by way of its text form, so that numbers out of range are refused in one place.
+/// Adds a light whose numbers are in range.
 void add(SceneLights& lights, const LightSpec& spec) {
-  report_errors([&] { lights.specs.push_back(parse_light_spec(to_text(spec))); });
+  report_errors([&] { check_light_spec(spec); });
+  lights.specs.push_back(spec);
 }
 
 }  // namespace

@@ -11,21 +11,12 @@
 #include "asset/prt_asset.h"
 #include "gpu/gl_objects.h"
 #include "runtime/draw/asset_uploads.h"
+#include "runtime/draw/scene_view.h"
 #include "runtime/draw/technique.h"
 #include "runtime/light/incident_samples.h"
 #include "runtime/light/scene_lights.h"
 
 namespace kiln {
-
-/// Surface properties that transfer does not include.
-struct SurfaceLook {
-  /// Linear, multiplied by the asset's own albedo. Without a value: 1 if the asset knows its own albedo, else a grey of
-  /// 0.8.
-  std::optional<std::array<float, 3>> albedo;
-  bool own_albedo = true;  ///< whether the asset's own albedo is used
-  float specular = 0;      ///< reflectance of the highlight; Phong techniques only
-  float shininess = 32;    ///< power of the highlight's cosine; Phong techniques only
-};
 
 /// GPU memory that a technique takes, in bytes, itemised as in [Chapter 2010], table 6.2.
 struct GpuMemory {

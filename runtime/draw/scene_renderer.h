@@ -5,17 +5,14 @@
 #include <vector>
 
 #include "image/image.h"
-#include "mesh/camera.h"
 #include "mesh/placement.h"
 #include "runtime/draw/asset_renderer.h"
 #include "runtime/draw/frame.h"
+#include "runtime/draw/scene_view.h"
 #include "runtime/draw/technique.h"
 #include "runtime/light/scene_lights.h"
 
 namespace kiln {
-
-/// Order of drawing and shading: light is computed for every sample drawn, or once for each visible sample.
-enum class Shading { forward, deferred };
 
 /// One asset in a scene.
 struct SceneAsset {
@@ -24,16 +21,6 @@ struct SceneAsset {
   Technique technique = Technique::textured_prt;
   /// Light where the asset stands, shadowed by what kiln-probes was given; null: unshadowed.
   const ProbeSet* probes = nullptr;
-};
-
-/// One picture of a scene.
-struct SceneView {
-  Camera camera;    ///< in the scene's space
-  int width = 768;  ///< pixels
-  int height = 768;
-  int supersample = 2;  ///< samples per pixel along each axis
-  SurfaceLook look;
-  Shading shading = Shading::forward;
 };
 
 /// Lists the vertices of all assets, placed in the scene.

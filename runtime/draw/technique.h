@@ -20,6 +20,9 @@ enum class Technique {
 inline constexpr std::array<Technique, 5> all_techniques = {
     Technique::phong, Technique::normal_map, Technique::vertex_prt, Technique::textured_prt, Technique::compressed};
 
+/// Order of drawing and shading: light is computed for every sample drawn, or once for each visible sample.
+enum class Shading { forward, deferred };
+
 /// Returns the command-line name: "phong", "normal-map", "vertex-prt", "textured-prt", "compressed".
 std::string technique_name(Technique technique);
 

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <unordered_map>
+
+#include "mesh/triangle_edges.h"
 
 namespace kiln {
 
@@ -26,23 +29,11 @@ bool segments_meet(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eig
 }  // namespace
 
 std::vector<BorderEdge> border_edges(const Chart& chart) {
-  std::vector<std::pair<std::uint64_t, BorderEdge>> edges;
-  edges.reserve(3 * chart.triangles.size());
-  for (const Triangle& t : chart.triangles)
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t from = t[k], to = t[(k + 1) % 3];
-      edges.push_back({(std::uint64_t{std::min(from, to)} << 32) | std::max(from, to), {from, to}});
-    }
-  std::sort(edges.begin(), edges.end(), [](const auto& a, const auto& b) {
-    return std::tie(a.first, a.second.from) < std::tie(b.first, b.second.from);
-  });
   std::vector<BorderEdge> result;
-  for (std::size_t i = 0; i < edges.size();) {
-    std::size_t end = i + 1;
-    while (end < edges.size() && edges[end].first == edges[i].first) ++end;
-    if (end - i == 1) result.push_back(edges[i].second);
-    i = end;
-  }
+  TriangleEdges(chart.triangles).for_each([&](std::span<const std::uint32_t> sides) {
+    if (sides.size() == 1)
+      result.push_back({vertex_at(chart.triangles, sides[0]), vertex_at(chart.triangles, next_corner(sides[0]))});
+  });
   return result;
 }
 

@@ -74,12 +74,8 @@ void move_to(const TriangleMesh& high, Samples& samples) {
     const SurfacePoint found =
         scene.closest_facing_point(samples.positions[k], samples.normals[k], std::numeric_limits<float>::infinity());
     if (!found.found()) return;
-    const Triangle& t = high.triangles[found.triangle];
-    const auto at = [&](const std::vector<Eigen::Vector3f>& values) -> Eigen::Vector3f {
-      return (1 - found.u - found.v) * values[t[0]] + found.u * values[t[1]] + found.v * values[t[2]];
-    };
-    samples.positions[k] = at(high.positions);
-    const Eigen::Vector3f normal = at(high.normals);
+    samples.positions[k] = position_at(high, found);
+    const Eigen::Vector3f normal = interpolate(high, high.normals, found);
     if (normal.squaredNorm() > 0) samples.normals[k] = normal.normalized();
   });
 }

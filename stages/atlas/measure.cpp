@@ -6,8 +6,12 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <span>
+#include <utility>
 
 #include "atlas/surface.h"
+#include "mesh/same_position.h"
+#include "mesh/triangle_edges.h"
 #include "raycast/surface_transfer.h"
 
 namespace kiln {
@@ -18,28 +22,15 @@ double uv_area(const TriangleMesh& atlas, const Triangle& t) {
   return 0.5 * cross(atlas.uvs[t[0]].cast<double>(), atlas.uvs[t[1]].cast<double>(), atlas.uvs[t[2]].cast<double>());
 }
 
-/// Returns, for each vertex, the first one with the very same key.
-template <class Key>
-std::vector<std::uint32_t> first_of_equals(std::size_t count, const Key& key) {
-  std::vector<std::uint32_t> order(count), result(count);
-  std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-  for (std::size_t i = 0; i < order.size(); ++i)
-    result[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? result[order[i - 1]] : order[i];
-  return result;
-}
-
-std::vector<std::uint32_t> welded_by_place(const TriangleMesh& atlas) {
-  return first_of_equals(atlas.positions.size(), [&](std::uint32_t v) {
-    return std::make_tuple(atlas.positions[v].x(), atlas.positions[v].y(), atlas.positions[v].z());
-  });
-}
-
-std::vector<std::uint32_t> welded_by_place_and_uv(const TriangleMesh& atlas) {
-  return first_of_equals(atlas.positions.size(), [&](std::uint32_t v) {
-    return std::make_tuple(atlas.positions[v].x(), atlas.positions[v].y(), atlas.positions[v].z(), atlas.uvs[v].x(),
-                           atlas.uvs[v].y());
-  });
+/// Returns, for each vertex, the first one with the very same position and uv.
+std::vector<std::uint32_t> first_at_position_and_uv(const TriangleMesh& atlas) {
+  std::vector<float> values;
+  values.reserve(5 * atlas.positions.size());
+  for (std::size_t v = 0; v < atlas.positions.size(); ++v) {
+    const Eigen::Vector3f& p = atlas.positions[v];
+    values.insert(values.end(), {p.x(), p.y(), p.z(), atlas.uvs[v].x(), atlas.uvs[v].y()});
+  }
+  return first_of_equals(values, 5);
 }
 
 /// Edge of the surface across which the atlas is cut.
@@ -49,29 +40,27 @@ struct SeamEdge {
 };
 
 std::vector<SeamEdge> seam_edges(const TriangleMesh& atlas) {
-  const std::vector<std::uint32_t> place = welded_by_place(atlas), vertex = welded_by_place_and_uv(atlas);
-  struct Edge {
-    std::uint32_t low, high;                // places of its ends
-    std::uint32_t low_vertex, high_vertex;  // vertices of the atlas
-  };
-  std::vector<Edge> edges;
-  for (const Triangle& t : atlas.triangles) {
-    if (uv_area(atlas, t) == 0) continue;
-    for (int k = 0; k < 3; ++k) {
-      std::uint32_t a = vertex[t[k]], b = vertex[t[(k + 1) % 3]];
-      if (place[a] > place[b]) std::swap(a, b);
-      edges.push_back({place[a], place[b], a, b});
-    }
-  }
-  const auto key = [](const Edge& e) { return std::tie(e.low, e.high, e.low_vertex, e.high_vertex); };
-  std::sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) { return key(a) < key(b); });
+  const std::vector<std::uint32_t> vertex = first_at_position_and_uv(atlas);
+  std::vector<Triangle> shown;  // triangles of some uv area
+  for (const Triangle& t : atlas.triangles)
+    if (uv_area(atlas, t) != 0) shown.push_back({vertex[t[0]], vertex[t[1]], vertex[t[2]]});
+  const std::vector<Triangle> welded = renumbered(shown, first_at_position(atlas.positions));
   std::vector<SeamEdge> seams;
-  for (std::size_t i = 1; i < edges.size(); ++i) {
-    const Edge &a = edges[i - 1], &b = edges[i];
-    if (a.low != b.low || a.high != b.high || key(a) == key(b)) continue;
-    const double length = (atlas.positions[a.low_vertex] - atlas.positions[a.high_vertex]).cast<double>().norm();
-    seams.push_back({a.low_vertex, a.high_vertex, length});
-  }
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> ends;  // vertices of the atlas at an edge's ends, each pair once
+  TriangleEdges(welded).for_each([&](std::span<const std::uint32_t> sides) {
+    ends.clear();
+    for (const std::uint32_t side : sides) {
+      std::uint32_t a = side, b = next_corner(side);
+      if (vertex_at(welded, a) > vertex_at(welded, b)) std::swap(a, b);
+      ends.emplace_back(vertex_at(shown, a), vertex_at(shown, b));
+    }
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+      const auto& [from, to] = ends[i];
+      seams.push_back({from, to, (atlas.positions[from] - atlas.positions[to]).cast<double>().norm()});
+    }
+  });
   return seams;
 }
 
@@ -159,7 +148,7 @@ void measure_coverage(const TriangleMesh& atlas, const std::vector<std::uint32_t
 }  // namespace
 
 std::vector<std::uint32_t> charts_of_triangles(const TriangleMesh& atlas) {
-  std::vector<std::uint32_t> parent = welded_by_place_and_uv(atlas);
+  std::vector<std::uint32_t> parent = first_at_position_and_uv(atlas);
   const auto find = [&](std::uint32_t v) {
     while (parent[v] != v) v = parent[v] = parent[parent[v]];
     return v;

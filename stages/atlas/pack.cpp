@@ -332,7 +332,7 @@ class Packer {
 
 /// Turns a packing by 90 degrees clockwise.
 Packing lying(Packing packing) {
-  for (Placement& placement : packing.placements) {
+  for (ChartPlacement& placement : packing.placements) {
     placement.angle -= 0.5 * std::numbers::pi;
     placement.offset = Eigen::Vector2d(placement.offset.y(), packing.width - placement.offset.x());
   }

@@ -24,7 +24,7 @@ struct PackSettings {
 };
 
 /// Place of a chart: atlas texel = turned(uv, angle) * texels_per_unit + offset.
-struct Placement {
+struct ChartPlacement {
   double angle = 0;
   Eigen::Vector2d offset = Eigen::Vector2d::Zero();
 };
@@ -33,7 +33,7 @@ struct Packing {
   int width = 0;  ///< width of the atlas, texels
   int height = 0;
   double texels_per_unit = 0;
-  std::vector<Placement> placements;  ///< per chart
+  std::vector<ChartPlacement> placements;  ///< per chart
 };
 
 /// Packs charts, all at the same scale, into the atlas at texel resolution. One after the other is turned and put as

@@ -3,6 +3,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <span>
+
+#include "mesh/triangle_edges.h"
 
 namespace kiln {
 
@@ -50,33 +53,19 @@ Surface analyse_surface(const TriangleMesh& mesh) {
     surface.area += surface.rest[f].area;
   }
 
-  // Half-edges between the same two vertices are adjacent once sorted; a proper edge has exactly two, one each way.
-  struct Entry {
-    std::uint32_t low, high, half_edge;
-  };
-  std::vector<Entry> entries;
-  entries.reserve(surface.twins.size());
-  for (std::uint32_t h = 0; h < surface.half_edge_count(); ++h) {
-    if (surface.degenerate[h / 3]) continue;
-    const auto [low, high] = std::minmax({surface.origin(h), surface.target(h)});
-    entries.push_back({low, high, h});
-  }
-  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return std::tie(a.low, a.high, a.half_edge) < std::tie(b.low, b.high, b.half_edge);
-  });
-  for (std::size_t begin = 0; begin < entries.size();) {
-    std::size_t end = begin + 1;
-    while (end < entries.size() && entries[end].low == entries[begin].low && entries[end].high == entries[begin].high)
-      ++end;
-    if (end - begin == 2) {
-      const std::uint32_t h = entries[begin].half_edge, t = entries[begin + 1].half_edge;
-      if (surface.origin(h) == surface.target(t)) {
-        surface.twins[h] = t;
-        surface.twins[t] = h;
-      }
+  // A proper edge has exactly two half-edges, one each way; faces without area have no part in it.
+  TriangleEdges(mesh.triangles).for_each([&](std::span<const std::uint32_t> sides) {
+    std::array<std::uint32_t, 2> proper{};
+    std::size_t count = 0;
+    for (const std::uint32_t h : sides) {
+      if (surface.degenerate[h / 3]) continue;
+      if (count < 2) proper[count] = h;
+      ++count;
     }
-    begin = end;
-  }
+    if (count != 2 || !run_opposite(mesh.triangles, proper[0], proper[1])) return;
+    surface.twins[proper[0]] = proper[1];
+    surface.twins[proper[1]] = proper[0];
+  });
   surface.seam_costs = surface.edge_lengths;
   return surface;
 }

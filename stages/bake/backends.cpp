@@ -9,6 +9,7 @@
 #include "bake/rays/mixed_engine.h"
 #include "bake/rays/ray_gather_engine.h"
 #include "gpu/egl_context.h"
+#include "mesh/triangle_mesh.h"
 #include "sh/directions.h"
 #include "sh/ray_offset.h"
 #include "sh/transfer_sums.h"
@@ -42,7 +43,7 @@ BakeBackend choose_backend(const BakeSettings& settings) {
 
 float ray_offset_of(const BakeSettings& settings, std::span<const Eigen::Vector3f> hull) {
   if (!settings.ray_offset) return rounding_offset(hull);
-  return static_cast<float>(*settings.ray_offset) * diagonal_of(hull);
+  return static_cast<float>(*settings.ray_offset) * bounding_box(hull).diagonal();
 }
 
 std::unique_ptr<TransferEngine> make_engine(BakeBackend backend, const Occluders& occluders,

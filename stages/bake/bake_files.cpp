@@ -68,11 +68,7 @@ std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSetti
   // What stands around.
   scene.neighbours = settings.surroundings.neighbours;
   BoundingBox own;
-  for (const TriangleMesh& mesh : meshes) {
-    const BoundingBox box = bounding_box(mesh);
-    own.lowest = own.lowest.cwiseMin(box.lowest);
-    own.highest = own.highest.cwiseMax(box.highest);
-  }
+  for (const TriangleMesh& mesh : meshes) own.merge(bounding_box(mesh));
   for (PlacedMesh& placed : load_surroundings(settings.surroundings, own, settings.material, with_albedo, frame)) {
     scene.add_warnings(placed.warnings);
     meshes.push_back(std::move(placed.mesh));

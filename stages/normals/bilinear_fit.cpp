@@ -45,7 +45,7 @@ void BilinearFit::add_products(int x, int y, const At& at) const {
 BilinearFit::BilinearFit(int width, int height, int side) : width_(width), height_(height), side_(side) {
   const std::size_t texels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   stencils_.resize(texels, Stencil{});
-  rights_.resize(texels, Eigen::Vector3f::Zero());
+  right_sides_.resize(texels, Eigen::Vector3f::Zero());
   for (int x = 0; x < side; ++x) {
     const Between place = between(x, side);
     auto& weights = weights_.emplace_back();
@@ -68,7 +68,7 @@ BilinearFit::Rows::Rows(const BilinearFit& fit, int begin, int end)
       begin_(std::max(begin - 1, 0)),
       end_(std::min(end + 1, fit.height_)),
       stencils_(fit.index(0, end_ - begin_), Stencil{}),
-      rights_(fit.index(0, end_ - begin_), Eigen::Vector3f::Zero()) {}
+      right_sides_(fit.index(0, end_ - begin_), Eigen::Vector3f::Zero()) {}
 
 void BilinearFit::Rows::add(int i, int j, const TexelPoints& points) {
   // Lookups at the texture's edge are clamped; nothing is fitted there.
@@ -91,7 +91,7 @@ void BilinearFit::Rows::add(int i, int j, const TexelPoints& points) {
         for (std::size_t across = 0; across < 3; ++across)
           sums[across] += fit_->weights_[x][across] * columns[static_cast<std::size_t>(up + 1)][x];
       for (int across = -1; across <= 1; ++across)
-        rights_[at(across, up)][component] += sums[static_cast<std::size_t>(across + 1)];
+        right_sides_[at(across, up)][component] += sums[static_cast<std::size_t>(across + 1)];
     }
   }
 
@@ -114,7 +114,7 @@ void BilinearFit::join(const Rows& rows) {
     for (int i = 0; i < width_; ++i) {
       const std::size_t from = index(i, j - rows.begin_), to = index(i, j);
       for (std::size_t k = 0; k < 5; ++k) stencils_[to][k] += rows.stencils_[from][k];
-      rights_[to] += rows.rights_[from];
+      right_sides_[to] += rows.right_sides_[from];
     }
 }
 
@@ -146,7 +146,7 @@ void BilinearFit::solve(Image<float>& values, float keep) const {
           own[0] * x[k] + own[1] * x[k + 1] + own[2] * x[k + width - 1] + own[3] * x[k + width] +
           own[4] * x[k + width + 1] + stencils_[k - 1][1] * x[k - 1] + stencils_[k - width + 1][2] * x[k - width + 1] +
           stencils_[k - width][3] * x[k - width] + stencils_[k - width - 1][4] * x[k - width - 1];
-      residual[k] = (rights_[k] - product + kept * (start[k] - x[k])) / (own[0] + kept);
+      residual[k] = (right_sides_[k] - product + kept * (start[k] - x[k])) / (own[0] + kept);
     });
     const float next_rho = 1 / (2 * middle / half - rho);
     const float along = iteration == 0 ? 0 : next_rho * rho, down = iteration == 0 ? 1 / middle : 2 * next_rho / half;

@@ -31,7 +31,7 @@ class BilinearFit {
     const BilinearFit* fit_;
     int begin_, end_;  ///< range of the rows with sums: one more on either side
     std::vector<std::array<float, 5>> stencils_;
-    std::vector<Eigen::Vector3f> rights_;
+    std::vector<Eigen::Vector3f> right_sides_;
   };
 
   void join(const Rows& rows);
@@ -54,7 +54,7 @@ class BilinearFit {
   std::array<std::array<Stencil, 3>, 3>
       full_{};  ///< stencils of a texel with all points, by offset -1 to 1 (row, column)
   std::vector<Stencil> stencils_;
-  std::vector<Eigen::Vector3f> rights_;
+  std::vector<Eigen::Vector3f> right_sides_;
 };
 
 }  // namespace kiln

@@ -7,6 +7,7 @@
 
 #include "mesh/hard_edges.h"
 #include "mesh/mesh_components.h"
+#include "mesh/same_position.h"
 
 namespace kiln {
 
@@ -53,7 +54,7 @@ void keep_to_own_parts(const HighSurface& high, const TriangleMesh& atlas, const
                        TexelMatches& matches, std::vector<std::uint32_t>& triangles) {
   const Components high_parts = find_components(high.mesh);
   if (high_parts.count < 2) return;
-  const Components low_parts = find_components(join_at_places(atlas));
+  const Components low_parts = find_components(join_at_positions(atlas));
   const std::vector<std::uint32_t> own = most_voted(low_parts, high_parts, raster, triangles);
   std::map<std::uint32_t, Part> parts;  // only those that are needed
   for (std::size_t texel = 0; texel < triangles.size(); ++texel) {

@@ -4,8 +4,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cstring>
-#include <tuple>
+#include <span>
+
+#include "mesh/same_position.h"
+#include "mesh/triangle_edges.h"
 
 namespace kiln {
 
@@ -14,48 +16,16 @@ namespace {
 constexpr std::uint32_t none = SurfacePoint::none;
 constexpr int most_steps = 32;
 
-/// Numbers the positions: equal bits get the same number.
-std::vector<std::uint32_t> number_positions(const std::vector<Eigen::Vector3f>& positions) {
-  std::vector<std::pair<std::array<std::uint32_t, 3>, std::uint32_t>> order(positions.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) {
-    std::memcpy(order[i].first.data(), positions[i].data(), 3 * sizeof(float));
-    order[i].second = i;
-  }
-  std::sort(order.begin(), order.end());
-  std::vector<std::uint32_t> number(positions.size());
-  for (std::size_t i = 0; i < order.size(); ++i)
-    number[order[i].second] =
-        i > 0 && order[i].first == order[i - 1].first ? number[order[i - 1].second] : order[i].second;
-  return number;
-}
-
 }  // namespace
 
 SurfaceWalk::SurfaceWalk(const TriangleMesh& mesh)
     : mesh_(&mesh), neighbours_(mesh.triangles.size(), {none, none, none}) {
-  const std::vector<std::uint32_t> number = number_positions(mesh.positions);
-  struct Side {
-    std::uint64_t key;  ///< both ends, the smaller first
-    std::uint32_t triangle;
-    std::uint32_t corner;
-  };
-  std::vector<Side> sides;
-  sides.reserve(3 * mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const auto [low, high] =
-          std::minmax(number[mesh.triangles[t][(k + 1) % 3]], number[mesh.triangles[t][(k + 2) % 3]]);
-      sides.push_back({(static_cast<std::uint64_t>(low) << 32) | high, t, k});
-    }
-  std::sort(sides.begin(), sides.end(),
-            [](const Side& a, const Side& b) { return std::tie(a.key, a.triangle) < std::tie(b.key, b.triangle); });
-  for (std::size_t begin = 0, end; begin < sides.size(); begin = end) {
-    end = begin + 1;
-    while (end < sides.size() && sides[end].key == sides[begin].key) ++end;
-    if (end - begin != 2) continue;  // a border, or sheets that touch: walks stop there
-    neighbours_[sides[begin].triangle][sides[begin].corner] = sides[begin + 1].triangle;
-    neighbours_[sides[begin + 1].triangle][sides[begin + 1].corner] = sides[begin].triangle;
-  }
+  const std::vector<Triangle> welded = renumbered(mesh.triangles, first_at_position(mesh.positions));
+  TriangleEdges(welded).for_each([&](std::span<const std::uint32_t> sides) {
+    if (sides.size() != 2) return;  // a border, or sheets that touch: walks stop there
+    neighbours_[sides[0] / 3][(sides[0] % 3 + 2) % 3] = sides[1] / 3;
+    neighbours_[sides[1] / 3][(sides[1] % 3 + 2) % 3] = sides[0] / 3;
+  });
 }
 
 SurfacePoint SurfaceWalk::meet(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, std::uint32_t start) const {

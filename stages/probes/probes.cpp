@@ -95,12 +95,9 @@ class Looker {
 
   Eigen::RowVectorXf sent_from(const SurfacePoint& hit, int width) const {
     const std::array<std::uint32_t, 3>& corners = light_.cache.points[hit.triangle];
-    const float weights[3] = {1 - hit.u - hit.v, hit.u, hit.v};
-    Eigen::RowVectorXf sum = Eigen::RowVectorXf::Zero(width);
-    for (std::size_t k = 0; k < 3; ++k)
-      sum += weights[k] * Eigen::Map<const Eigen::RowVectorXf>(
-                              light_.values.data() + static_cast<std::size_t>(corners[k]) * width, width);
-    return sum;
+    return weigh_corners<Eigen::RowVectorXf>(hit, [&](std::size_t k) {
+      return Eigen::Map<const Eigen::RowVectorXf>(light_.values.data() + std::size_t{corners[k]} * width, width);
+    });
   }
 
   const SurfaceLight& light_;
@@ -136,25 +133,24 @@ ProbeSet place_probes(const TriangleMesh& mesh, const std::vector<Eigen::Vector3
   probes.bands = settings.bands;
   probes.positions = points;
   if (!points.empty()) return probes;
-  Eigen::AlignedBox3f box;
+  BoundingBox box;
   if (const auto given = settings.box) {
     box = {Eigen::Vector3f((*given)[0], (*given)[1], (*given)[2]),
            Eigen::Vector3f((*given)[3], (*given)[4], (*given)[5])};
   } else {
-    for (const Eigen::Vector3f& position : mesh.positions) box.extend(position);
-    const float margin = box.sizes().maxCoeff() / 2;
-    box.min().array() -= margin;
-    box.max().array() += margin;
+    box = bounding_box(mesh.positions);
+    const float margin = box.sides().maxCoeff() / 2;
+    box.lowest.array() -= margin;
+    box.highest.array() += margin;
   }
-  probes.grid = ProbeGrid{settings.grid, box.min(), box.max()};
+  probes.grid = ProbeGrid{settings.grid, box.lowest, box.highest};
   for (std::size_t k = 0; k < probes.grid->count(); ++k) probes.positions.push_back(probes.grid->position(k));
   return probes;
 }
 
 ProbesResult probe_matrices(const TriangleMesh& mesh, const SurfaceLight& light, ProbeSet probes,
                             const ProbesSettings& settings, int seed, const ProgressFunction& progress) {
-  Eigen::AlignedBox3f box;  // outside of it the mesh goes around no point
-  for (const Eigen::Vector3f& position : mesh.positions) box.extend(position);
+  const BoundingBox box = bounding_box(mesh.positions);  // outside of it the mesh goes around no point
   probes.channels = light.channels;
   const std::size_t count = probes.positions.size();
   probes.valid.assign(count, 1);
@@ -169,7 +165,7 @@ ProbesResult probe_matrices(const TriangleMesh& mesh, const SurfaceLight& light,
       else
         open[k] = looker.look(point, probes.channels, probes.matrices.data() + k * probes.entries());
     });
-    progress(static_cast<double>(first) / static_cast<double>(count));
+    progress(static_cast<double>(std::min(count, first + group_points)) / static_cast<double>(count));
   }
 
   ProbesResult result;

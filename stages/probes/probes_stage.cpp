@@ -47,7 +47,7 @@ StageRun run(const AssetPlan& plan) {
   const StageSettings settings = settings_of(plan);
   StageRun run{"probes", {"kiln-probes", command_word(plan.mesh), "-o", folder_word(folder)}};
   run.inputs = {plan.mesh};
-  run.outputs = {layout::record(plan.folder, "probes"), folder / probes_name, folder / matrices_name};
+  run.outputs = {layout::record(plan.folder, "probes"), folder / probes_json_name, folder / matrices_png_name};
   if (const auto points = settings.find("points"); points != settings.end()) run.inputs.emplace_back(points->second);
   run.add_settings(options(), settings);
   return run;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/triangle_edges.h"
+
 namespace kiln {
 
 namespace {
@@ -41,21 +43,6 @@ std::vector<VertexPair> find_feature_edges(const TriangleMesh& mesh, double crea
   // Answer the usual case in one pass: a closed mesh, no angle, nothing given.
   if (crease_degrees <= 0 && given.empty() && !has_border(mesh)) return {};
 
-  // List each vertex's edges to larger ones with the triangles on them: count, then fill in.
-  struct Side {
-    std::uint32_t other, triangle;
-  };
-  std::vector<std::uint32_t> begin(mesh.positions.size() + 1, 0);
-  const auto for_each = [&](const auto& visit) {
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
-      for (int k = 0; k < 3; ++k) visit(std::minmax(mesh.triangles[i][k], mesh.triangles[i][(k + 1) % 3]), i);
-  };
-  for_each([&](const auto& edge, std::uint32_t) { ++begin[edge.first + 1]; });
-  for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
-  std::vector<Side> sides(begin.back());
-  std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
-  for_each([&](const auto& edge, std::uint32_t i) { sides[next[edge.first]++] = {edge.second, i}; });
-
   const double smallest_cosine =
       crease_degrees > 0 ? std::cos(crease_degrees * std::numbers::pi / 180) : -2;  // below every cosine
   const auto is_crease = [&](std::uint32_t one, std::uint32_t other) {
@@ -65,22 +52,12 @@ std::vector<VertexPair> find_feature_edges(const TriangleMesh& mesh, double crea
   for (const auto& [a, b] : given) wanted.push_back(std::minmax(a, b));
   std::sort(wanted.begin(), wanted.end());
   std::vector<VertexPair> found;
-  for (std::uint32_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {
-    const auto first = sides.begin() + begin[vertex], last = sides.begin() + begin[vertex + 1];
-    std::sort(first, last, [](const Side& l, const Side& r) {
-      return std::pair(l.other, l.triangle) < std::pair(r.other, r.triangle);
-    });
-    for (auto side = first; side != last;) {
-      auto end = side + 1;
-      while (end != last && end->other == side->other) ++end;
-      const VertexPair edge{vertex, side->other};
-      const bool is_border = end - side == 1;
-      if (is_border || is_crease(side->triangle, (side + 1)->triangle) ||
-          std::binary_search(wanted.begin(), wanted.end(), edge))
-        found.push_back(edge);
-      side = end;
-    }
-  }
+  TriangleEdges(mesh.triangles).for_each([&](std::span<const std::uint32_t> sides) {
+    const VertexPair edge = edge_at(mesh.triangles, sides[0]);
+    const bool is_border = sides.size() == 1;
+    if (is_border || is_crease(sides[0] / 3, sides[1] / 3) || std::binary_search(wanted.begin(), wanted.end(), edge))
+      found.push_back(edge);
+  });
   return found;
 }
 

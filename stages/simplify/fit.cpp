@@ -40,14 +40,14 @@ double quasi_random(std::size_t i, double step) {
   return x - std::floor(x);
 }
 
-/// Point of a triangle.
-struct SurfacePoint {
+/// Point of a triangle, in double precision.
+struct TrianglePoint {
   std::uint32_t triangle;
   Vector weights;  ///< barycentric, of the triangle's corners
 };
 
 /// Spreads `samples` points over a mesh, each for the same area.
-std::vector<SurfacePoint> spread(const TriangleMesh& mesh, int samples) {
+std::vector<TrianglePoint> spread(const TriangleMesh& mesh, int samples) {
   std::vector<double> area_up_to;
   double area = 0;
   for (const Triangle& t : mesh.triangles) {
@@ -55,7 +55,7 @@ std::vector<SurfacePoint> spread(const TriangleMesh& mesh, int samples) {
     area += (b - a).cross(c - a).cast<double>().norm();
     area_up_to.push_back(area);
   }
-  std::vector<SurfacePoint> points;
+  std::vector<TrianglePoint> points;
   std::uint32_t triangle = 0;
   for (int i = 0; i < samples; ++i) {
     while (triangle + 1 < mesh.triangles.size() && area_up_to[triangle] < (i + 0.5) / samples * area) ++triangle;
@@ -81,7 +81,7 @@ Vector barycentric(const Vector& p, const Vector& a, const Vector& b, const Vect
 
 /// Pair of a point of the low mesh and the point of the high one that it is to come close to.
 struct Pair {
-  SurfacePoint low;
+  TrianglePoint low;
   Vector high;
   Vector direction;     ///< unit vector along which the gap is to be closed
   double distance = 0;  ///< between the two points
@@ -126,7 +126,7 @@ class Fit {
     triangles_ = low.triangles;
     // Sample the high mesh: points inside its triangles, then its vertices, or every n-th of very many.
     const std::vector<Vector> normals = triangle_normals(high_);
-    for (const SurfacePoint& point : spread(high_, sample_count_)) {
+    for (const TrianglePoint& point : spread(high_, sample_count_)) {
       sample_normals_.push_back(normals[point.triangle]);
       Vector p = Vector::Zero();
       for (int k = 0; k < 3; ++k)
@@ -183,7 +183,7 @@ class Fit {
     return mesh;
   }
 
-  Vector point_of(const SurfacePoint& point) const {
+  Vector point_of(const TrianglePoint& point) const {
     const Triangle& t = triangles_[point.triangle];
     return point.weights[0] * positions_[t[0]] + point.weights[1] * positions_[t[1]] +
            point.weights[2] * positions_[t[2]];
@@ -474,7 +474,7 @@ class Fit {
   std::vector<Vector> samples_, sample_normals_;
   std::vector<std::uint32_t> sample_hints_, low_hints_;
   std::vector<Pair> from_high_, from_low_;
-  std::vector<SurfacePoint> low_samples_;
+  std::vector<TrianglePoint> low_samples_;
 };
 
 }  // namespace

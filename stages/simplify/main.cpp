@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
     const TriangleMesh& high = imported.mesh;
     const MeshRepairs& repairs = imported.repairs;
     command.warn(imported.warnings);
-    if (settings.strict && !repairs.none())
+    if (settings.strict && !repairs.is_clean())
       throw BadInput(high_file.string(), "needs repair: " + repairs.text(), "a clean, oriented manifold of triangles",
                      "mend it where it comes from, or leave out --strict");
     if (settings.colors && high.colors.empty())

@@ -13,6 +13,7 @@
 #include "base/stopwatch.h"
 #include "mesh/hard_edges.h"
 #include "mesh/nearest_surface.h"
+#include "mesh/same_position.h"
 #include "simplify/reduce.h"
 #include "simplify/transfer_weights.h"
 
@@ -168,7 +169,7 @@ SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settin
   const double hausdorff_distance = result.distance.hausdorff * bounding_box(measured).diagonal();
   result.hausdorff_distance = hausdorff_distance * high.frame.unit();
   result.manifold = is_manifold(result.mesh);
-  result.closed = result.manifold && is_closed(features.empty() ? result.mesh : join_at_places(result.mesh));
+  result.closed = result.manifold && is_closed(features.empty() ? result.mesh : join_at_positions(result.mesh));
   result.degenerate_triangles = count_degenerate(result.mesh);
   result.flipped_triangles = count_flipped(result.mesh, measured, flipped_reach(result.mesh, hausdorff_distance));
   if (!by_error && result.mesh.triangles.size() > static_cast<std::size_t>(settings.faces))

@@ -19,6 +19,7 @@ class Scratch {
   }
   ~Scratch() { std::filesystem::remove_all(folder_); }
   const std::filesystem::path& folder() const { return folder_; }
+  std::filesystem::path operator/(const std::string& name) const { return folder_ / name; }
 
  private:
   std::filesystem::path folder_;

@@ -32,7 +32,7 @@ class Copy {
  public:
   explicit Copy(const std::string& name) : name_(name) {
     fs::copy(version_1 / name, folder());
-    for (const char* candidate : {ranges_name, pca_name, probes_name})
+    for (const char* candidate : {ranges_name, pca_name, probes_json_name})
       if (fs::exists(folder() / candidate)) file_ = folder() / candidate;
   }
   fs::path folder() const { return scratch_.folder() / name_; }

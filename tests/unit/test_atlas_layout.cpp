@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 #include <numbers>
 #include <numeric>
-#include <unistd.h>
 
 #include "atlas/atlas.h"
 #include "atlas/charts.h"
@@ -18,6 +17,7 @@
 #include "base/errors.h"
 #include "import/uv_mesh.h"
 #include "mesh/uv_raster.h"
+#include "scratch.h"
 #include "shapes.h"
 
 namespace kiln {
@@ -27,12 +27,6 @@ namespace fs = std::filesystem;
 
 class AtlasLayout : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("kiln_test_atlas_layout_" + std::to_string(::getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   WrittenAtlas written(const AtlasResult& result) const { return write_atlas(folder_ / "atlas.drc", result); }
 
   fs::path file(const std::string& name, const std::string& text) const {
@@ -40,7 +34,7 @@ class AtlasLayout : public ::testing::Test {
     return folder_ / name;
   }
 
-  fs::path folder_;
+  const Scratch folder_;
 };
 
 /// Makes settings with few angles, which packs quickly: packing is not tested here.

@@ -34,7 +34,7 @@ void add_rectangle(TriangleMesh& mesh, const Eigen::Vector3f& corner, const Eige
   mesh.triangles.push_back({first, first + 2, first + 3});
 }
 
-struct Bench {
+struct Stand {
   TriangleMesh occluders;
   std::vector<Eigen::Vector3f> positions, normals;
   std::vector<Eigen::Vector3f> directions = sample_directions(Sampling::fibonacci, 1024, 1);
@@ -51,7 +51,7 @@ struct Bench {
   }
   TransferVectors egl(ShadowMapSettings settings = {}) const {
     settings.size_texels = shadow_size;
-    EglEngine engine(scene(), "auto", 0, settings);
+    EglEngine engine(scene(), "software", 0, settings);
     return run(engine);
   }
   TransferVectors beams() const {
@@ -65,8 +65,8 @@ struct Bench {
 };
 
 /// Makes points of the unit sphere, which shadows only itself: the furnace.
-Bench furnace() {
-  Bench bench;
+Stand furnace() {
+  Stand bench;
   bench.occluders = shapes::icosphere(5);
   bench.positions = sample_directions(Sampling::fibonacci, 500, 9);
   bench.normals = bench.positions;
@@ -74,8 +74,8 @@ Bench furnace() {
 }
 
 /// Takes every `step`-th of the bunny's points, scaled as a whole.
-Bench bunny_bench(std::size_t step, float scale = 1) {
-  Bench bench;
+Stand bunny_bench(std::size_t step, float scale = 1) {
+  Stand bench;
   bench.occluders = load_mesh("/usr/share/glmark2/models/bunny.obj");
   for (Eigen::Vector3f& position : bench.occluders.positions) position *= scale;
   for (std::size_t v = 0; v < bench.occluders.positions.size(); v += step) {
@@ -87,14 +87,14 @@ Bench bunny_bench(std::size_t step, float scale = 1) {
 
 class Backends : public testing::TestWithParam<BakeBackend> {
  protected:
-  TransferVectors compute(const Bench& bench) const {
+  TransferVectors compute(const Stand& bench) const {
     if (GetParam() == BakeBackend::beams) return bench.beams();
     return GetParam() == BakeBackend::egl ? bench.egl() : bench.embree();
   }
 };
 
 TEST_P(Backends, FurnaceGivesTheUnoccludedTransfer) {
-  const Bench bench = furnace();
+  const Stand bench = furnace();
   const TransferVectors transfer = compute(bench);
   const ShBasis basis(bench.bands);
   for (std::size_t r = 0; r < transfer.receivers; ++r) {
@@ -110,7 +110,7 @@ TEST_P(Backends, FurnaceGivesTheUnoccludedTransfer) {
 TEST_P(Backends, TallWallHidesHalfTheSky) {
   // A floor at y = 0 beside a wall in the plane x = 0, tall and long against the distances of the receivers from it:
   // all light from x < 0 is lost.
-  Bench bench;
+  Stand bench;
   add_rectangle(bench.occluders, {0, 0, 1000}, {2000, 0, 0}, {0, 0, -2000});
   add_rectangle(bench.occluders, {0, 0, -1000}, {0, 1000, 0}, {0, 0, 2000});
   for (int k = 0; k < 16; ++k) {
@@ -133,7 +133,7 @@ TEST_P(Backends, TallWallHidesHalfTheSky) {
 }
 
 TEST_P(Backends, ClosedCavityIsDark) {
-  Bench bench;
+  Stand bench;
   bench.occluders = shapes::icosphere(4);
   for (const Eigen::Vector3f& point : sample_directions(Sampling::fibonacci, 200, 4)) {
     bench.positions.push_back(0.98f * point);
@@ -144,7 +144,7 @@ TEST_P(Backends, ClosedCavityIsDark) {
 }
 
 TEST_P(Backends, ManyBandsGoThroughInChunks) {
-  Bench bench = furnace();
+  Stand bench = furnace();
   bench.bands = 12;  // 144 coefficients: four chunks of the shader
   bench.directions = sample_directions(Sampling::fibonacci, 2048, 2);
   const TransferVectors transfer = compute(bench);
@@ -161,7 +161,7 @@ INSTANTIATE_TEST_SUITE_P(Bake, Backends, testing::Values(BakeBackend::egl, BakeB
                          [](const auto& backend) { return backend_name(backend.param); });
 
 TEST(BakeEgl, LayersAndBatchesGiveWhatSinglePassesGive) {
-  Bench bench = furnace();
+  Stand bench = furnace();
   bench.directions.resize(100);  // not a multiple of the batch
   const TransferVectors layers = bench.egl();
   ShadowMapSettings other;
@@ -172,7 +172,7 @@ TEST(BakeEgl, LayersAndBatchesGiveWhatSinglePassesGive) {
 }
 
 TEST(BakeEgl, AgreesWithRaysOnTheBunny) {
-  Bench bench = bunny_bench(4);
+  Stand bench = bunny_bench(4);
   bench.shadow_size = 1024;
   bench.directions = sample_directions(Sampling::fibonacci, 128, 1);
   // At 1,024 directions 3 % is allowed; depth maps of 1,024 texels give about 1.2 %.
@@ -180,7 +180,7 @@ TEST(BakeEgl, AgreesWithRaysOnTheBunny) {
 }
 
 TEST(BakeRays, ThreadsGiveTheSameBytes) {
-  const Bench bench = furnace();
+  const Stand bench = furnace();
   const TransferVectors streams = bench.embree(), beams = bench.beams();
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   EXPECT_EQ(streams.values, bench.embree().values);
@@ -191,15 +191,15 @@ TEST(BakeBeams, SeeWhatEmbreeSees) {
   // The two round differently, so that rays that pass an edge may differ: a few in a million. A ray's share of a
   // receiver's transfer is about 1/200 here, so one in 10,000 would show as 5e-5.
   for (float scale : {1e-6f, 1.f, 1e6f}) {
-    const Bench bench = bunny_bench(7, scale);
+    const Stand bench = bunny_bench(7, scale);
     EXPECT_LT(relative_l2(bench.beams(), bench.embree()), 1e-4) << "scaled by " << scale;
   }
   // Receivers inside a closed surface, and an open surface seen from both sides.
-  Bench cavity;
+  Stand cavity;
   cavity.occluders = shapes::torus(40);
-  Bench sheet;
+  Stand sheet;
   add_rectangle(sheet.occluders, {-1, 1, 1}, {2, 0, 0}, {0, 0, -2});
-  for (Bench* bench : {&cavity, &sheet}) {
+  for (Stand* bench : {&cavity, &sheet}) {
     for (const Eigen::Vector3f& point : sample_directions(Sampling::fibonacci, 1000, 5)) {
       bench->positions.push_back(1.1f * point);
       bench->normals.push_back(-point);

@@ -19,6 +19,7 @@
 #include "mesh/mesh_components.h"
 #include "mesh/mesh_repair.h"
 #include "mesh/nearest_surface.h"
+#include "mesh/same_position.h"
 #include "scratch.h"
 #include "shapes.h"
 #include "simplify/cgal_collapse.h"
@@ -119,7 +120,7 @@ class CgalEnvelope : public testing::Test, protected Scratch {
     EXPECT_LE(largest_distance(result.mesh, mesh), envelope * diagonal_of(mesh));
     EXPECT_LT(result.mesh.triangles.size(), mesh.triangles.size() / 2)
         << "an engine that refuses everything keeps it, too";
-    EXPECT_EQ(topology_of(join_at_places(result.mesh)), topology_of(mesh));
+    EXPECT_EQ(topology_of(join_at_positions(result.mesh)), topology_of(mesh));
     return result;
   }
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 #include <functional>
 #include <gtest/gtest.h>
@@ -554,9 +555,10 @@ TEST(PcaAsset, GpuAndCpuAgree) {
       for (const Eigen::Vector3f& scale : weights.scales) sum += scale.cwiseAbs().maxCoeff() / 255;
       steps = std::max(steps, sum);
     }
-    std::printf("%d clusters, %d components, %d bits: GPU %.5f, steps %.5f, compression %.5f of %.3f\n", c.clusters,
-                c.components, read.bits, largest, steps, worst, brightest);
-    EXPECT_LT(largest, (read.bits == 8 ? 2 * steps : 0) + 1e-4 * brightest) << c.clusters << " clusters";
+    SCOPED_TRACE(
+        fmt::format("{} clusters, {} components, {} bits: GPU {:.5f}, steps {:.5f}, compression {:.5f} of {:.3f}",
+                    c.clusters, c.components, read.bits, largest, steps, worst, brightest));
+    EXPECT_LT(largest, (read.bits == 8 ? 2 * steps : 0) + 1e-4 * brightest);
     EXPECT_LT(worst, 0.05 * brightest);
   }
 }

@@ -68,6 +68,30 @@ for stage in $stages; do
 done
 grep -rnE '^#include' "$source_folder/runtime/include" | grep -vE '#include (<[a-z_]+>|"kiln/)' && fault "installed headers include the house"
 
+# Lists the headers that files include, and those that the house's own include in turn, as "HEADER FILE": FILE includes it.
+reached_headers() {
+  local level=("$@") next header file root
+  local -A seen
+  while [ ${#level[@]} -gt 0 ]; do
+    next=()
+    while read -r header file; do
+      echo "$header $file"
+      [ -n "${seen[$header]:-}" ] && continue
+      seen[$header]=yes
+      for root in stages/core stages tools runtime/include .; do
+        if [ -f "$source_folder/$root/$header" ]; then next+=("$source_folder/$root/$header"); break; fi
+      done
+    done < <(grep -oE '^#include ["<][^">]+' "${level[@]}" /dev/null | sed -E 's/^(.*):#include ["<](.*)$/\2 \1/')
+    level=("${next[@]}")
+  done
+}
+
+# The viewer's state and the settings of pictures are known without GL, and state/ uses no room above it.
+reached=$(reached_headers "$source_folder"/tools/view/state/* "$source_folder/tools/render/render_settings.h")
+[ "$(wc -l <<< "$reached")" -gt 200 ] || fault "found few headers beneath the viewer's state"
+grep -E '^(epoxy|GL|GLFW|EGL|GLES[0-9])/' <<< "$reached" && fault "the viewer's state or the settings of pictures include GL"
+grep -rnE '#include "view/(draw|files|window)/' "$source_folder/tools/view/state" && fault "the viewer's state includes rooms above it"
+
 # The EGL engine can be carried to a bare machine: besides the C++ runtime it needs EGL, GL and what loads them.
 needed=$(readelf -d "$engine_program" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p')
 grep -qE '^lib(EGL|epoxy)\.' <<< "$needed" || fault "$engine_program does not look like the EGL engine: it needs $needed"

@@ -13,7 +13,6 @@
 #include <random>
 #include <sstream>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 #include "base/errors.h"
@@ -22,6 +21,7 @@
 #include "mesh/draco_file.h"
 #include "mesh/hard_edges.h"
 #include "mesh/surface_point.h"
+#include "scratch.h"
 #include "shapes.h"
 
 namespace kiln {
@@ -31,11 +31,6 @@ namespace fs = std::filesystem;
 
 class MeshFile : public testing::Test {
  protected:
-  MeshFile() : folder_(fs::temp_directory_path() / ("kiln-mesh-file-" + std::to_string(getpid()))) {
-    fs::create_directories(folder_);
-  }
-  ~MeshFile() override { fs::remove_all(folder_); }
-
   fs::path write(const std::string& name, const std::string& bytes) const {
     std::ofstream(folder_ / name, std::ios::binary) << bytes;
     return folder_ / name;
@@ -43,7 +38,7 @@ class MeshFile : public testing::Test {
   fs::path path(const std::string& name) const { return folder_ / name; }
 
  private:
-  fs::path folder_;
+  const Scratch folder_;
 };
 
 template <class Value>
@@ -362,7 +357,7 @@ TEST_F(MeshFile, MeshesFarAwayAreMovedAndLoseNothing) {
   const ImportedMesh moved = import_mesh(write("far.obj", to_obj_at(ball, far, 1)));
   EXPECT_LT((moved.mesh.frame.origin - far).norm(), 8) << "a round number near the mesh";
   ASSERT_EQ(moved.mesh.triangles, near.mesh.triangles);
-  EXPECT_TRUE(moved.repairs.none()) << moved.repairs.text();
+  EXPECT_TRUE(moved.repairs.is_clean()) << moved.repairs.text();
   for (std::size_t t = 0; t < ball.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
       const Eigen::Vector3d truth = ball.positions[ball.triangles[t][k]].cast<double>() + far;

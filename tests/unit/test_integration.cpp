@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "bake/backends.h"
 #include "bake/bake.h"
@@ -12,25 +11,13 @@
 #include "bake/planes/quantisation_floor.h"
 #include "base/errors.h"
 #include "import/import_mesh.h"
+#include "scratch.h"
 #include "shapes.h"
 
 namespace kiln {
 namespace {
 
 namespace fs = std::filesystem;
-
-class Folder {
- public:
-  Folder() : path_(fs::temp_directory_path() / ("kiln-integration-" + std::to_string(getpid()))) {
-    fs::remove_all(path_);
-    fs::create_directories(path_);
-  }
-  ~Folder() { fs::remove_all(path_); }
-  fs::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  fs::path path_;
-};
 
 /// A torus, whose inside shadows itself, and its vertices as receivers.
 struct Content {
@@ -61,7 +48,7 @@ class Cuts : public testing::TestWithParam<BakeBackend> {
   Cuts() { content.settings.backend = GetParam(); }
   BakeResult whole() const { return bake(content.receivers, content.occluders, content.settings, 7, 2); }
   Content content;
-  Folder folder;
+  Scratch folder;
 };
 
 TEST_P(Cuts, SlabsGiveTheSameBits) {
@@ -249,7 +236,7 @@ INSTANTIATE_TEST_SUITE_P(Integration, Cuts,
                          [](const auto& backend) { return backend_name(backend.param); });
 
 TEST(SumsFile, RoundTripsAndRefusesWhatIsNotWhole) {
-  const Folder folder;
+  const Scratch folder;
   SumsFile file;
   file.key = {{"what", "a test"}};
   file.first_receiver = 5;

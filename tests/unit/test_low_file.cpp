@@ -2,10 +2,10 @@
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <string>
-#include <unistd.h>
 
 #include "base/outputs.h"
 #include "import/import_mesh.h"
+#include "scratch.h"
 #include "shapes.h"
 #include "simplify/low_file.h"
 
@@ -16,14 +16,10 @@ namespace fs = std::filesystem;
 
 class LowColors : public testing::Test {
  protected:
-  LowColors() : folder_(fs::temp_directory_path() / ("kiln-low-file-" + std::to_string(getpid()))) {
-    fs::create_directories(folder_);
-  }
-  ~LowColors() override { fs::remove_all(folder_); }
   fs::path path(const std::string& name) const { return folder_ / name; }
 
  private:
-  fs::path folder_;
+  const Scratch folder_;
 };
 
 TEST_F(LowColors, AreThoseOfTheNearestPointOfTheInput) {

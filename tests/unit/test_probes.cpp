@@ -356,7 +356,7 @@ TEST(ProbeFiles, RefuseWhatIsMalformed) {
   settings.bands = 1;
   settings.grid = {2, 2, 1};
   saved(scratch.folder(), at(shapes::icosphere(0), {}, settings).probes);
-  const fs::path file = scratch.folder() / probes_name;
+  const fs::path file = scratch.folder() / probes_json_name;
   const Json good = Json::parse(read_text(file));
   const auto refusal = [&](const std::string& pointer, const Json& value) {
     Json bad = good;

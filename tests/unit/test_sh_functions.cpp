@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -328,6 +329,24 @@ TEST(LightSpecs, WrongOnesAreRefused) {
        {"", "45", "torch:1,2", "cone:1,2", "cone:1,2,181", "sphere:0,0,0,0", "sphere:1,2,3", "hemisphere:0,90",
         "hemisphere:0,90,1,1,1", "ambient:-1", "45,91", "361,0", "0,0,1,-1,1", "sphere:1,2,3,1,1,1,nan"})
     EXPECT_THROW(parse_light_spec(text), WrongUsage) << text;
+}
+
+TEST(LightSpecs, NumbersOutOfRangeAreRefusedInAStructToo) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  check_light_spec({});
+  const auto expect_refused = [](const auto& spoil) {
+    LightSpec spec;
+    spoil(spec);
+    EXPECT_THROW(check_light_spec(spec), WrongUsage) << to_text(spec);
+  };
+  expect_refused([](LightSpec& spec) { spec.elevation_degrees = 90.5; });
+  expect_refused([](LightSpec& spec) { spec.azimuth_degrees = nan; });
+  expect_refused([](LightSpec& spec) { spec.colour[1] = -1; });
+  expect_refused([](LightSpec& spec) { spec.colour[2] = 2e6f; });
+  expect_refused([](LightSpec& spec) { spec.colour[0] = static_cast<float>(nan); });
+  expect_refused([](LightSpec& spec) { spec.kind = LightSpec::Kind::cone, spec.half_angle_degrees = 181; });
+  expect_refused([](LightSpec& spec) { spec.kind = LightSpec::Kind::sphere, spec.radius = 0; });
+  expect_refused([](LightSpec& spec) { spec.kind = LightSpec::Kind::sphere, spec.position[2] = nan; });
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ struct Stand {
     return engine.sums().transfer();
   }
   TransferVectors egl(const ShadowMapSettings& settings) {
-    EglEngine engine(scene(), "auto", 0, settings, make_shadow_rays(scene(), rounding_offset(occluders.positions)));
+    EglEngine engine(scene(), "software", 0, settings, make_shadow_rays(scene(), rounding_offset(occluders.positions)));
     return run(engine);
   }
   TransferVectors embree() {
@@ -225,7 +225,7 @@ TEST(ShadowMaps, SumsAreTrueForAnyNumberOfDirections) {
     stand.directions = sample_directions(Sampling::fibonacci, count + 1, 1);
     std::erase_if(stand.directions, [](const Eigen::Vector3f& direction) { return direction.y() < 0.2f; });
     if (count == 1) stand.directions = {Eigen::Vector3f(0.3f, 0.8f, 0.5f).normalized()};
-    EglEngine engine(stand.scene(), "auto", 0, settings);
+    EglEngine engine(stand.scene(), "software", 0, settings);
     stand.run(engine);
     const TransferSums sums = engine.sums();
     double squared_error = 0, squared = 0;

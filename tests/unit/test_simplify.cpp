@@ -8,7 +8,6 @@
 #include <span>
 #include <string>
 #include <tbb/global_control.h>
-#include <unistd.h>
 #include <utility>
 #include <vector>
 
@@ -17,6 +16,7 @@
 #include "import/import_mesh.h"
 #include "mesh/mesh_distance.h"
 #include "mesh/mesh_repair.h"
+#include "scratch.h"
 #include "shapes.h"
 #include "simplify/collapse.h"
 #include "simplify/feature_edges.h"
@@ -78,14 +78,10 @@ TriangleMesh bunny() { return load_mesh("/usr/share/glmark2/models/bunny.obj"); 
 
 class LowFileFolder : public testing::Test {
  protected:
-  LowFileFolder() : folder_(fs::temp_directory_path() / ("kiln-simplify-" + std::to_string(getpid()))) {
-    fs::create_directories(folder_);
-  }
-  ~LowFileFolder() override { fs::remove_all(folder_); }
   fs::path path(const std::string& name) const { return folder_ / name; }
 
  private:
-  fs::path folder_;
+  const Scratch folder_;
 };
 
 using Simplify = LowFileFolder;
@@ -421,11 +417,11 @@ TEST_F(Simplify, TheBunnyToAThousandTriangles) {
   const TriangleMesh high = bunny();
   // RMS as fractions of the diagonal. Known for this mesh and size: 0.00100 for Lindstrom-Turk and 0.00138 for
   // Garland-Heckbert quadrics in CGAL. standard and draft are to be those, a tenth more for other sampling; best is
-  // measured as 0.00078 and shall be below the former by a tenth. Largest distances are 0.0063, 0.0072 and 0.0043; they
-  // depend on a single triangle.
-  const std::map<SimplifyQuality, std::pair<double, double>> most = {{SimplifyQuality::draft, {0.00152, 0.015}},
-                                                                     {SimplifyQuality::standard, {0.00110, 0.012}},
-                                                                     {SimplifyQuality::best, {0.00090, 0.006}}};
+  // measured as 0.00078 and shall be below the former by a tenth. Largest distances are 0.0072, 0.0063 and 0.0043; they
+  // depend on a single triangle, and get 15 % more.
+  const std::map<SimplifyQuality, std::pair<double, double>> most = {{SimplifyQuality::draft, {0.00152, 0.0083}},
+                                                                     {SimplifyQuality::standard, {0.00110, 0.0073}},
+                                                                     {SimplifyQuality::best, {0.00090, 0.0050}}};
   for (const SimplifyQuality quality : all_qualities) {
     SCOPED_TRACE(static_cast<int>(quality));
     LowFile file(path("low.drc"));

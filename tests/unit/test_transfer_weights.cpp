@@ -17,7 +17,8 @@ TriangleMesh cube_on_floor() {
 }
 
 TEST(TransferWeights, AreOneWhereNothingVaries) {
-  for (const double weight : transfer_weights(shapes::plane(6))) EXPECT_EQ(weight, 1);
+  const TriangleMesh plane = shapes::plane(6);
+  EXPECT_EQ(transfer_weights(plane), std::vector<double>(plane.positions.size(), 1));
 }
 
 TEST(TransferWeights, AreLargestAtTheFootOfAWall) {
@@ -46,13 +47,18 @@ TEST(TransferWeights, DoNotDependOnTheUnitOfLength) {
   TriangleMesh large = mesh;
   for (Eigen::Vector3f& position : large.positions) position *= 1024;  // exact in float32
   const std::vector<double> small_weights = transfer_weights(mesh), large_weights = transfer_weights(large);
+  ASSERT_EQ(small_weights.size(), mesh.positions.size());
+  ASSERT_EQ(large_weights.size(), mesh.positions.size());
+  EXPECT_GT(*std::max_element(small_weights.begin(), small_weights.end()), 2) << "all weights are 1, or nearly so";
   for (std::size_t v = 0; v < small_weights.size(); ++v) EXPECT_NEAR(large_weights[v], small_weights[v], 1e-3);
 }
 
-/// Makes waves all over a sheet, and a cube close above one half of it: transfer varies at the cube's rim and beneath
-/// it.
+/// Makes a sheet with a cube close above one half of it: transfer varies at the cube's rim and beneath it. The sheet is
+/// nearly flat, or its own slopes would vary transfer everywhere.
 TEST(TransferWeights, PutTrianglesWhereTransferVaries) {
-  const TriangleMesh mesh = shapes::joined(shapes::wavy_sheet(40), shapes::cube(4), {0.5f, 0.62f, 0});
+  TriangleMesh flat = shapes::wavy_sheet(40);
+  for (Eigen::Vector3f& position : flat.positions) position.y() *= 0.25f;
+  const TriangleMesh mesh = shapes::joined(flat, shapes::cube(4), {0.5f, 0.62f, 0});
   const auto share_near_cube = [&](SimplifyAwareness aware) {
     SimplifySettings settings;
     settings.faces = 400;
@@ -68,9 +74,9 @@ TEST(TransferWeights, PutTrianglesWhereTransferVaries) {
     return static_cast<double>(near_cube) / sheet;
   };
   const double blind = share_near_cube(SimplifyAwareness::none), aware = share_near_cube(SimplifyAwareness::transfer);
-  EXPECT_NEAR(blind, 0.6, 0.05);  // of the area
-  // The waves' own slopes vary transfer everywhere, so it is not many more.
-  EXPECT_GT(aware, blind + 0.02);
+  // 400 triangles are not spread quite evenly; the gain, 0.059 as measured, is well above that.
+  EXPECT_NEAR(blind, 0.6, 0.035) << "of the area";
+  EXPECT_GT(aware, blind + 0.05);
 }
 
 }  // namespace

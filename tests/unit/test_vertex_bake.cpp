@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 #include <random>
 #include <string>
-#include <unistd.h>
 #include <vector>
 
 #include "asset/prt_asset.h"
@@ -18,6 +17,7 @@
 #include "base/options.h"
 #include "base/outputs.h"
 #include "mesh/draco_file.h"
+#include "scratch.h"
 #include "sh/basis.h"
 #include "shapes.h"
 
@@ -28,16 +28,11 @@ namespace fs = std::filesystem;
 
 class VertexBake : public testing::Test {
  protected:
-  VertexBake() : folder_(fs::temp_directory_path() / ("kiln-vertex-bake-" + std::to_string(getpid()))) {
-    fs::create_directories(folder_);
-  }
-  ~VertexBake() override { fs::remove_all(folder_); }
-
   fs::path path(const std::string& name) const { return folder_ / name; }
-  const fs::path& folder() const { return folder_; }
+  const fs::path& folder() const { return folder_.folder(); }
 
  private:
-  fs::path folder_;
+  const Scratch folder_;
 };
 
 /// Computes the transfer of receivers that nothing occludes, times `albedo`.

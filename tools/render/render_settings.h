@@ -10,7 +10,8 @@
 #include "base/options.h"
 #include "mesh/camera.h"
 #include "render/output/picture.h"
-#include "runtime/draw/scene_renderer.h"
+#include "runtime/draw/scene_view.h"
+#include "runtime/draw/technique.h"
 
 namespace kiln {
 

@@ -4,7 +4,6 @@
 #include <array>
 
 #include "base/errors.h"
-#include "image/srgb.h"
 #include "runtime/decode/plane_weights.h"
 
 namespace kiln {
@@ -13,15 +12,14 @@ namespace {
 
 constexpr float unknown_albedo = 0.8f;  // as in AssetRenderer
 
-/// Returns the albedo of a texel.
-std::array<float, 3> albedo_at(const PrtAsset& asset, const SurfaceLook& look, int i, int j) {
-  const PrtAlbedo& own = asset.albedo;
-  const bool counts = own.known && look.own_albedo;
+/// Returns the share of light that a texel reflects.
+std::array<float, 3> albedo_at(const PrtAsset& asset, const SurfaceLook& look, std::size_t texel) {
+  const bool counts = asset.albedo.known && look.own_albedo;
   const float otherwise = counts ? 1 : unknown_albedo;
   std::array<float, 3> albedo = look.albedo.value_or(std::array<float, 3>{otherwise, otherwise, otherwise});
-  for (int c = 0; counts && c < 3; ++c)
-    albedo[c] *=
-        own.picture.width() > 0 ? linear_from_srgb(static_cast<float>(own.picture.at(i, j, c)) / 255) : own.constant[c];
+  if (!counts) return albedo;
+  const Eigen::Vector3f own = asset.albedo.at(texel);
+  for (int c = 0; c < 3; ++c) albedo[c] *= own[c];
   return albedo;
 }
 
@@ -38,7 +36,7 @@ Image<float> relit_atlas(const PrtAsset& asset, const SceneLights& lights, const
   Image<float> picture(asset.width, asset.height, 4, 1.f);
   for (int j = 0; j < asset.height; ++j)
     for (int i = 0; i < asset.width; ++i) {
-      const std::array<float, 3> albedo = albedo_at(asset, look, i, j);
+      const std::array<float, 3> albedo = albedo_at(asset, look, static_cast<std::size_t>(j) * asset.width + i);
       for (int c = 0; c < 3; ++c) picture.at(i, j, c) = albedo[c] * white.at(i, j, c);
     }
   return picture;

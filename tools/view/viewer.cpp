@@ -292,7 +292,8 @@ std::vector<PlacedPanel> Viewer::panels() {
     if (state_.show == Show::coefficient)
       std::tie(facts.coefficient_lowest, facts.coefficient_highest) =
           asset_->coefficient_range(state_.coefficient, state_.technique);
-    Panel panel = readout(state_, asset_->limits(), asset_->scene().forms, asset_->scene().lights, facts);
+    Panel panel =
+        readout(state_, asset_->limits(), asset_->scene().forms.of(state_.technique), asset_->scene().lights, facts);
     if (is_narrow) panel = strip_of(panel, window.width - 2 * panel_margin(scale), scale);
     panels.push_back({std::move(panel), Corner::upper_left});
   }

@@ -2,10 +2,11 @@
 #include "bake/egl/shadow_maps.h"
 
 #include <algorithm>
-#include <map>
 
 #include "bake/egl/views.h"
 #include "gpu/program.h"
+#include "mesh/same_position.h"
+#include "mesh/triangle_edges.h"
 
 namespace kiln {
 
@@ -35,19 +36,6 @@ GlTexture make_map_array(GLenum format, int size, int layers) {
   return maps;
 }
 
-/// Triangles by vertices, those at the same place (split at seams, say) as one.
-std::vector<std::array<std::uint32_t, 3>> welded_triangles(const TransferScene& scene) {
-  std::map<std::array<float, 3>, std::uint32_t> at_place;
-  std::vector<std::uint32_t> first_there;
-  for (const Eigen::Vector3f& p : scene.positions) {
-    const auto vertex = static_cast<std::uint32_t>(first_there.size());
-    first_there.push_back(at_place.try_emplace({p.x(), p.y(), p.z()}, vertex).first->second);
-  }
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (const auto& [a, b, c] : scene.triangles) triangles.push_back({first_there[a], first_there[b], first_there[c]});
-  return triangles;
-}
-
 GlProgram load_depth_program(bool layered, bool triangle_ids) {
   ShaderDefines defines;
   if (layered) defines.emplace_back("HAS_VERTEX_LAYER", "1");
@@ -75,7 +63,7 @@ ShadowMaps::ShadowMaps(const TransferScene& scene, const ShadowMapSettings& sett
   const bool back = settings.faces == ShadowFaces::back;
   add_pass(!scene.closed ? GL_NONE : back ? GL_FRONT : GL_BACK, settings.batch_directions);
   if (settings.triangle_ids) {
-    corners_ = welded_triangles(scene);
+    corners_ = renumbered(scene.triangles, first_at_position(scene.positions));
     corner_buffer_ = make_buffer(std::span<const std::array<std::uint32_t, 3>>(corners_));
     triangle_maps_ = make_map_array(GL_R32UI, size_, settings.batch_directions);
     const GLuint framebuffer = passes_[0].framebuffer.name();

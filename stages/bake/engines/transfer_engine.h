@@ -24,17 +24,6 @@ struct TransferScene {
   bool closed = false;
 };
 
-/// Returns the diagonal of the bounding box of points; 0 for none.
-inline float diagonal_of(std::span<const Eigen::Vector3f> points) {
-  if (points.empty()) return 0;
-  Eigen::Vector3f lower = points.front(), upper = points.front();
-  for (const Eigen::Vector3f& point : points) {
-    lower = lower.cwiseMin(point);
-    upper = upper.cwiseMax(point);
-  }
-  return (upper - lower).norm();
-}
-
 /// Interface of what integrates direct transfer: receivers, occluders, directions in; sums of transfer out. One engine
 /// has one scene, reads and writes no files, and gives the same bits whatever the number of threads.
 class TransferEngine {

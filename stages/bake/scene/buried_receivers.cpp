@@ -9,6 +9,7 @@
 
 #include "mesh/hard_edges.h"
 #include "mesh/mesh_components.h"
+#include "mesh/same_position.h"
 #include "mesh/surface_point.h"
 #include "mesh/uv_raster.h"
 #include "raycast/buried_test.h"
@@ -114,7 +115,7 @@ std::size_t move_to_seen_places(TexelReceivers& receivers, const TriangleMesh& a
                                 const Occluders& occluders, const BuriedTest& is_buried,
                                 std::vector<std::uint8_t>& buried) {
   const RayScene surface(occluders.mesh);
-  const Components parts = find_components(join_at_places(occluders.mesh));
+  const Components parts = find_components(join_at_positions(occluders.mesh));
   std::vector<std::uint8_t> seen(raster.texels.size(), 0);
   for (std::size_t r = 0; r < buried.size(); ++r) seen[receivers.texels[r]] = buried[r] == 0 ? 1 : 0;
 

@@ -22,7 +22,7 @@ bool is_there(const fs::path& file) {
 }
 
 bool is_described(const fs::path& folder) {
-  return is_there(folder / ranges_name) || is_there(folder / pca_name) || is_there(folder / probes_name);
+  return is_there(folder / ranges_name) || is_there(folder / pca_name) || is_there(folder / probes_json_name);
 }
 
 /// Checks the files that the description of one folder names, each by itself, so that one fault hides no other.
@@ -137,7 +137,7 @@ CheckedFolder check_probes(const fs::path& folder) {
 
 /// Checks one folder by the description that it has: ranges.json, pca.json or matrices.json.
 CheckedFolder check_one(const fs::path& folder) {
-  if (is_there(folder / probes_name)) return check_probes(folder);
+  if (is_there(folder / probes_json_name)) return check_probes(folder);
   CheckedFolder checked = check_description(description_file(folder));
   if (is_there(folder / pca_name) && is_there(folder / ranges_name))
     checked.faults.emplace_back(folder.string(), fmt::format("has both {} and {}", ranges_name, pca_name),
@@ -162,9 +162,9 @@ std::vector<CheckedFolder> check_folder(const fs::path& folder) {
          "",
          0,
          {BadInput(folder.string(),
-                   fs::is_directory(folder, error)
-                       ? fmt::format("has no {}, {} or {}, nor a folder with one", ranges_name, pca_name, probes_name)
-                       : "is no folder",
+                   fs::is_directory(folder, error) ? fmt::format("has no {}, {} or {}, nor a folder with one",
+                                                                 ranges_name, pca_name, probes_json_name)
+                                                   : "is no folder",
                    "what kiln-bake, kiln-compress or kiln-probes wrote, or an asset's folder",
                    "run kiln build, or name its output folder")}});
   return checked;

@@ -22,9 +22,9 @@ inline constexpr const char* probes_format = "kiln-probes";
 inline constexpr const char* basis_name = "real-sh-orthonormal";  ///< the basis of sh/basis.h
 
 /// Files that describe a folder.
-inline constexpr const char* ranges_name = "ranges.json";    ///< of a baked folder
-inline constexpr const char* pca_name = "pca.json";          ///< of a compressed folder
-inline constexpr const char* probes_name = "matrices.json";  ///< of a folder of probes
+inline constexpr const char* ranges_name = "ranges.json";         ///< of a baked folder
+inline constexpr const char* pca_name = "pca.json";               ///< of a compressed folder
+inline constexpr const char* probes_json_name = "matrices.json";  ///< of a folder of probes
 
 /// Files named by a description, with the names that Kiln gives them; a reader takes the names from the JSON.
 inline constexpr const char* atlas_mesh_name = "atlas.drc";
@@ -33,7 +33,7 @@ inline constexpr const char* normal_map_name = "normal.png";
 inline constexpr const char* albedo_map_name = "albedo.png";
 inline constexpr const char* vectors_name = "vectors.png";
 inline constexpr const char* cluster_ids_name = "clusters.png";
-inline constexpr const char* matrices_name = "matrices.png";
+inline constexpr const char* matrices_png_name = "matrices.png";
 
 /// Makes the name of a coefficient's picture: "coeff_0_07.png" is coefficient 7 of channel 0.
 std::string plane_file(int channel, int coefficient);

@@ -146,7 +146,7 @@ ProbeSet read_set(const fs::path& folder, const Json& document, const Fields& fi
 
 void save_probes(OutputSet& outputs, const ProbeSet& probes) {
   const std::vector<PlaneRange> ranges = entry_ranges(probes);
-  write_png(outputs.add(matrices_name), stored_matrices(probes, ranges));
+  write_png(outputs.add(matrices_png_name), stored_matrices(probes, ranges));
 
   const auto triple = [](const Eigen::Vector3f& v) { return Json::array({v.x(), v.y(), v.z()}); };
   Json json = {{key::format, probes_format}, {key::version, format_version}};
@@ -165,15 +165,15 @@ void save_probes(OutputSet& outputs, const ProbeSet& probes) {
   json[key::invalid] = Json::array();
   for (std::size_t k = 0; k < probes.positions.size(); ++k)
     if (probes.valid[k] == 0) json[key::invalid].push_back(k);
-  json[key::matrices_file] = matrices_name;
+  json[key::matrices_file] = matrices_png_name;
   json[key::ranges] = Json::array();
   for (const PlaneRange& range : ranges)
     json[key::ranges].push_back({{key::lowest, range.lowest}, {key::highest, range.highest}});
-  outputs.add_text(probes_name, json.dump(1) + "\n");
+  outputs.add_text(probes_json_name, json.dump(1) + "\n");
 }
 
 std::pair<ProbeSet, int> read_probes(const fs::path& folder, Faults& faults) {
-  const fs::path file = folder / probes_name;
+  const fs::path file = folder / probes_json_name;
   Json document;
   if (!faults.guard([&] { document = parse_json(file, "kiln-probes", remedy); })) return {};
   const Fields fields(file.string(), "", document, remedy, &faults);

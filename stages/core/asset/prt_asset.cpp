@@ -7,6 +7,7 @@
 #include "asset/read_description.h"
 #include "asset/read_parts.h"
 #include "base/errors.h"
+#include "image/srgb.h"
 
 namespace kiln {
 
@@ -85,6 +86,15 @@ void load_pictures(const fs::path& folder, PrtAsset& asset) {
 PrtDescription load_prt_description(const fs::path& folder) {
   Faults first;
   return read_description(description_file(folder), first).first;
+}
+
+Eigen::Vector3f PrtAlbedo::at(std::size_t texel) const {
+  if (!known) return Eigen::Vector3f::Ones();
+  if (picture.width() == 0) return constant;
+  const auto channel = [&](std::size_t c) {
+    return linear_from_srgb(static_cast<float>(picture.values()[3 * texel + c]) / 255);
+  };
+  return {channel(0), channel(1), channel(2)};
 }
 
 PrtAsset load_prt_asset(const fs::path& folder) {

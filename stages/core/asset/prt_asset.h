@@ -63,6 +63,9 @@ struct PrtAlbedo {
   Eigen::Vector3f constant = Eigen::Vector3f::Ones();  ///< linear; used if there is no picture
   bool within_transfer = false;  ///< whether the bake has multiplied transfer by albedo, which is 1 here then
 
+  /// Returns the linear albedo of a texel, j * width + i; ones where it is not known.
+  Eigen::Vector3f at(std::size_t texel) const;
+
   static PrtAlbedo of_constant(const Eigen::Vector3f& linear) { return {true, "", {}, linear}; }
   static PrtAlbedo of_picture(const std::string& name) { return {true, name}; }
   static PrtAlbedo of_transfer() { return {true, "", {}, Eigen::Vector3f::Ones(), true}; }

@@ -4,55 +4,27 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <compare>
-#include <cstring>
 #include <stdexcept>
 
+#include "mesh/same_position.h"
 #include "mesh/tangent_space.h"
+#include "mesh/triangle_edges.h"
 
 namespace kiln {
 
 namespace {
 
-/// Side of a triangle, from the vertex with the smaller position number to that with the larger.
+/// Side of a triangle, from the end whose position comes first among the vertices to the other.
 struct HalfEdge {
-  std::uint32_t low = 0, high = 0;
   std::uint32_t triangle = 0;
   std::array<std::uint8_t, 2> corners{};
-  bool forwards = false;  ///< the triangle runs from low to high
-
-  auto operator<=>(const HalfEdge&) const = default;
+  bool forwards = false;  ///< the triangle runs from the first end to the second
 };
 
-/// Numbers the positions: equal bits get the same number.
-std::vector<std::uint32_t> number_positions(const std::vector<Eigen::Vector3f>& positions) {
-  std::vector<std::uint32_t> order(positions.size()), number(positions.size());
-  for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
-  const auto compare = [&](std::uint32_t a, std::uint32_t b) {
-    return std::memcmp(positions[a].data(), positions[b].data(), 3 * sizeof(float));
-  };
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return compare(a, b) < 0; });
-  for (std::size_t i = 1; i < order.size(); ++i)
-    number[order[i]] = number[order[i - 1]] + (compare(order[i - 1], order[i]) != 0 ? 1 : 0);
-  return number;
-}
-
-std::vector<HalfEdge> sorted_half_edges(const TriangleMesh& mesh) {
-  const std::vector<std::uint32_t> number = number_positions(mesh.positions);
-  std::vector<HalfEdge> halves;
-  halves.reserve(3 * mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::uint8_t k = 0; k < 3; ++k) {
-      const auto next = static_cast<std::uint8_t>((k + 1) % 3);
-      const std::uint32_t from = number[mesh.triangles[t][k]], to = number[mesh.triangles[t][next]];
-      if (from == to) continue;
-      if (from < to)
-        halves.push_back({from, to, t, {k, next}, true});
-      else
-        halves.push_back({to, from, t, {next, k}, false});
-    }
-  std::sort(halves.begin(), halves.end());
-  return halves;
+HalfEdge half_edge(std::span<const Triangle> welded, std::uint32_t side) {
+  const auto corner = static_cast<std::uint8_t>(side % 3), next = static_cast<std::uint8_t>((corner + 1) % 3);
+  if (vertex_at(welded, side) < vertex_at(welded, next_corner(side))) return {side / 3, {corner, next}, true};
+  return {side / 3, {next, corner}, false};
 }
 
 std::uint32_t vertex_of(const TriangleMesh& mesh, const HalfEdge& half, int end) {
@@ -116,30 +88,27 @@ double Footprint::lookup(const Image<float>& image, int channel) const {
 
 Seams::Seams(const TriangleMesh& atlas, int width, int height) : atlas_(&atlas), width_(width), height_(height) {
   if (atlas.uvs.size() != atlas.positions.size()) throw std::invalid_argument("Seams: a mesh with uvs is needed");
-  const std::vector<HalfEdge> halves = sorted_half_edges(atlas);
+  const std::vector<Triangle> welded = renumbered(atlas.triangles, first_at_position(atlas.positions));
   const auto add = [&](const HalfEdge& a, const HalfEdge& b) {
     if (is_seam(atlas, a, b) && !is_hard(atlas, a, b))
       edges_.push_back({{a.triangle, b.triangle}, {a.corners, b.corners}});
   };
-  for (std::size_t begin = 0, end; begin < halves.size(); begin = end) {
-    end = begin + 1;
-    while (end < halves.size() && halves[end].low == halves[begin].low && halves[end].high == halves[begin].high) ++end;
-    if (end - begin == 2) {
-      add(halves[begin], halves[begin + 1]);
-      continue;
-    }
+  TriangleEdges(welded).for_each([&](std::span<const std::uint32_t> sides) {
+    const EdgeKey ends = edge_at(welded, sides[0]);
+    if (ends.first == ends.second) return;
+    std::vector<HalfEdge> halves;
+    for (const std::uint32_t side : sides) halves.push_back(half_edge(welded, side));
+    if (halves.size() == 2) return add(halves[0], halves[1]);
     // Where sheets touch in one edge, pair the sides that run against each other with the same normals: these continue
     // one another.
-    for (std::size_t a = begin; a < end; ++a) {
-      if (!halves[a].forwards) continue;
+    for (const HalfEdge& a : halves) {
+      if (!a.forwards) continue;
       const HalfEdge* best = nullptr;
-      for (std::size_t b = begin; b < end; ++b)
-        if (!halves[b].forwards &&
-            (best == nullptr || agreement(atlas, halves[a], halves[b]) > agreement(atlas, halves[a], *best)))
-          best = &halves[b];
-      if (best != nullptr) add(halves[a], *best);
+      for (const HalfEdge& b : halves)
+        if (!b.forwards && (best == nullptr || agreement(atlas, a, b) > agreement(atlas, a, *best))) best = &b;
+      if (best != nullptr) add(a, *best);
     }
-  }
+  });
 }
 
 std::vector<SeamPoint> Seams::points(double per_texel) const {

@@ -47,7 +47,7 @@ struct SeamMismatch {
 };
 
 /// The seams of an atlas in a texture of `width` x `height` texels: edges between two triangles whose ends have the
-/// same positions (bit for bit, as Draco decodes them) but different uvs. Hard edges (the mesh's normals differ on the
+/// same positions (exactly, as Draco decodes them) but different uvs. Hard edges (the mesh's normals differ on the
 /// two sides) are not seams in this sense: their sides must not be made equal.
 class Seams {
  public:

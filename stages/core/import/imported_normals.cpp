@@ -4,12 +4,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/errors.h"
 #include "import/text_lines.h"
 #include "mesh/hard_edges.h"
 #include "mesh/mesh_components.h"
 #include "mesh/surface_point.h"
+#include "mesh/triangle_edges.h"
 
 namespace kiln {
 
@@ -19,17 +21,10 @@ using CornerNormals = std::vector<std::array<Eigen::Vector3f, 3>>;
 
 /// Tells which components have no border.
 std::vector<bool> closed_components(const TriangleMesh& mesh, const Components& components) {
-  std::vector<std::pair<EdgeKey, std::uint32_t>> edges;
-  edges.reserve(3 * mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k)
-      edges.emplace_back(std::minmax({mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3]}), t);
-  std::sort(edges.begin(), edges.end());
   std::vector<bool> closed(components.count, true);
-  for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
-    while (end < edges.size() && edges[end].first == edges[begin].first) ++end;
-    if (end - begin == 1) closed[components.of_triangle[edges[begin].second]] = false;
-  }
+  TriangleEdges(mesh.triangles).for_each([&](std::span<const std::uint32_t> sides) {
+    if (sides.size() == 1) closed[components.of_triangle[sides[0] / 3]] = false;
+  });
   return closed;
 }
 

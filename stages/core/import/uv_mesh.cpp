@@ -3,14 +3,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
-#include <map>
 
 #include "base/errors.h"
 #include "import/import_mesh.h"
 #include "import/readers.h"
 #include "import/triangulate.h"
 #include "mesh/hard_edges.h"
+#include "mesh/same_position.h"
 
 namespace kiln {
 
@@ -36,7 +35,7 @@ void require_uvs(const std::string& name, const SourceMesh& source) {
 /// Computes missing normals by compute_vertex_normals, as if vertices at one position were one.
 void complete_normals(TriangleMesh& mesh, const std::vector<bool>& has_normal) {
   if (std::find(has_normal.begin(), has_normal.end(), false) == has_normal.end()) return;
-  TriangleMesh whole = join_at_places(mesh);
+  TriangleMesh whole = join_at_positions(mesh);
   compute_vertex_normals(whole);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
@@ -59,29 +58,32 @@ TriangleMesh load_uv_mesh(const std::filesystem::path& file, const ImportSetting
   TriangleMesh mesh;
   mesh.frame = frame_of(box.min(), box.max());
   std::vector<bool> has_normal;
-  std::map<std::array<float, 8>, std::uint32_t> vertices;
+  std::vector<float> values;  // of the corners: 8 each
   const bool takes_normals =
       settings.normals.kind == NormalChoice::Kind::automatic || settings.normals.kind == NormalChoice::Kind::file;
-  const auto vertex = [&](const SourceMesh::Corner& corner) {
+  const auto add_corner = [&](const SourceMesh::Corner& corner) {
     const Eigen::Vector3f position = mesh.frame.from_file(source.places[corner.place]).cast<float>();
     const Eigen::Vector2f& uv = source.uvs[corner.uv];
     Eigen::Vector3f normal = Eigen::Vector3f::Zero();
     if (takes_normals && corner.normal != SourceMesh::none) normal = source.normals[corner.normal].normalized();
     if (!normal.allFinite()) normal.setZero();
-    const auto [found, inserted] = vertices.try_emplace(
-        {position.x(), position.y(), position.z(), uv.x(), uv.y(), normal.x(), normal.y(), normal.z()},
-        static_cast<std::uint32_t>(mesh.positions.size()));
-    if (inserted) {
-      mesh.positions.push_back(position);
-      mesh.uvs.push_back(uv);
-      mesh.normals.push_back(normal);
-      has_normal.push_back(!normal.isZero(0));
-    }
-    return found->second;
+    for (const float value :
+         {position.x(), position.y(), position.z(), uv.x(), uv.y(), normal.x(), normal.y(), normal.z()})
+      values.push_back(value);
   };
-  for (const CutTriangle& triangle : triangles) {
-    Triangle& t = mesh.triangles.emplace_back();
-    for (std::size_t k = 0; k < 3; ++k) t[k] = vertex(source.corners[triangle.corners[k]]);
+  for (const CutTriangle& triangle : triangles)
+    for (const std::uint32_t corner : triangle.corners) add_corner(source.corners[corner]);
+
+  // Corners that agree in everything become one vertex.
+  const std::vector<std::uint32_t> first = first_of_equals(values, 8), number = without_gaps(first);
+  for (std::size_t c = 0; c < first.size(); ++c) {
+    if (c % 3 == 0) mesh.triangles.push_back({number[c], number[c + 1], number[c + 2]});
+    if (first[c] != c) continue;
+    const float* value = &values[8 * c];
+    mesh.positions.emplace_back(value[0], value[1], value[2]);
+    mesh.uvs.emplace_back(value[3], value[4]);
+    mesh.normals.emplace_back(value[5], value[6], value[7]);
+    has_normal.push_back(!mesh.normals.back().isZero(0));
   }
   complete_normals(mesh, has_normal);
   return mesh;

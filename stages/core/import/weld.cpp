@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numeric>
+#include <span>
 #include <unordered_map>
+
+#include "mesh/same_position.h"
+#include "mesh/triangle_edges.h"
 
 namespace kiln {
 
@@ -29,20 +32,6 @@ struct KeyHash {
 template <class Value>
 using Table = std::unordered_map<std::array<std::int64_t, 3>, Value, KeyHash>;
 
-/// Numbers positions such that equal ones have one number.
-std::vector<std::uint32_t> number_places(const std::vector<Eigen::Vector3d>& places) {
-  Table<std::uint32_t> numbers;
-  numbers.reserve(places.size());
-  std::vector<std::uint32_t> number(places.size());
-  for (std::uint32_t i = 0; i < places.size(); ++i) {
-    const Eigen::Vector3d positive = places[i] + Eigen::Vector3d::Zero();  // turns -0 into +0
-    std::array<std::int64_t, 3> key;
-    std::memcpy(key.data(), positive.data(), sizeof key);
-    number[i] = numbers.try_emplace(key, i).first->second;
-  }
-  return number;
-}
-
 /// Returns a number of its own for every position.
 std::vector<std::uint32_t> identity(std::size_t size) {
   std::vector<std::uint32_t> number(size);
@@ -57,27 +46,22 @@ bool any_border(const std::vector<double>& shortest) {
 /// Returns the squared length of the shortest edge at each position on a border, by its number; infinity elsewhere.
 std::vector<double> shortest_border_edges(const SourceMesh& source, const std::vector<CutTriangle>& triangles,
                                           const std::vector<std::uint32_t>& number) {
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> edges;
-  edges.reserve(3 * triangles.size());
   std::vector<double> shortest(source.places.size(), std::numeric_limits<double>::infinity());
-  const auto place = [&](const CutTriangle& t, std::size_t k) {
-    return number[source.corners[t.corners[k % 3]].place];
-  };
-  for (const CutTriangle& triangle : triangles)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [a, b] = std::minmax({place(triangle, k), place(triangle, k + 1)});
-      if (a == b) continue;
-      edges.emplace_back(std::uint64_t{a} << 32 | b, 0);
-      const double length = (source.places[a] - source.places[b]).squaredNorm();
-      shortest[a] = std::min(shortest[a], length);
-      shortest[b] = std::min(shortest[b], length);
-    }
-  std::sort(edges.begin(), edges.end());
-  std::vector<bool> on_border(source.places.size(), false);
-  for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
-    while (end < edges.size() && edges[end].first == edges[begin].first) ++end;
-    if (end - begin == 1) on_border[edges[begin].first >> 32] = on_border[edges[begin].first & none] = true;
+  std::vector<Triangle> welded;
+  welded.reserve(triangles.size());
+  for (const CutTriangle& triangle : triangles) {
+    const auto place = [&](std::size_t k) { return number[source.corners[triangle.corners[k]].place]; };
+    welded.push_back({place(0), place(1), place(2)});
   }
+  std::vector<bool> on_border(source.places.size(), false);
+  TriangleEdges(welded).for_each([&](std::span<const std::uint32_t> sides) {
+    const auto [a, b] = edge_at(welded, sides[0]);
+    if (a == b) return;
+    const double length = (source.places[a] - source.places[b]).squaredNorm();
+    shortest[a] = std::min(shortest[a], length);
+    shortest[b] = std::min(shortest[b], length);
+    if (sides.size() == 1) on_border[a] = on_border[b] = true;
+  });
   for (std::size_t i = 0; i < shortest.size(); ++i)
     if (!on_border[i]) shortest[i] = std::numeric_limits<double>::infinity();
   return shortest;
@@ -98,7 +82,7 @@ int weld_borders(SourceMesh& source, const std::vector<CutTriangle>& triangles, 
   if (!(distance > 0) || !std::isfinite(distance)) return 0;
   // Most files of closed surfaces show by their indices alone that they have no border.
   if (!any_border(shortest_border_edges(source, triangles, identity(source.places.size())))) return 0;
-  const std::vector<std::uint32_t> number = number_places(source.places);
+  const std::vector<std::uint32_t> number = first_at_position(source.places);
   const std::vector<double> shortest = shortest_border_edges(source, triangles, number);
 
   // Cells are as wide as the distance and hold the positions that others may move onto, so 27 of them are searched.

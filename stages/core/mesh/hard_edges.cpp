@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <span>
 
 #include "mesh/mesh_components.h"
 #include "mesh/surface_point.h"
@@ -15,31 +15,19 @@ namespace {
 
 constexpr double radians_per_degree = 3.14159265358979323846 / 180;
 
-/// Edge that two triangles share, and the corner of each that it starts at.
+/// Edge that two triangles share, and their sides along it, which run in opposite directions.
 struct SharedEdge {
   EdgeKey key;
-  std::uint32_t first, second;  ///< 3 * triangle + corner; the edges run in opposite directions
+  std::uint32_t first, second;
 };
-
-std::uint32_t next_corner(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
-
-std::uint32_t vertex_at(const TriangleMesh& mesh, std::uint32_t corner) {
-  return mesh.triangles[corner / 3][corner % 3];
-}
 
 /// Finds the shared edges, in the order of their keys. Edges of one triangle, and of more than two, are left out.
 std::vector<SharedEdge> shared_edges(const TriangleMesh& mesh) {
-  const auto corners = static_cast<std::uint32_t>(3 * mesh.triangles.size());
-  std::vector<std::pair<EdgeKey, std::uint32_t>> edges(corners);
-  for (std::uint32_t corner = 0; corner < corners; ++corner)
-    edges[corner] = {std::minmax({vertex_at(mesh, corner), vertex_at(mesh, next_corner(corner))}), corner};
-  std::sort(edges.begin(), edges.end());
   std::vector<SharedEdge> shared;
-  for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
-    while (end < edges.size() && edges[end].first == edges[begin].first) ++end;
-    if (end - begin == 2 && vertex_at(mesh, edges[begin].second) != vertex_at(mesh, edges[begin + 1].second))
-      shared.push_back({edges[begin].first, edges[begin].second, edges[begin + 1].second});
-  }
+  TriangleEdges(mesh.triangles).for_each([&](std::span<const std::uint32_t> sides) {
+    if (sides.size() == 2 && run_opposite(mesh.triangles, sides[0], sides[1]))
+      shared.push_back({edge_at(mesh.triangles, sides[0]), sides[0], sides[1]});
+  });
   return shared;
 }
 
@@ -120,7 +108,7 @@ void compute_normals_between(TriangleMesh& mesh, const HardEdges& hard_edges) {
 void average_corner_normals(TriangleMesh& mesh, double degrees) {
   std::vector<Eigen::Vector3d> sums(mesh.positions.size(), Eigen::Vector3d::Zero());
   for_each_corner(mesh, [&](std::uint32_t corner, double weight, const Eigen::Vector3d&) {
-    sums[vertex_at(mesh, corner)] += weight * mesh.corner_normals[corner / 3][corner % 3].cast<double>();
+    sums[vertex_at(mesh.triangles, corner)] += weight * mesh.corner_normals[corner / 3][corner % 3].cast<double>();
   });
   mesh.normals.assign(mesh.positions.size(), Eigen::Vector3f::UnitY());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
@@ -169,22 +157,6 @@ TriangleMesh split_at_hard_edges(const TriangleMesh& mesh, std::vector<std::uint
     }
   if (sources != nullptr) *sources = std::move(from);
   return split;
-}
-
-TriangleMesh join_at_places(const TriangleMesh& mesh) {
-  std::map<std::array<float, 3>, std::uint32_t> at_place;
-  TriangleMesh joined;
-  joined.frame = mesh.frame;
-  std::vector<std::uint32_t> number;
-  number.reserve(mesh.positions.size());
-  for (const Eigen::Vector3f& p : mesh.positions) {
-    const auto [found, inserted] = at_place.try_emplace({p.x() + 0.f, p.y() + 0.f, p.z() + 0.f},
-                                                        static_cast<std::uint32_t>(joined.positions.size()));
-    if (inserted) joined.positions.push_back(p);
-    number.push_back(found->second);
-  }
-  for (const Triangle& t : mesh.triangles) joined.triangles.push_back({number[t[0]], number[t[1]], number[t[2]]});
-  return joined;
 }
 
 }  // namespace kiln

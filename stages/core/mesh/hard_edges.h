@@ -2,15 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <utility>
 #include <vector>
 
+#include "mesh/triangle_edges.h"
 #include "mesh/triangle_mesh.h"
 
 namespace kiln {
-
-/// An edge of a mesh by its vertices, the lesser first.
-using EdgeKey = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Hard edges: edges across which a surface is not shaded smoothly, each once, in order. Only edges of two triangles
 /// are listed; borders need not be.
@@ -39,8 +36,5 @@ void average_corner_normals(TriangleMesh& mesh, double degrees = 0.5);
 /// unchanged.
 TriangleMesh split_at_hard_edges(const TriangleMesh& mesh, std::vector<std::uint32_t>* sources = nullptr,
                                  double degrees = 0.1);
-
-/// Welds vertices at the very same position; the triangles keep their order. Normals and other attributes are dropped.
-TriangleMesh join_at_places(const TriangleMesh& mesh);
 
 }  // namespace kiln

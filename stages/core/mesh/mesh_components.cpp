@@ -36,10 +36,7 @@ std::vector<ComponentShape> measure(const TriangleMesh& mesh, const Components& 
     const auto [a, b, c] = corners_from(mesh, t, shape.origin);
     shape.six_volumes += a.dot(b.cross(c));
     shape.double_area += (b - a).cross(c - a).norm();
-    for (const std::uint32_t vertex : t) {
-      shape.box.lowest = shape.box.lowest.cwiseMin(mesh.positions[vertex]);
-      shape.box.highest = shape.box.highest.cwiseMax(mesh.positions[vertex]);
-    }
+    for (const std::uint32_t vertex : t) shape.box.extend(mesh.positions[vertex]);
   }
   return shapes;
 }
@@ -108,11 +105,8 @@ Components find_components(const TriangleMesh& mesh) {
 std::vector<BoundingBox> component_boxes(const TriangleMesh& mesh, const Components& components) {
   std::vector<BoundingBox> boxes(components.count);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    for (const std::uint32_t vertex : mesh.triangles[i]) {
-      BoundingBox& box = boxes[components.of_triangle[i]];
-      box.lowest = box.lowest.cwiseMin(mesh.positions[vertex]);
-      box.highest = box.highest.cwiseMax(mesh.positions[vertex]);
-    }
+    for (const std::uint32_t vertex : mesh.triangles[i])
+      boxes[components.of_triangle[i]].extend(mesh.positions[vertex]);
   return boxes;
 }
 

@@ -8,13 +8,16 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numeric>
+#include <span>
 #include <tuple>
 #include <vector>
 
+#include "mesh/index_table.h"
 #include "mesh/mesh_components.h"
 #include "mesh/mesh_surgery.h"
+#include "mesh/same_position.h"
+#include "mesh/triangle_edges.h"
 
 namespace kiln {
 
@@ -22,33 +25,6 @@ namespace {
 
 namespace PMP = CGAL::Polygon_mesh_processing;
 constexpr std::uint32_t none_yet = ~0u;
-
-/// Hash table that finds equal things; open addressing.
-class IndexTable {
- public:
-  explicit IndexTable(std::size_t things) {
-    std::size_t slots = 16;
-    while (slots < 2 * things) slots *= 2;
-    slots_.assign(slots, none_yet);
-  }
-
-  /// Returns the first index added for which `equal` holds; adds `index` and returns it where there is none.
-  template <class Equal>
-  std::uint32_t find_or_add(const std::array<std::uint32_t, 3>& key, std::uint32_t index, const Equal& equal) {
-    std::uint64_t hash = 0;
-    for (const std::uint32_t word : key) {
-      hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
-      hash ^= hash >> 29;
-    }
-    for (std::size_t slot = hash & (slots_.size() - 1);; slot = (slot + 1) & (slots_.size() - 1)) {
-      if (slots_[slot] == none_yet) return slots_[slot] = index;
-      if (equal(slots_[slot])) return slots_[slot];
-    }
-  }
-
- private:
-  std::vector<std::uint32_t> slots_;
-};
 
 bool repeats_vertex(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
@@ -66,22 +42,13 @@ Eigen::Vector3d area_normal(const TriangleMesh& mesh, const Triangle& triangle) 
 /// of very different size.
 bool is_flat(const TriangleMesh& mesh, const Triangle& triangle) { return area_normal(mesh, triangle).isZero(0); }
 
-/// Merges vertices at the same position into the first of them.
+/// Merges vertices at the same position into the first of them. Returns how many others there were.
 int merge_vertices(TriangleMesh& mesh) {
-  IndexTable table(mesh.positions.size());
-  std::vector<std::uint32_t> kept(mesh.positions.size());
+  for (Eigen::Vector3f& p : mesh.positions) p += Eigen::Vector3f::Zero();  // turns -0 into +0
+  const std::vector<std::uint32_t> first = first_at_position(mesh.positions);
   int merged = 0;
-  for (std::uint32_t i = 0; i < kept.size(); ++i) {
-    Eigen::Vector3f& p = mesh.positions[i];
-    p += Eigen::Vector3f::Zero();  // turns -0 into +0, which would be another key
-    std::array<std::uint32_t, 3> key;
-    std::memcpy(key.data(), p.data(), sizeof key);
-    kept[i] = table.find_or_add(key, i, [&](std::uint32_t other) { return mesh.positions[other] == p; });
-    merged += kept[i] != i;
-  }
-  if (merged > 0)
-    for (Triangle& triangle : mesh.triangles)
-      for (std::uint32_t& vertex : triangle) vertex = kept[vertex];
+  for (std::uint32_t i = 0; i < first.size(); ++i) merged += first[i] != i;
+  if (merged > 0) mesh.triangles = renumbered(mesh.triangles, first);
   return merged;
 }
 
@@ -186,25 +153,19 @@ int orient(TriangleMesh& mesh) {
 
 // ---- Taking sheets apart.
 
-/// Returns the corner after `corner`. Corner 3 t + k of triangle t also names the edge that starts there.
-std::uint32_t next_corner(std::uint32_t corner) { return corner % 3 == 2 ? corner - 2 : corner + 1; }
-std::uint32_t vertex_at(const TriangleMesh& mesh, std::uint32_t corner) {
-  return mesh.triangles[corner / 3][corner % 3];
-}
-
 using CornerPair = std::pair<std::uint32_t, std::uint32_t>;
 
 /// Edge of several triangles, and the corners that the triangles' own edges start at.
 struct SharedEdge {
-  std::uint32_t first = 0, last = 0;  ///< range in the list of all corners
-  std::vector<CornerPair> pairs;      ///< pairs of triangles that stay together: edges of opposite direction
+  std::span<const std::uint32_t> corners;
+  std::vector<CornerPair> pairs;  ///< pairs of triangles that stay together: edges of opposite direction
 };
 
 /// Pairs the triangles at an edge that continue each other best: flattest first; among equals the pair that forms a
 /// convex edge, so that two solids that touch there stay two.
-std::vector<CornerPair> pair_sheets(const TriangleMesh& mesh, const std::uint32_t* first, const std::uint32_t* last) {
-  constexpr std::ptrdiff_t most = 64;  // larger fans are no surface, and have too many pairs
-  if (last - first > most) return {};
+std::vector<CornerPair> pair_sheets(const TriangleMesh& mesh, std::span<const std::uint32_t> sides) {
+  constexpr std::size_t most = 64;  // larger fans are no surface, and have too many pairs
+  if (sides.size() > most) return {};
   struct Candidate {
     long bend;  ///< rounded, so that equal bends compare equal
     bool concave;
@@ -215,12 +176,12 @@ std::vector<CornerPair> pair_sheets(const TriangleMesh& mesh, const std::uint32_
     return area_normal(mesh, mesh.triangles[corner / 3]).normalized().eval();
   };
   std::vector<Candidate> candidates;
-  for (const std::uint32_t* i = first; i != last; ++i)
-    for (const std::uint32_t* j = i + 1; j != last; ++j) {
-      const std::uint32_t from = vertex_at(mesh, *i);
-      if (vertex_at(mesh, *j) == from) continue;  // both run the same way
+  for (auto i = sides.begin(); i != sides.end(); ++i)
+    for (auto j = i + 1; j != sides.end(); ++j) {
+      if (!run_opposite(mesh.triangles, *i, *j)) continue;
+      const std::uint32_t from = vertex_at(mesh.triangles, *i);
       const Eigen::Vector3d normal = unit_normal(*i);
-      const std::uint32_t apex = vertex_at(mesh, next_corner(next_corner(*j)));
+      const std::uint32_t apex = vertex_at(mesh.triangles, next_corner(next_corner(*j)));
       const double height = normal.dot((mesh.positions[apex] - mesh.positions[from]).cast<double>());
       candidates.push_back({-std::lround(100 * normal.dot(unit_normal(*j))), height > 0, {*i, *j}});
     }
@@ -241,34 +202,26 @@ std::vector<CornerPair> pair_sheets(const TriangleMesh& mesh, const std::uint32_
 void split_sheets(TriangleMesh& mesh, MeshRepairs& repairs) {
   // Step 1: find the triangles at each edge, and which of them stay together.
   const auto corners = static_cast<std::uint32_t>(3 * mesh.triangles.size());
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> edges(corners);
-  for (std::uint32_t corner = 0; corner < corners; ++corner) {
-    const auto [a, b] = std::minmax({vertex_at(mesh, corner), vertex_at(mesh, next_corner(corner))});
-    edges[corner] = {std::uint64_t{a} << 32 | b, corner};
-  }
-  std::sort(edges.begin(), edges.end());
-  std::vector<std::uint32_t> at_edges(corners);
-  std::transform(edges.begin(), edges.end(), at_edges.begin(), [](const auto& edge) { return edge.second; });
+  const std::span<const Triangle> triangles = mesh.triangles;
   std::vector<CornerPair> plain;      // pairs at edges of two triangles
   std::vector<SharedEdge> contested;  // edges of more triangles
   std::vector<bool> at_cut(mesh.positions.size(), false);
-  for (std::uint32_t i = 0, end = 0; i < corners; i = end) {
-    while (end < corners && edges[end].first == edges[i].first) ++end;
-    const std::uint32_t corner = at_edges[i];
-    if (end - i == 1) continue;
-    const bool opposite = vertex_at(mesh, corner) != vertex_at(mesh, at_edges[i + 1]);
-    if (end - i == 2 && opposite) {
-      plain.emplace_back(corner, at_edges[i + 1]);
-      continue;
+  const TriangleEdges edges(triangles);
+  edges.for_each([&](std::span<const std::uint32_t> sides) {
+    if (sides.size() == 1) return;
+    if (sides.size() == 2 && run_opposite(triangles, sides[0], sides[1])) {
+      plain.emplace_back(sides[0], sides[1]);
+      return;
     }
-    at_cut[vertex_at(mesh, corner)] = at_cut[vertex_at(mesh, next_corner(corner))] = true;
-    if (end - i == 2) {
+    const auto [low, high] = edge_at(triangles, sides[0]);
+    at_cut[low] = at_cut[high] = true;
+    if (sides.size() == 2) {
       ++repairs.unorientable_edges;
     } else {
       ++repairs.nonmanifold_edges;
-      contested.push_back({i, end, pair_sheets(mesh, &at_edges[i], &at_edges[i] + (end - i))});
+      contested.push_back({sides, pair_sheets(mesh, sides)});
     }
-  }
+  });
 
   // Step 2: corners connected across pairs become one vertex. A fan that comes back to a contested edge would put too
   // many triangles on it: no pairs stay together there.
@@ -286,8 +239,7 @@ void split_sheets(TriangleMesh& mesh, MeshRepairs& repairs) {
     again = false;
     for (SharedEdge& edge : contested) {
       std::vector<std::pair<std::uint32_t, std::uint32_t>> directed;
-      for (std::uint32_t i = edge.first; i < edge.last; ++i)
-        directed.emplace_back(group[at_edges[i]], group[next_corner(at_edges[i])]);
+      for (const std::uint32_t corner : edge.corners) directed.emplace_back(group[corner], group[next_corner(corner)]);
       std::sort(directed.begin(), directed.end());
       if (edge.pairs.empty() || std::adjacent_find(directed.begin(), directed.end()) == directed.end()) continue;
       edge.pairs.clear();
@@ -344,7 +296,7 @@ const std::array<std::pair<const char*, int MeshRepairs::*>, 14>& MeshRepairs::k
   return all;
 }
 
-bool MeshRepairs::none() const {
+bool MeshRepairs::is_clean() const {
   return std::all_of(kinds().begin(), kinds().end(), [&](const auto& kind) {
     return kind.second == &MeshRepairs::filled_holes || this->*kind.second == 0;
   });

@@ -45,7 +45,7 @@ struct MeshRepairs {
   static const std::array<std::pair<const char*, int MeshRepairs::*>, 14>& kinds();
 
   /// Tells whether the mesh was clean; filled holes do not count.
-  bool none() const;
+  bool is_clean() const;
 
   /// Writes the counts, such as "3 merged vertices, 1 degenerate triangles".
   std::string text() const;

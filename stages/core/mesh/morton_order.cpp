@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "mesh/triangle_mesh.h"
+
 namespace kiln {
 
 namespace {
@@ -21,17 +23,13 @@ std::uint64_t spread_bits(std::uint64_t value) {
 std::vector<MortonPlace> morton_order(std::span<const Eigen::Vector3f> points) {
   std::vector<MortonPlace> places;
   if (points.empty()) return places;
-  Eigen::Vector3f lowest = points.front(), highest = points.front();
-  for (const Eigen::Vector3f& p : points) {
-    lowest = lowest.cwiseMin(p);
-    highest = highest.cwiseMax(p);
-  }
+  const BoundingBox box = bounding_box(points);
   constexpr double top = (1 << morton_levels) - 1;
-  const double side = (highest - lowest).cast<double>().maxCoeff();
+  const double side = box.sides().cast<double>().maxCoeff();
   const double scale = side > 0 ? top / side : 0;
   places.reserve(points.size());
   for (const Eigen::Vector3f& p : points) {
-    const Eigen::Vector3d place = (p.cast<double>() - lowest.cast<double>()) * scale;
+    const Eigen::Vector3d place = (p.cast<double>() - box.lowest.cast<double>()) * scale;
     std::uint64_t code = 0;
     for (int axis = 0; axis < 3; ++axis)
       code |= spread_bits(static_cast<std::uint64_t>(std::clamp(place[axis], 0.0, top))) << axis;

@@ -42,9 +42,7 @@ BoundingBox placed_box(const BoundingBox& box, const Placement& placement) {
     const Eigen::Vector3d at((corner & 1) != 0 ? box.highest[0] : box.lowest[0],
                              (corner & 2) != 0 ? box.highest[1] : box.lowest[1],
                              (corner & 4) != 0 ? box.highest[2] : box.lowest[2]);
-    const Eigen::Vector3f to = placement.to_scene(at).cast<float>();
-    placed.lowest = placed.lowest.cwiseMin(to);
-    placed.highest = placed.highest.cwiseMax(to);
+    placed.extend(placement.to_scene(at).cast<float>());
   }
   return placed;
 }

@@ -12,15 +12,12 @@ Eigen::Vector3f face_normal(const TriangleMesh& mesh, std::uint32_t triangle) {
 }
 
 Eigen::Vector3f position_at(const TriangleMesh& mesh, const SurfacePoint& point) {
-  const Triangle& t = mesh.triangles[point.triangle];
-  return (1 - point.u - point.v) * mesh.positions[t[0]] + point.u * mesh.positions[t[1]] +
-         point.v * mesh.positions[t[2]];
+  return interpolate(mesh, mesh.positions, point);
 }
 
 Eigen::Vector3f normal_at(const TriangleMesh& mesh, const SurfacePoint& point) {
-  const Eigen::Vector3f sum = (1 - point.u - point.v) * corner_normal(mesh, point.triangle, 0) +
-                              point.u * corner_normal(mesh, point.triangle, 1) +
-                              point.v * corner_normal(mesh, point.triangle, 2);
+  const auto sum = weigh_corners<Eigen::Vector3f>(
+      point, [&](std::size_t k) -> const Eigen::Vector3f& { return corner_normal(mesh, point.triangle, k); });
   const float length = sum.norm();
   return length > 1e-6f ? Eigen::Vector3f(sum / length) : face_normal(mesh, point.triangle);
 }

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "mesh/triangle_mesh.h"
 
@@ -21,6 +23,20 @@ struct SurfacePoint {
 
 /// Returns the unit normal of a triangle, by its winding.
 Eigen::Vector3f face_normal(const TriangleMesh& mesh, std::uint32_t triangle);
+
+/// Weighs the values of a triangle's corners, value_at(0) to value_at(2), at a place in it: anything with the weights u
+/// and v of its second and third corner.
+template <class Value, class Place, class ValueAt>
+Value weigh_corners(const Place& place, const ValueAt& value_at) {
+  return (1 - place.u - place.v) * value_at(0) + place.u * value_at(1) + place.v * value_at(2);
+}
+
+/// Interpolates an attribute of vertices linearly at a place of a mesh: a SurfacePoint, or the source of a texel.
+template <class Value, class Place>
+Value interpolate(const TriangleMesh& mesh, const std::vector<Value>& attribute, const Place& place) {
+  const Triangle& t = mesh.triangles[place.triangle];
+  return weigh_corners<Value>(place, [&](std::size_t k) -> const Value& { return attribute[t[k]]; });
+}
 
 /// Returns the position of a point of a mesh.
 Eigen::Vector3f position_at(const TriangleMesh& mesh, const SurfacePoint& point);

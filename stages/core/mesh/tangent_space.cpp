@@ -73,9 +73,8 @@ std::vector<TangentFrame> tangent_frames(const TriangleMesh& mesh) {
 
 TangentFrame interpolate(const TriangleMesh& mesh, const std::vector<TangentFrame>& frames, const TexelSource& source) {
   const Triangle& t = mesh.triangles[source.triangle];
-  return {(1 - source.u - source.v) * frames[t[0]].tangent + source.u * frames[t[1]].tangent +
-              source.v * frames[t[2]].tangent,
-          frames[t[0]].sign};
+  const auto tangent = [&](std::size_t k) -> const Eigen::Vector3f& { return frames[t[k]].tangent; };
+  return {weigh_corners<Eigen::Vector3f>(source, tangent), frames[t[0]].sign};
 }
 
 Eigen::Vector3f to_object_space(const Eigen::Vector3f& normal_tangent, const Eigen::Vector3f& normal,

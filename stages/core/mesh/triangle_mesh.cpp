@@ -2,9 +2,10 @@
 #include "mesh/triangle_mesh.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+
+#include "mesh/triangle_edges.h"
 
 namespace kiln {
 
@@ -18,10 +19,13 @@ int ordinary_exponent(double longest_side) {
 BoundingBox bounding_box(const TriangleMesh& mesh) {
   BoundingBox box;
   for (const Triangle& triangle : mesh.triangles)
-    for (std::uint32_t vertex : triangle) {
-      box.lowest = box.lowest.cwiseMin(mesh.positions[vertex]);
-      box.highest = box.highest.cwiseMax(mesh.positions[vertex]);
-    }
+    for (std::uint32_t vertex : triangle) box.extend(mesh.positions[vertex]);
+  return box;
+}
+
+BoundingBox bounding_box(std::span<const Eigen::Vector3f> points) {
+  BoundingBox box;
+  for (const Eigen::Vector3f& point : points) box.extend(point);
   return box;
 }
 
@@ -48,16 +52,11 @@ void compute_vertex_normals(TriangleMesh& mesh) {
 }
 
 bool is_closed(const TriangleMesh& mesh) {
-  std::vector<std::uint64_t> edges, opposite;
-  for (const Triangle& triangle : mesh.triangles)
-    for (int i = 0; i < 3; ++i) {
-      const std::uint64_t from = triangle[i], to = triangle[(i + 1) % 3];
-      edges.push_back(from << 32 | to);
-      opposite.push_back(to << 32 | from);
-    }
-  std::sort(edges.begin(), edges.end());
-  std::sort(opposite.begin(), opposite.end());
-  return edges == opposite && std::adjacent_find(edges.begin(), edges.end()) == edges.end();
+  bool closed = true;
+  TriangleEdges(mesh.triangles).for_each([&](std::span<const std::uint32_t> sides) {
+    closed = closed && sides.size() == 2 && run_opposite(mesh.triangles, sides[0], sides[1]);
+  });
+  return closed;
 }
 
 double surface_area(const TriangleMesh& mesh) {

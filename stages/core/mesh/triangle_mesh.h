@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace kiln {
@@ -47,17 +48,35 @@ struct TriangleMesh {
 /// million.
 int ordinary_exponent(double longest_side);
 
-/// Axis-aligned box; empty (lowest > highest) for a mesh without vertices.
+/// Axis-aligned box; empty (lowest > highest) until it is extended.
 struct BoundingBox {
   Eigen::Vector3f lowest = Eigen::Vector3f::Constant(std::numeric_limits<float>::infinity());
   Eigen::Vector3f highest = Eigen::Vector3f::Constant(-std::numeric_limits<float>::infinity());
 
+  bool is_empty() const { return (lowest.array() > highest.array()).any(); }
   Eigen::Vector3f centre() const { return 0.5f * (lowest + highest); }
-  float diagonal() const { return (highest - lowest).norm(); }
+  Eigen::Vector3f sides() const { return highest - lowest; }
+  float diagonal() const { return is_empty() ? 0 : sides().norm(); }
+  bool contains(const Eigen::Vector3f& point) const {
+    return (point.array() >= lowest.array()).all() && (point.array() <= highest.array()).all();
+  }
+
+  /// Grows the box until it holds the point, or the other box.
+  void extend(const Eigen::Vector3f& point) {
+    lowest = lowest.cwiseMin(point);
+    highest = highest.cwiseMax(point);
+  }
+  void merge(const BoundingBox& other) {
+    lowest = lowest.cwiseMin(other.lowest);
+    highest = highest.cwiseMax(other.highest);
+  }
 };
 
 /// Returns the box around the vertices that triangles use.
 BoundingBox bounding_box(const TriangleMesh& mesh);
+
+/// Returns the box around points.
+BoundingBox bounding_box(std::span<const Eigen::Vector3f> points);
 
 /// Returns the normal at a corner (0 to 2) of a triangle of a mesh with normals.
 inline const Eigen::Vector3f& corner_normal(const TriangleMesh& mesh, std::uint32_t triangle, std::size_t corner) {

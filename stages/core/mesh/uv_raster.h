@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mesh/surface_point.h"
 #include "mesh/triangle_mesh.h"
 
 namespace kiln {
@@ -33,12 +34,5 @@ struct UvRaster {
 /// centre on an edge shared by two triangles belongs to just one of them (exact integer edge functions on uvs rounded
 /// to 1/256 texel or finer, with a top-left rule). A texel claimed by several triangles keeps the first.
 UvRaster rasterise_uvs(const TriangleMesh& mesh, int width, int height);
-
-/// Interpolates a per-vertex attribute linearly at a texel.
-template <class Value>
-Value interpolate(const TriangleMesh& mesh, const std::vector<Value>& attribute, const TexelSource& source) {
-  const Triangle& t = mesh.triangles[source.triangle];
-  return (1 - source.u - source.v) * attribute[t[0]] + source.u * attribute[t[1]] + source.v * attribute[t[2]];
-}
 
 }  // namespace kiln

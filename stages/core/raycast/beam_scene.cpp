@@ -8,10 +8,10 @@
 #include <map>
 #include <numeric>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
-#include <tuple>
 
 #include "mesh/mesh_components.h"
+#include "mesh/same_position.h"
+#include "mesh/triangle_edges.h"
 #include "raycast/exact_side.h"
 
 namespace kiln {
@@ -20,17 +20,7 @@ namespace {
 
 constexpr std::uint32_t no_neighbour = std::numeric_limits<std::uint32_t>::max();
 
-/// Numbers the places of vertices: vertices at the same position get the same number.
-std::vector<std::uint32_t> places_of(std::span<const Eigen::Vector3f> positions) {
-  std::vector<std::uint32_t> by_place(positions.size()), place(positions.size());
-  std::iota(by_place.begin(), by_place.end(), 0u);
-  const auto key = [&](std::uint32_t v) { return std::tuple(positions[v].x(), positions[v].y(), positions[v].z()); };
-  tbb::parallel_sort(by_place.begin(), by_place.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
-  for (std::size_t k = 1; k < by_place.size(); ++k)
-    place[by_place[k]] = place[by_place[k - 1]] + (key(by_place[k - 1]) < key(by_place[k]) ? 1 : 0);
-  return place;
-}
+using EdgeVertices = std::array<std::uint32_t, 2>;
 
 struct Neighbours {
   /// Neighbours across the three sides of each triangle, corner 0 to 1 first; none if the side does not have exactly
@@ -38,44 +28,27 @@ struct Neighbours {
   std::vector<std::array<std::uint32_t, 3>> across;
   /// Sides, from vertex to vertex, that are used more often in this direction than in the other, once for each surplus
   /// use.
-  std::vector<std::array<std::uint32_t, 2>> borders;
+  std::vector<EdgeVertices> borders;
 };
 
-Neighbours neighbours_of(std::span<const Eigen::Vector3f> positions,
-                         std::span<const std::array<std::uint32_t, 3>> triangles) {
-  struct Side {
-    std::uint64_t edge;  // its two places, the lower first
-    std::uint32_t side;  // 2 * (3 * triangle + corner), plus 1 if its direction is from the higher place to the lower
-  };
-  const std::vector<std::uint32_t> place = places_of(positions);
-  std::vector<Side> sides(3 * triangles.size());
-  tbb::parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t t) {
-    for (int k = 0; k < 3; ++k) {
-      const std::uint64_t from = place[triangles[t][k]], to = place[triangles[t][(k + 1) % 3]];
-      sides[3 * t + k] = {std::min(from, to) << 32 | std::max(from, to),
-                          static_cast<std::uint32_t>(2 * (3 * t + k) + (from > to ? 1 : 0))};
-    }
-  });
-  tbb::parallel_sort(sides.begin(), sides.end(),
-                     [](const Side& a, const Side& b) { return a.edge != b.edge ? a.edge < b.edge : a.side < b.side; });
+Neighbours neighbours_of(std::span<const Triangle> triangles, std::span<const Triangle> welded) {
   Neighbours neighbours;
   neighbours.across.assign(triangles.size(), {no_neighbour, no_neighbour, no_neighbour});
-  for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
+  TriangleEdges(welded).for_each([&](std::span<const std::uint32_t> sides) {
+    const auto [low, high] = edge_at(welded, sides[0]);
+    if (low == high) return;
+    const auto is_forwards = [&](std::uint32_t side) { return vertex_at(welded, side) == low; };
     std::int64_t surplus = 0;
-    for (; last < sides.size() && sides[last].edge == sides[first].edge; ++last)
-      surplus += (sides[last].side & 1) == 0 ? 1 : -1;
-    if (sides[first].edge >> 32 == (sides[first].edge & 0xffffffffu)) continue;
+    for (const std::uint32_t side : sides) surplus += is_forwards(side) ? 1 : -1;
     if (surplus != 0) {
-      const std::uint32_t side = sides[first].side / 2;
-      std::array<std::uint32_t, 2> border = {triangles[side / 3][side % 3], triangles[side / 3][(side % 3 + 1) % 3]};
-      if (((sides[first].side & 1) == 0) != (surplus > 0)) std::swap(border[0], border[1]);
+      EdgeVertices border = {vertex_at(triangles, sides[0]), vertex_at(triangles, next_corner(sides[0]))};
+      if (is_forwards(sides[0]) != (surplus > 0)) std::swap(border[0], border[1]);
       neighbours.borders.insert(neighbours.borders.end(), static_cast<std::size_t>(std::abs(surplus)), border);
     }
-    if (surplus != 0 || last - first != 2) continue;
-    const std::uint32_t a = sides[first].side / 2, b = sides[first + 1].side / 2;
-    neighbours.across[a / 3][a % 3] = b / 3;
-    neighbours.across[b / 3][b % 3] = a / 3;
-  }
+    if (surplus != 0 || sides.size() != 2) return;
+    neighbours.across[sides[0] / 3][sides[0] % 3] = sides[1] / 3;
+    neighbours.across[sides[1] / 3][sides[1] % 3] = sides[0] / 3;
+  });
   return neighbours;
 }
 
@@ -86,9 +59,9 @@ struct Lids {
 };
 
 /// Makes a fan from the middle of each connected border. A cone over a cycle of edges closes it, whatever its shape.
-Lids lids_over(std::span<const Eigen::Vector3f> positions, std::span<const std::array<std::uint32_t, 2>> borders) {
+Lids lids_over(std::span<const Eigen::Vector3f> positions, std::span<const std::uint32_t> place,
+               std::span<const EdgeVertices> borders) {
   Lids lids{{positions.begin(), positions.end()}, {}};
-  const std::vector<std::uint32_t> place = places_of(positions);
   DisjointSets sets(positions.size());
   for (const auto& [from, to] : borders) sets.join(place[from], place[to]);
   struct Middle {
@@ -146,10 +119,10 @@ class Builder {
   /// Halves `range` across the longest side of the box of its triangles' centres. The halves depend only on the
   /// centres, with the index to break ties.
   std::array<Range, 2> halves(const Range& range) {
-    Eigen::AlignedBox3f box;
+    BoundingBox box;
     for (std::size_t k = range.first; k < range.last; ++k) box.extend(centres_[order_[k]]);
     int axis = 0;
-    box.sizes().maxCoeff(&axis);
+    box.sides().maxCoeff(&axis);
     const std::size_t clusters = (range.size() + beam_lanes - 1) / beam_lanes;
     const std::size_t middle = range.first + (clusters + 1) / 2 * beam_lanes;
     std::nth_element(order_.begin() + range.first, order_.begin() + middle, order_.begin() + range.last,
@@ -216,7 +189,7 @@ class Builder {
     BeamScene::Node made{};
     made.count = static_cast<int>(parts.size());
     for (int i = 0; i < beam_lanes; ++i) {
-      Eigen::AlignedBox3f box;
+      BoundingBox box;
       if (i < made.count) {
         for (std::size_t k = parts[i].first; k < parts[i].last; ++k)
           for (std::uint32_t vertex : triangles_[order_[k]]) box.extend(positions_[vertex]);
@@ -231,8 +204,8 @@ class Builder {
       }
       if (i < made.count) set_cones(parts[i], i, made.boxes);
       for (int axis = 0; axis < 3; ++axis) {
-        made.boxes.lower[axis][i] = box.min()[axis];
-        made.boxes.upper[axis][i] = box.max()[axis];
+        made.boxes.lower[axis][i] = box.lowest[axis];
+        made.boxes.upper[axis][i] = box.highest[axis];
       }
     }
     scene_.nodes[index] = made;
@@ -251,22 +224,23 @@ class Builder {
 
 BeamScene::BeamScene(std::span<const Eigen::Vector3f> positions,
                      std::span<const std::array<std::uint32_t, 3>> triangles) {
-  const Neighbours neighbours = neighbours_of(positions, triangles);
+  const std::vector<std::uint32_t> place = first_at_position(positions);
+  const Neighbours neighbours = neighbours_of(triangles, renumbered(triangles, place));
   root = Builder(*this, positions, triangles, neighbours.across).build();
   if (!neighbours.borders.empty()) {
-    const Lids made = lids_over(positions, neighbours.borders);
+    const Lids made = lids_over(positions, place, neighbours.borders);
     const std::vector<std::array<std::uint32_t, 3>> alone(made.triangles.size(),
                                                           {no_neighbour, no_neighbour, no_neighbour});
     lids = Builder(*this, made.positions, made.triangles, alone).build();
   }
   float largest = 0;
-  Eigen::AlignedBox3f box;
+  BoundingBox box;
   for (const auto& triangle : triangles)
     for (std::uint32_t vertex : triangle) {
       largest = std::max(largest, positions[vertex].cwiseAbs().maxCoeff());
       box.extend(positions[vertex]);
     }
-  if (!triangles.empty()) doubtful = doubtful_share * box.diagonal().norm();
+  if (!triangles.empty()) doubtful = doubtful_share * box.diagonal();
   slack = 8 * std::numeric_limits<float>::epsilon() * largest;
 }
 

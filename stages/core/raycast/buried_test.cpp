@@ -11,6 +11,7 @@
 
 #include "mesh/hard_edges.h"
 #include "mesh/mesh_components.h"
+#include "mesh/same_position.h"
 #include "raycast/embree_scene.h"
 #include "sh/directions.h"
 
@@ -174,7 +175,7 @@ BuriedTest::BuriedTest(std::span<const Eigen::Vector3f> positions, std::span<con
   TriangleMesh mesh;
   mesh.positions.assign(positions.begin(), positions.end());
   mesh.triangles.assign(triangles.begin(), triangles.end());
-  implementation_ = std::make_unique<Implementation>(join_at_places(mesh), ray_offset);
+  implementation_ = std::make_unique<Implementation>(join_at_positions(mesh), ray_offset);
 }
 
 BuriedTest::~BuriedTest() = default;

@@ -32,16 +32,11 @@ RTCGeometry make_geometry(RTCDevice device, std::span<const Eigen::Vector3f> pos
   return geometry;
 }
 
-float diagonal_of(std::span<const Eigen::Vector3f> positions) {
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& position : positions) box.extend(position);
-  return positions.empty() ? 0 : box.diagonal().norm();
-}
-
 }  // namespace
 
 EmbreeScene::EmbreeScene(std::span<const Eigen::Vector3f> positions, std::span<const Triangle> triangles)
-    : surface_{positions, triangles, doubtful_share * diagonal_of(positions)}, device_(rtcNewDevice(nullptr)) {
+    : surface_{positions, triangles, doubtful_share * bounding_box(positions).diagonal()},
+      device_(rtcNewDevice(nullptr)) {
   build(positions, triangles, RTC_BUILD_QUALITY_HIGH, nullptr, this, refuse_behind);
   // Builds the tree with one thread, so that it does not depend on their number.
   tbb::task_arena one_thread(1);

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 #include <utility>
 
 #include "mesh/surface_point.h"
+#include "mesh/triangle_edges.h"
 
 namespace kiln {
 
@@ -25,14 +27,12 @@ struct Piece {
   std::array<Eigen::Vector2f, 3> places;  // weights of the source triangle's second and third corner
 };
 
-using Edge = std::pair<std::uint32_t, std::uint32_t>;
-
 /// Halves edges until none is longer than `longest`.
 void cut_long_edges(std::vector<Eigen::Vector3f>& positions, std::vector<Piece>& pieces, float longest) {
   const float most = longest * longest;
   for (bool any = true; any;) {
     any = false;
-    std::map<Edge, std::uint32_t> middles;
+    std::map<EdgeKey, std::uint32_t> middles;
     const auto middle = [&](std::uint32_t a, std::uint32_t b) {
       const auto [found, fresh] = middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(positions.size()));
       if (fresh) positions.push_back(0.5f * (positions[a] + positions[b]));
@@ -92,18 +92,16 @@ class PointMaker {
   /// Keeps references; `mesh` is what the pieces were cut from.
   PointMaker(const TriangleMesh& mesh, const std::vector<Eigen::Vector3f>& positions, const std::vector<Piece>& pieces)
       : mesh_(mesh), positions_(positions), pieces_(pieces), on_border_(positions.size(), 0) {
-    std::vector<Edge> sides;
+    std::vector<Triangle> triangles;
+    triangles.reserve(pieces.size());
     for (const Piece& piece : pieces) {
-      const auto& [a, b, c] = piece.corners;
+      const auto& [a, b, c] = triangles.emplace_back(piece.corners);
       normals_.push_back((positions[b] - positions[a]).cross(positions[c] - positions[a]));
-      for (const Edge edge : {std::minmax(a, b), std::minmax(b, c), std::minmax(c, a)}) sides.push_back(edge);
     }
-    std::sort(sides.begin(), sides.end());
-    for (auto side = sides.begin(); side != sides.end();) {
-      const auto next = std::find_if(side, sides.end(), [&](const Edge& other) { return other != *side; });
-      if (next - side != 2) on_border_[side->first] = on_border_[side->second] = 1;
-      side = next;
-    }
+    TriangleEdges(triangles).for_each([&](std::span<const std::uint32_t> sides) {
+      const auto [low, high] = edge_at(triangles, sides[0]);
+      if (sides.size() != 2) on_border_[low] = on_border_[high] = 1;
+    });
   }
 
   /// Fills the cache's points; albedos are still zero.

@@ -47,13 +47,33 @@ const Syntax& syntax_of(LightSpec::Kind kind) {
 }
 
 /// Reads the colour that starts at `first` of a list of numbers.
-std::array<float, 3> colour_at(std::string_view text, const std::vector<double>& values, std::size_t first) {
+std::array<float, 3> colour_at(const std::vector<double>& values, std::size_t first) {
   std::array<float, 3> colour;
-  for (std::size_t c = 0; c < 3; ++c) {
-    if (values[first + c] < 0) fail("light", text, "a colour of no negative numbers");
-    colour[c] = static_cast<float>(values[first + c]);
-  }
+  for (std::size_t c = 0; c < 3; ++c) colour[c] = static_cast<float>(values[first + c]);
   return colour;
+}
+
+/// Throws WrongUsage that quotes `found` unless the numbers of a light are in range; NaN is not.
+void check(const LightSpec& spec, std::string_view found) {
+  const auto require = [&](bool holds, const char* expected) {
+    if (!holds) fail("light", found, expected);
+  };
+  const auto is_within = [](double value, double most) { return std::abs(value) <= most; };
+  for (const auto* colour : {&spec.colour, &spec.ground})
+    for (const float value : *colour) {
+      require(!(value < 0), "a colour of no negative numbers");
+      require(is_within(static_cast<double>(value), brightest), "colours of 0 to 1e6");
+    }
+  if (spec.kind == LightSpec::Kind::sphere) {
+    for (const double coordinate : spec.position) require(is_within(coordinate, brightest), "a place within 1e6 units");
+    require(spec.radius > 0, "a radius above 0");
+    require(is_within(spec.radius, brightest), "a radius of up to 1e6");
+    return;
+  }
+  require(is_within(spec.azimuth_degrees, 360), "an azimuth of -360 to 360 degrees");
+  require(is_within(spec.elevation_degrees, 90), "an elevation of -90 to 90 degrees");
+  if (spec.kind == LightSpec::Kind::cone)
+    require(spec.half_angle_degrees >= 0 && spec.half_angle_degrees <= 180, "a half-angle of 0 to 180 degrees");
 }
 
 std::string to_text(const std::array<float, 3>& colour) {
@@ -86,25 +106,21 @@ LightSpec parse_light_spec(std::string_view text) {
   const bool has_colours = values.size() == syntax->numbers + 3 * colours;
   if (!has_colours && (colours == 2 || values.size() != syntax->numbers))
     fail("light", text, std::string(syntax->form));
-  if (has_colours) spec.colour = colour_at(text, values, syntax->numbers);
-  if (colours == 2) spec.ground = colour_at(text, values, syntax->numbers + 3);
+  if (has_colours) spec.colour = colour_at(values, syntax->numbers);
+  if (colours == 2) spec.ground = colour_at(values, syntax->numbers + 3);
   if (spec.kind == LightSpec::Kind::sphere) {
     spec.position = {values[0], values[1], values[2]};
     spec.radius = values[3];
-    if (!(spec.radius > 0)) fail("light", text, "a radius above 0");
-    return spec;
+  } else {
+    spec.azimuth_degrees = values[0];
+    spec.elevation_degrees = values[1];
+    if (spec.kind == LightSpec::Kind::cone) spec.half_angle_degrees = values[2];
   }
-  spec.azimuth_degrees = values[0];
-  spec.elevation_degrees = values[1];
-  if (std::abs(spec.azimuth_degrees) > 360) fail("light", text, "an azimuth of -360 to 360 degrees");
-  if (std::abs(spec.elevation_degrees) > 90) fail("light", text, "an elevation of -90 to 90 degrees");
-  if (spec.kind == LightSpec::Kind::cone) {
-    spec.half_angle_degrees = values[2];
-    if (!(spec.half_angle_degrees >= 0 && spec.half_angle_degrees <= 180))
-      fail("light", text, "a half-angle of 0 to 180 degrees");
-  }
+  check(spec, text);
   return spec;
 }
+
+void check_light_spec(const LightSpec& spec) { check(spec, to_text(spec)); }
 
 std::string to_text(const LightSpec& spec) {
   const std::string name(syntax_of(spec.kind).name),

@@ -41,6 +41,9 @@ struct LightSpec {
 /// Azimuths of -360 to 360, elevations of -90 to 90, half-angles of 0 to 180, colours of 0 to 1e6. Throws WrongUsage.
 LightSpec parse_light_spec(std::string_view text);
 
+/// Throws WrongUsage unless the numbers of a light are in the ranges that parse_light_spec states.
+void check_light_spec(const LightSpec& spec);
+
 /// Writes a text that parse_light_spec reads as the same light.
 std::string to_text(const LightSpec& spec);
 

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "runtime/draw/scene_renderer.h"
+
 namespace kiln {
 
 namespace {

@@ -41,11 +41,6 @@ float rounded_share(int i, int j, int width, int height, double radius) {
 
 }  // namespace
 
-bool Panel::operator==(const Panel& other) const {
-  const auto same = [](const PanelRow& a, const PanelRow& b) { return a.label == b.label && a.value == b.value; };
-  return title == other.title && std::equal(rows.begin(), rows.end(), other.rows.begin(), other.rows.end(), same);
-}
-
 Panel strip_of(const Panel& panel, int width, double scale) {
   const Metrics metrics(scale);
   Panel strip;

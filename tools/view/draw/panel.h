@@ -2,25 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <vector>
 
 #include "image/image.h"
+#include "view/state/panel_text.h"
 
 namespace kiln {
-
-/// A row of a panel: a dim label, and its text.
-struct PanelRow {
-  std::string label;
-  std::string value;
-};
-
-struct Panel {
-  std::string title;  ///< empty: none
-  std::vector<PanelRow> rows;
-
-  bool operator==(const Panel&) const;
-};
 
 /// Makes a strip of as few lines as fit `width` pixels from a panel, for windows without room beside the asset.
 Panel strip_of(const Panel& panel, int width, double scale);

@@ -62,9 +62,8 @@ std::string shown(const ViewState& state, const ViewLimits& limits, const ViewFa
 
 }  // namespace
 
-Panel readout(const ViewState& state, const ViewLimits& limits, const AssetForms& forms, const GivenLights& lights,
+Panel readout(const ViewState& state, const ViewLimits& limits, const PrtAsset& asset, const GivenLights& lights,
               const ViewFacts& facts) {
-  const PrtAsset& asset = forms.of(state.technique);
   const bool is_deferred = state.shading == Shading::deferred && can_defer(state.technique);
   Panel panel{facts.asset, {}};
   const auto row = [&](const char* label, std::string value) { panel.rows.push_back({label, std::move(value)}); };

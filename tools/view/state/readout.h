@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "view/draw/panel.h"
-#include "view/files/asset_forms.h"
+#include "asset/prt_asset.h"
+#include "view/state/panel_text.h"
 #include "view/state/view_lights.h"
 #include "view/state/view_state.h"
 
@@ -19,8 +19,8 @@ struct ViewFacts {
   double coefficient_lowest = 0, coefficient_highest = 0;  ///< range of the coefficient shown
 };
 
-/// Makes the panel that says what is shown, and how.
-Panel readout(const ViewState& state, const ViewLimits& limits, const AssetForms& forms, const GivenLights& lights,
+/// Writes the panel that says what is shown, and how. `asset` is the form that the state's technique draws.
+Panel readout(const ViewState& state, const ViewLimits& limits, const PrtAsset& asset, const GivenLights& lights,
               const ViewFacts& facts);
 
 /// Makes a panel of a message under a heading, in lines that fit a window.

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "runtime/draw/scene_renderer.h"
 #include "runtime/draw/technique.h"
 #include "sh/windows.h"
 #include "view/state/orbit.h"
