@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/backends.h"
 
-#include "bake/rays/ray_gather_engine.h"
 #include "bake/egl/bundle_engine.h"
 #include "bake/egl/egl_engine.h"
 #include "bake/rays/beam_engine.h"
 #include "bake/rays/embree_engine.h"
 #include "bake/rays/embree_shadow_rays.h"
+#include "bake/rays/ray_gather_engine.h"
 #include "gpu/egl_context.h"
 #include "sh/ray_offset.h"
 
@@ -14,8 +14,8 @@ namespace kiln {
 
 namespace {
 
-/// Directions from which on beams are faster than rays, on all meshes measured (docs/benchmarks.md): blocks of fewer
-/// directions are too wide for one search to settle many of them.
+/// Number of directions from which on beams are faster than rays, on all meshes measured (docs/benchmarks.md): blocks
+/// of fewer directions are too wide for one search to decide many of them.
 constexpr int enough_for_beams = 192;
 
 }  // namespace
