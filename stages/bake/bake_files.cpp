@@ -8,6 +8,7 @@
 #include "bake/planes/coefficient_planes.h"
 #include "bake/planes/vertex_planes.h"
 #include "bake/scene/vertex_receivers.h"
+#include "bake/verify.h"
 #include "base/errors.h"
 #include "detail/asset_hints.h"
 #include "detail/detail_maps.h"
@@ -52,7 +53,7 @@ std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSetti
   scene.said_warnings = hints.warnings;
 
   std::vector<SurfaceAlbedo> albedos;
-  const bool bounces = parse_bounces(settings.bounces).any(), with_albedo = bounces || settings.bake_albedo;
+  const bool bounces = settings.bounces.any(), with_albedo = bounces || settings.bake_albedo;
   const auto add_albedo = [&](const std::string& name, const LoadedAlbedo& loaded) {
     if (bounces && loaded.albedo.source() == SurfaceAlbedo::Source::none)
       throw WrongUsage("bounces: found no albedo in " + name +
@@ -214,6 +215,10 @@ std::vector<std::string> direction_warnings(const BakeSettings& settings) {
           "bake fewer bands"};
 }
 
+BakeJob make_job(const BakeScene& scene, const BakeSettings& settings, const CommandLine& command) {
+  return {scene.receivers, scene.occluders, settings, command.seed(), command.threads()};
+}
+
 BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) {
   subsurface_profiles(settings.subsurface);  // says what does not go together before anything is baked
   if (settings.subsurface.wanted() && settings.bake_albedo)
@@ -307,7 +312,7 @@ Json describe_bake(const BakeScene& scene, const BakeResult& result) {
 
 namespace {
 
-/// Each error, and beside it what all texels' own is within with a confidence of 95 %.
+/// Returns each error, and beside it the bound that the error of all texels is within, with a confidence of 95 %.
 Json describe_verification(const BakeVerification& verification) {
   Json json = {{"other_backend", verification.other_backend},
                {"backend_texels", verification.backend_texels},
@@ -345,9 +350,9 @@ Json save_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scen
   Json metrics = describe_bake(scene, result);
   metrics.update(places);
   if (settings.verify_directions > 0) {
-    const BakeVerification v = verify(result, stored, scene.receivers, scene.occluders, settings, command.seed(),
-                                      command.threads(), command.progress("verify"));
-    metrics["verification"] = describe_verification(v);
+    BakeJob job = make_job(scene, settings, command);
+    job.progress = command.progress("verify");
+    metrics["verification"] = describe_verification(verify(result, stored, job));
   }
   return metrics;
 }

@@ -11,6 +11,7 @@
 
 namespace kiln {
 
+/// Files of a bake.
 struct BakePaths {
   std::filesystem::path atlas;                   ///< per vertex: any mesh
   std::filesystem::path detail;                  ///< empty: none
@@ -18,38 +19,43 @@ struct BakePaths {
   std::filesystem::path output;
 };
 
+/// Loaded inputs of a bake.
 struct BakeScene {
   TriangleMesh atlas;  ///< empty in a bake per vertex
   TexelReceivers receivers;
   Occluders occluders;
-  std::vector<std::filesystem::path> further_files;  ///< that were read: neighbours, and what holds meshes' albedo
-  std::vector<std::string> neighbours;               ///< as --neighbour has them
+  std::vector<std::filesystem::path>
+      further_files;                    ///< other files that were read: neighbours, and files of meshes' albedo
+  std::vector<std::string> neighbours;  ///< neighbours as --neighbour has them
   std::vector<std::string> warnings;
-  std::vector<std::string> said_warnings;  ///< those of an earlier stage
+  std::vector<std::string> said_warnings;  ///< warnings that an earlier stage has said
   void add_warnings(const std::vector<std::string>& further);
 
-  NormalSpace normal_space = NormalSpace::object;  ///< of the normal map
-  PrtAlbedo albedo;                                ///< of the receivers, as ranges.json is to have it
-  BuriedReport buried;                             ///< what is not among the receivers
-  double high_area = 0;  ///< of the mesh that receivers on the high mesh stand on, square object units; else 0
+  NormalSpace normal_space = NormalSpace::object;  ///< space of the normal map
+  PrtAlbedo albedo;                                ///< albedo of the receivers, for ranges.json
+  BuriedReport buried;                             ///< receivers that were set aside
+  double high_area = 0;  ///< area of the high mesh that receivers stand on, square object units; else 0
 
-  // Of a bake per vertex alone.
-  TriangleMesh vertex_mesh;  ///< as it is to be written, normals those of the receivers
+  // A bake per vertex alone has these.
+  TriangleMesh vertex_mesh;  ///< mesh to write, with the receivers' normals
   Json vertex_metrics;
 };
 
-/// What is wrong with the number of directions: fewer than the bands need (directions_for_bands), or none.
+/// Returns a warning if there are fewer directions than the bands need (directions_for_bands), else nothing.
 std::vector<std::string> direction_warnings(const BakeSettings& settings);
 
-/// Loads what a bake needs. Throws WrongUsage where settings and paths do not go together, BadInput for bad files.
+/// Returns the job of baking a scene, without checkpoints and progress. `scene` outlives it.
+BakeJob make_job(const BakeScene& scene, const BakeSettings& settings, const CommandLine& command);
+
+/// Loads the inputs of a bake. Throws WrongUsage where settings and paths do not go together, BadInput for bad files.
 BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings);
 
-/// Metrics of bake.json that do not depend on what was written.
+/// Returns the metrics of bake.json that do not depend on the files written.
 Json describe_bake(const BakeScene& scene, const BakeResult& result);
 
 /// Writes the planes, ranges.json and copies of the mesh and the normal map (per vertex: ranges.json and the mesh that
 /// holds the coefficients), so that the folder is all a runtime needs; reads the planes back and measures; verifies if
-/// settings ask for it. Gives the metrics of bake.json.
+/// settings ask for it. Returns the metrics of bake.json.
 Json save_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeResult& result,
                const BakeSettings& settings, const CommandLine& command);
 

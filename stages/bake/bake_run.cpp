@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "bake/subsurface/subsurface.h"
 #include "base/asset_layout.h"
 #include "base/errors.h"
 
@@ -39,26 +40,25 @@ void add_run_options(CommandLine& command, BakeRun& run) {
 
 namespace {
 
-/// All but what goes on beneath the surface.
+/// Computes incident transfer, direct and bounced: all of it, one shard, or a merge of shards. Subsurface scattering is
+/// applied by the caller.
 BakeResult integrate(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeSettings& settings,
                      const BakeRun& run, const CommandLine& command) {
   if (settings.adaptive > 0 && (run.is_shard() || !run.shards.empty() || run.resume))
     throw WrongUsage("adaptive: found --shard, --merge or --resume; expected none, they go by blocks of directions");
-  const ProgressFunction progress = command.progress(run.shards.empty() ? "bake" : "merge");
+  BakeJob job = make_job(scene, settings, command);
+  job.progress = command.progress(run.shards.empty() ? "bake" : "merge");
   if (!run.shards.empty()) {
     if (run.is_shard() || run.resume) throw WrongUsage("merge: found --shard or --resume; expected neither");
-    return merge_shards(run.shards, scene.receivers, scene.occluders, settings, command.seed(), command.threads(),
-                        progress);
+    return merge_shards(run.shards, job);
   }
-  const Checkpoints checkpoints{checkpoint_folder(paths), run.checkpoint_seconds, run.resume};
+  job.checkpoints = {checkpoint_folder(paths), run.checkpoint_seconds, run.resume};
   BakeResult result;
   try {
-    if (run.is_shard())
-      return bake_shard(outputs, parse_shard(run.shard), scene.receivers, scene.occluders, settings, command.seed(),
-                        command.threads(), checkpoints, progress);
-    result = bake(scene.receivers, scene.occluders, settings, command.seed(), command.threads(), checkpoints, progress);
+    if (run.is_shard()) return bake_shard(outputs, parse_shard(run.shard), job);
+    result = bake(job);
   } catch (const Interrupted&) {
-    if (fs::exists(checkpoints.folder)) command.say("the same command with --resume goes on from here");
+    if (fs::exists(job.checkpoints.folder)) command.say("the same command with --resume goes on from here");
     throw;
   }
   if (result.choice && result.choice->estimated_error > result.choice->target_error)

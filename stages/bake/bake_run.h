@@ -19,16 +19,16 @@ struct BakeRun {
   bool is_shard() const { return !shard.empty(); }
 };
 
-/// The options of a run, under a heading of their own. They are not part of the settings on record.
+/// Adds the options of a run, under a heading of their own. They are not part of the settings on record.
 void add_run_options(CommandLine& command, BakeRun& run);
 
-/// Integrates, integrates one shard into `outputs`, or merges shards, as `run` says; then scatters beneath the
-/// surface, if settings ask for it. Throws WrongUsage for options that
-/// do not go together, and what bake(), bake_shard() and merge_shards() throw.
+/// Integrates, integrates one shard into `outputs`, or merges shards, as `run` says; then scatters beneath the surface,
+/// if settings ask for it. Throws WrongUsage for options that do not go together, and what bake(), bake_shard() and
+/// merge_shards() throw.
 BakeResult run_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeSettings& settings,
                     const BakeRun& run, const CommandLine& command);
 
-/// Removes what an interrupted bake of this output left: `<output>.checkpoint/` beside it.
+/// Removes the checkpoints of an interrupted bake of this output, `<output>.checkpoint/` beside it.
 void remove_checkpoints(const BakePaths& paths);
 
 }  // namespace kiln

@@ -11,10 +11,10 @@ namespace {
 
 /// Light that bounces, and what it bounces off.
 void add_bounce_options(OptionSet& options, BakeSettings& settings) {
-  options.checked_text("bounces", settings.bounces, "0 to 100, or auto",
-                       "How often light bounces off the occluders; auto: until the next bounce adds less than what "
-                       "--bits costs",
-                       [](const std::string& text) { parse_bounces(text); });
+  add_bounces_option(
+      options, settings.bounces,
+      "How often light bounces off the occluders; auto: until the next bounce adds less than what --bits "
+      "costs");
   options.affects(Affects::storing);
   OptionSet material, import;
   add_material_options(material, settings.material);
@@ -84,16 +84,6 @@ const std::vector<std::pair<std::string, BakeBackend>> backend_words = {{"auto",
                                                                         {"embree", BakeBackend::embree}};
 
 }  // namespace
-
-BounceTarget parse_bounces(const std::string& text) {
-  if (text == "auto") return {.automatic = true, .count = 0};
-  int count = 0;
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), count);
-  if (failure != std::errc{} || end != text.data() + text.size() || count < 0 || count > most_bounces)
-    throw WrongUsage("bounces: found '" + text + "'; expected auto or a number of 0 to " +
-                     std::to_string(most_bounces));
-  return {.automatic = false, .count = count};
-}
 
 ErrorTarget parse_error_target(const std::string& text) {
   if (text == "none") return {};

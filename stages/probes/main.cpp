@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
     // Load.
     std::vector<Eigen::Vector3f> points;
     if (!points_file.empty()) points = read_points(points_file);
-    const ProbeScene scene = load_probe_scene(high_files, settings, command);
+    const SceneMesh scene = load_probe_scene(high_files, settings, command);
     OutputSet outputs(output);
 
     // Run.

@@ -9,9 +9,9 @@
 
 namespace kiln {
 
-ProbeScene load_probe_scene(const std::vector<std::filesystem::path>& files, const ProbesSettings& settings,
-                            CommandLine& command) {
-  ProbeScene scene;
+SceneMesh load_probe_scene(const std::vector<std::filesystem::path>& files, const ProbesSettings& settings,
+                           CommandLine& command) {
+  SceneMesh scene;
   std::optional<MeshFrame> frame;  // that of the first mesh
   for (const std::filesystem::path& file : files) {
     const ImportedMesh imported = import_mesh(file, settings.import, frame);
@@ -21,7 +21,7 @@ ProbeScene load_probe_scene(const std::vector<std::filesystem::path>& files, con
       throw BadInput(file.string(),
                      "lies many times its size from the origin, or is a million times larger or smaller than one unit",
                      "a mesh whose probes can be told as floats", "move it, or give --scale");
-    if (settings.bounces == 0) {
+    if (!settings.bounces.any()) {
       scene.add(imported.mesh);
       continue;
     }

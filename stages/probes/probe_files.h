@@ -5,15 +5,15 @@
 #include <vector>
 
 #include "base/command_line.h"
+#include "material/scene_mesh.h"
 #include "probes/probes_settings.h"
-#include "probes/surface_light.h"
 
 namespace kiln {
 
 /// Loads meshes as one scene, with their albedo where light is to bounce, and adds warnings and the further files that
 /// were read to `command`. Throws BadInput, also for meshes that need a frame of their own (MeshFrame), and WrongUsage
 /// where light is to bounce and an albedo is not known.
-ProbeScene load_probe_scene(const std::vector<std::filesystem::path>& files, const ProbesSettings& settings,
-                            CommandLine& command);
+SceneMesh load_probe_scene(const std::vector<std::filesystem::path>& files, const ProbesSettings& settings,
+                           CommandLine& command);
 
 }  // namespace kiln

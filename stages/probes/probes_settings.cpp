@@ -76,15 +76,6 @@ std::optional<ProbeBox> parse_box(const std::string& text) {
   return box;
 }
 
-std::optional<int> parse_probe_bounces(const std::string& text) {
-  if (text == "auto") return std::nullopt;
-  const std::optional<int> bounces = number_of<int>(text);
-  if (!bounces || *bounces < 0 || *bounces > most_probe_bounces)
-    throw WrongUsage("bounces: found '" + text + "'; expected auto or a number of 0 to " +
-                     std::to_string(most_probe_bounces));
-  return bounces;
-}
-
 OptionSet probes_options(ProbesSettings& settings) {
   OptionSet options;
   options
@@ -98,13 +89,11 @@ OptionSet probes_options(ProbesSettings& settings) {
       .integer("bands", settings.bands, 1, 8, "Bands of spherical harmonics: a matrix has bands^4 entries")
       .integer("directions", settings.directions, 16, 65536, "Directions that a point looks into")
       .choice("sampling", settings.sampling, {{"fibonacci", Sampling::fibonacci}, {"stratified", Sampling::stratified}},
-              "How the directions are spread")
-      .typed<std::optional<int>>(
-          "bounces", settings.bounces, "auto or 0 to 100",
-          "How often light bounces off the meshes on its way to a point; auto: until a bounce adds less than a "
-          "thousandth",
-          parse_probe_bounces,
-          [](const std::optional<int>& bounces) { return bounces ? std::to_string(*bounces) : "auto"; })
+              "How the directions are spread");
+  add_bounces_option(
+      options, settings.bounces,
+      "How often light bounces off the meshes on its way to a point; auto: until a bounce adds less than "
+      "a thousandth")
       .number("bounce-edge", settings.bounce_edge, 1e-4, 1,
               "Longest edge of the triangles that light bounces off, a fraction of the meshes' diagonal");
   add_material_options(options, settings.material);

@@ -8,6 +8,7 @@
 
 #include "base/options.h"
 #include "import/import_settings.h"
+#include "material/bounce_settings.h"
 #include "material/material_settings.h"
 #include "sh/directions.h"
 
@@ -22,8 +23,8 @@ struct ProbesSettings {
   int bands = 5;                        ///< of the light far away and of the light that comes in
   int directions = 1024;                ///< that a point looks into
   Sampling sampling = Sampling::fibonacci;
-  std::optional<int> bounces = 0;  ///< how often light bounces off the meshes before it reaches a point; nothing: auto
-  double bounce_edge = 0.01;       ///< longest edge of what it bounces off, fraction of the meshes' diagonal
+  BounceTarget bounces;       ///< off the meshes, before light reaches a point; auto: until one adds a thousandth
+  double bounce_edge = 0.01;  ///< longest edge of what it bounces off, fraction of the meshes' diagonal
   ImportSettings import = {};
   MaterialSettings material;
 };
@@ -33,10 +34,6 @@ OptionSet probes_options(ProbesSettings& settings);
 /// Parses "NxMxK". Throws WrongUsage.
 std::array<int, 3> parse_grid(const std::string& text);
 inline constexpr std::size_t most_grid_points = 1u << 18;
-
-/// Parses --bounces: a number of 0 to most_probe_bounces; none for "auto". Throws WrongUsage.
-std::optional<int> parse_probe_bounces(const std::string& text);
-inline constexpr int most_probe_bounces = 100;
 
 /// "X0,Y0,Z0,X1,Y1,Z1": the lower corner, then the upper one; none for "auto". Throws WrongUsage.
 std::optional<ProbeBox> parse_box(const std::string& text);

@@ -109,7 +109,7 @@ void run(const BakeScene& scene, const std::vector<Series>& list, const Truth& t
       BakeSettings settings = parse(series.setting);
       settings.directions = directions;
       BakeResult result;
-      const Cost cost = cost_of([&] { result = bake(scene.receivers, scene.occluders, settings, seed, threads); });
+      const Cost cost = cost_of([&] { result = bake({scene.receivers, scene.occluders, settings, seed, threads}); });
       const TransferVectors some = truth.sampled(result.channels.front());
       const double pairs = static_cast<double>(scene.receivers.texels.size()) * result.directions;
       const double interpolated = result.adaptive ? static_cast<double>(result.adaptive->interpolated) : 0;

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "bake/bake.h"
 #include "bake/backends.h"
+#include "bake/bake.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 
@@ -45,7 +45,7 @@ struct BounceStand {
                                        const BounceTarget& target, BounceReport& report,
                                        const TransferVectors& receivers_direct) const {
     const std::unique_ptr<GatherEngine> engine = make_gather_engine(backend, surface_of(cache, occluders), settings, 2);
-    const SentLight light = bounce_light(cache, direct, *engine, directions, target, settings.bits,
+    const SentLight light = bounce_light(cache, direct, *engine, {directions, target, settings.bits},
                                          BounceSample(receivers(), receivers_direct), report, no_progress);
     std::vector<TransferVectors> channels(light.channels, TransferVectors(positions.size(), direct.coefficients));
     add_bounced(*engine, light, receivers(), directions, channels, no_progress);
@@ -58,7 +58,7 @@ struct BounceStand {
     for (std::uint32_t r = 0; r < positions.size(); ++r) texels.texels.push_back(r);
     BakeSettings own = settings;
     own.backend = backend;
-    return kiln::bake(texels, occluders, own, seed, 2);
+    return kiln::bake({texels, occluders, own, seed, 2});
   }
 };
 

@@ -155,9 +155,9 @@ struct Scene {
 TEST(Adaptive, EveryEngineBakesWithinTheTarget) {
   for (const BakeBackend backend : {BakeBackend::beams, BakeBackend::embree, BakeBackend::egl}) {
     Scene scene(backend);
-    const BakeResult whole = bake(scene.receivers, scene.occluders, scene.settings, 1, 0);
+    const BakeResult whole = bake({scene.receivers, scene.occluders, scene.settings, 1, 0});
     scene.settings.adaptive = 0.02;
-    const BakeResult some = bake(scene.receivers, scene.occluders, scene.settings, 1, 0);
+    const BakeResult some = bake({scene.receivers, scene.occluders, scene.settings, 1, 0});
     ASSERT_TRUE(some.adaptive);
     EXPECT_GT(some.adaptive->interpolated, scene.receivers.texels.size() / 10) << backend_name(backend);
     // The target holds for the held-out sample; over all texels within the sample's own error.
@@ -168,9 +168,9 @@ TEST(Adaptive, EveryEngineBakesWithinTheTarget) {
 TEST(Adaptive, AnyNumberOfThreadsGivesTheSameBits) {
   Scene scene(BakeBackend::beams);
   scene.settings.adaptive = 0.01;
-  const BakeResult many = bake(scene.receivers, scene.occluders, scene.settings, 1, 0);
+  const BakeResult many = bake({scene.receivers, scene.occluders, scene.settings, 1, 0});
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const BakeResult single = bake(scene.receivers, scene.occluders, scene.settings, 1, 1);
+  const BakeResult single = bake({scene.receivers, scene.occluders, scene.settings, 1, 1});
   EXPECT_EQ(many.channels[0].values, single.channels[0].values);
   EXPECT_EQ(many.adaptive->error, single.adaptive->error);
 }

@@ -46,7 +46,7 @@ TEST(BouncePaths, BunnyOnAColouredFloor) {
   stand.settings.bands = 3;
   stand.settings.directions = 512;
   stand.settings.bounce_edge = 0.02;
-  stand.settings.bounces = std::to_string(bounces);
+  stand.settings.bounces = {.count = bounces};
   stand.backend = BakeBackend::beams;
   const BakeResult baked = stand.bake();
   ASSERT_EQ(baked.channels.size(), 3u);

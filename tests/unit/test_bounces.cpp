@@ -144,10 +144,10 @@ TEST_P(Bounces, WhiteBowlInAFurnaceShinesAsTheFurnaceDoes) {
   }
   const TriangleMesh bowl = revolved(profile, 48);
   BounceStand stand = this->stand();
-  stand.settings.bounces = "20";
+  stand.settings.bounces = {.count = 20};
   stand.settings.bounce_edge = 0.1;
   stand.settings.directions = egl() ? 64 : 256;
-  if (egl()) stand.settings.bounces = "10";
+  if (egl()) stand.settings.bounces = {.count = 10};
   stand.occluders = join_occluders({bowl}, {SurfaceAlbedo::constant(Eigen::Vector3f{1, 1, 1})});
   ASSERT_TRUE(stand.occluders.closed);
   stand_on_faces(stand, bowl, 7, 0.05f);  // not in the pinhole along the axis that the profile leaves
@@ -167,7 +167,7 @@ TEST_P(Bounces, WhiteBowlInAFurnaceShinesAsTheFurnaceDoes) {
   }
   EXPECT_NEAR(mean, 1, tolerance);
   // Without bounces, points inside see half the sky.
-  stand.settings.bounces = "0";
+  stand.settings.bounces = {.count = 0};
   const BakeResult direct = stand.bake();
   EXPECT_LT(*std::min_element(direct.channels[0].values.begin(), direct.channels[0].values.end()) / t_0, 0.55);
 }
@@ -249,7 +249,7 @@ BounceStand bunny_on_floor(std::size_t step) {
     stand.normals.push_back(bunny.normals[v]);
   }
   stand.settings.bands = 3;
-  stand.settings.bounces = "2";
+  stand.settings.bounces = {.count = 2};
   stand.settings.directions = 128;
   stand.settings.bounce_edge = 0.02;
   return stand;
@@ -282,7 +282,7 @@ TEST(BounceRays, ThreadsGiveTheSameBytes) {
 TEST(BounceEgl, BundlesAgreeWithRays) {
   BounceStand stand = bunny_on_floor(20);
   stand.settings.directions = 64;
-  stand.settings.bounces = "1";
+  stand.settings.bounces = {.count = 1};
   stand.settings.shadow_size = 1024;
   // Texels do not resolve the crevice between bunny and floor: rays start above it as well.
   stand.settings.ray_offset = 1e-4;
@@ -294,7 +294,7 @@ TEST(BounceEgl, BundlesAgreeWithRays) {
     energy[k] = result.bounces->energy[0];
     bounce[k] = result.channels;
     BounceStand direct = stand;
-    direct.settings.bounces = "0";
+    direct.settings.bounces = {.count = 0};
     const TransferVectors without = direct.bake().channels[0];
     for (TransferVectors& channel : bounce[k])
       for (std::size_t i = 0; i < channel.values.size(); ++i) channel.values[i] -= without.values[i];
@@ -326,20 +326,20 @@ TEST(BounceEgl, BatchesGiveWhatSingleDirectionsGive) {
 
 TEST(BounceCount, AutomaticStopsUnderTheFloor) {
   BounceStand stand = bunny_on_floor(50);
-  stand.settings.bounces = "auto";
+  stand.settings.bounces = {.automatic = true};
   const BakeResult automatic = stand.bake();
   const std::size_t taken = automatic.bounces->energy.size();
   EXPECT_TRUE(automatic.bounces->reached);
   ASSERT_GE(taken, 1u);
   // The same number of bounces, given explicitly, gives the same bytes; the next bounce is below the floor, the last
   // above.
-  stand.settings.bounces = std::to_string(taken + 1);
+  stand.settings.bounces = {.count = taken + 1};
   const BakeResult more = stand.bake();
   for (std::size_t b = 0; b < taken; ++b) EXPECT_EQ(more.bounces->energy[b], automatic.bounces->energy[b]);
   double total = 1;
   for (double energy : automatic.bounces->energy) total += energy;
   EXPECT_LT(more.bounces->energy[taken], automatic.bounces->floor * total);
-  stand.settings.bounces = std::to_string(taken);
+  stand.settings.bounces = {.count = taken};
   const BakeResult same = stand.bake();
   for (int c = 0; c < 3; ++c) EXPECT_EQ(same.channels[c].values, automatic.channels[c].values);
 }

@@ -8,6 +8,7 @@
 #include "bake/backends.h"
 #include "bake/bake.h"
 #include "bake/integrate/error_driven.h"
+#include "bake/integrate/integration.h"
 #include "bake/planes/quantisation_floor.h"
 #include "base/errors.h"
 #include "import/import_mesh.h"
@@ -46,13 +47,14 @@ struct Content {
 class Cuts : public testing::TestWithParam<BakeBackend> {
  protected:
   Cuts() { content.settings.backend = GetParam(); }
-  BakeResult whole() const { return bake(content.receivers, content.occluders, content.settings, 7, 2); }
+  BakeResult whole() const { return bake({content.receivers, content.occluders, content.settings, 7, 2}); }
   Content content;
   Scratch folder;
 };
 
 TEST_P(Cuts, SlabsGiveTheSameBits) {
-  Integration integration(content.receivers.view(), content.occluders, content.settings, 7, 2, no_progress, 500);
+  const BakeJob job{content.receivers, content.occluders, content.settings, 7, 2};
+  Integration integration(job, 500);
   TransferVectors transfer(content.receivers.texels.size(), 9);
   integration.put_unoccluded(transfer);
   ASSERT_GT(integration.slabs(), 1u);
@@ -70,11 +72,11 @@ TEST_P(Cuts, ShardsAddUpToTheSameBits) {
   for (int index : {3, 1, 2}) {
     folders.push_back(folder / std::to_string(index));
     OutputSet outputs(folders.back());
-    bake_shard(outputs, {index, 3}, content.receivers, content.occluders, content.settings, 7, 2);
+    bake_shard(outputs, {index, 3}, {content.receivers, content.occluders, content.settings, 7, 2});
     outputs.commit();
   }
   const auto merge = [&](const std::vector<fs::path>& parts, const BakeSettings& settings, int seed) {
-    return merge_shards(parts, content.receivers, content.occluders, settings, seed, 2);
+    return merge_shards(parts, {content.receivers, content.occluders, settings, seed, 2});
   };
   EXPECT_EQ(merge(folders, content.settings, 7).channels.front().values, whole().channels.front().values);
   BakeSettings by_error = content.settings;
@@ -83,11 +85,11 @@ TEST_P(Cuts, ShardsAddUpToTheSameBits) {
   for (int index : {1, 2}) {
     by_error_folders.push_back(folder / ("by_error" + std::to_string(index)));
     OutputSet outputs(by_error_folders.back());
-    bake_shard(outputs, {index, 2}, content.receivers, content.occluders, by_error, 7, 2);
+    bake_shard(outputs, {index, 2}, {content.receivers, content.occluders, by_error, 7, 2});
     outputs.commit();
   }
   const BakeResult merged = merge(by_error_folders, by_error, 7);
-  const BakeResult at_once = bake(content.receivers, content.occluders, by_error, 7, 2);
+  const BakeResult at_once = bake({content.receivers, content.occluders, by_error, 7, 2});
   EXPECT_EQ(merged.directions, at_once.directions);
   EXPECT_EQ(merged.channels.front().values, at_once.channels.front().values);
   EXPECT_THROW(merge({folders[0], folders[1]}, content.settings, 7), BadInput);
@@ -107,14 +109,14 @@ TEST_P(Cuts, NothingToTestIsStillABake) {
     open.receivers.positions[r] = {0, 1 + 0.001f * static_cast<float>(r), 0};
     open.receivers.normals[r] = {0, 1, 0};
   }
-  const BakeResult result = bake(open.receivers, open.occluders, open.settings, 7, 2);
+  const BakeResult result = bake({open.receivers, open.occluders, open.settings, 7, 2});
   EXPECT_EQ(result.unoccluded, open.receivers.texels.size());
   EXPECT_NEAR(result.channels.front().plane(0)[5], 0.28209479, 1e-7);
   const fs::path shard = folder / "open";
   OutputSet outputs(shard);
-  bake_shard(outputs, {1, 1}, open.receivers, open.occluders, open.settings, 7, 2);
+  bake_shard(outputs, {1, 1}, {open.receivers, open.occluders, open.settings, 7, 2});
   outputs.commit();
-  EXPECT_EQ(merge_shards({shard}, open.receivers, open.occluders, open.settings, 7, 2).channels.front().values,
+  EXPECT_EQ(merge_shards({shard}, {open.receivers, open.occluders, open.settings, 7, 2}).channels.front().values,
             result.channels.front().values);
 }
 
@@ -127,9 +129,10 @@ TEST_P(Cuts, AnInterruptedBakeGoesOnToTheSameBits) {
   for (Checkpoints checkpoints = first;; checkpoints = again) {
     int calls = 0;
     try {
-      result = bake(content.receivers, content.occluders, content.settings, 7, 2, checkpoints, [&](double) {
+      const auto interrupt = [&](double) {
         if (++calls > 1 && interruptions < 2) throw Interrupted();
-      });
+      };
+      result = bake({content.receivers, content.occluders, content.settings, 7, 2, checkpoints, interrupt});
       break;
     } catch (const Interrupted&) {
       ++interruptions;
@@ -144,13 +147,13 @@ TEST_P(Cuts, AnInterruptedBakeGoesOnToTheSameBits) {
 
   BakeSettings other = content.settings;
   other.directions = 301;
-  EXPECT_THROW(bake(content.receivers, content.occluders, other, 7, 2, again), BadInput);
+  EXPECT_THROW(bake({content.receivers, content.occluders, other, 7, 2, again}), BadInput);
 }
 
 TEST_P(Cuts, BouncesHaveTheSameBitsWhateverIsKeptOfRays) {
   content.occluders = join_occluders({content.mesh}, {SurfaceAlbedo::constant(Eigen::Vector3f{0.8f, 0.8f, 0.8f})});
   const bool is_egl = GetParam() == BakeBackend::egl;  // which casts no rays, and takes its time
-  content.settings.bounces = is_egl ? "1" : "3";
+  content.settings.bounces = {.count = is_egl ? 1 : 3};
   content.settings.bounce_edge = is_egl ? 0.2 : 0.05;
   if (is_egl) content.settings.directions = 96;
   const BakeResult kept = whole();
@@ -173,13 +176,13 @@ TEST_P(Cuts, BouncesHaveTheSameBitsWhateverIsKeptOfRays) {
   // After the interruption of the direct light, only the rest of it is known.
   Checkpoints checkpoints{folder / "checkpoint", 0, false};
   int calls = 0;
-  EXPECT_THROW(bake(content.receivers, content.occluders, content.settings, 7, 2, checkpoints,
-                    [&](double) {
-                      if (++calls > 1) throw Interrupted();
-                    }),
+  const auto interrupt = [&](double) {
+    if (++calls > 1) throw Interrupted();
+  };
+  EXPECT_THROW(bake({content.receivers, content.occluders, content.settings, 7, 2, checkpoints, interrupt}),
                Interrupted);
   checkpoints.resume = true;
-  const BakeResult resumed = bake(content.receivers, content.occluders, content.settings, 7, 2, checkpoints);
+  const BakeResult resumed = bake({content.receivers, content.occluders, content.settings, 7, 2, checkpoints});
   EXPECT_EQ(resumed.channels.front().values, values);
   if (GetParam() == BakeBackend::beams) {
     EXPECT_LT(resumed.bounces->kept_bytes, kept.bounces->kept_bytes);
@@ -190,10 +193,10 @@ TEST_P(Cuts, BouncesHaveTheSameBitsWhateverIsKeptOfRays) {
   for (int index : {1, 2}) {
     parts.push_back(folder / ("bounced" + std::to_string(index)));
     OutputSet outputs(parts.back());
-    bake_shard(outputs, {index, 2}, content.receivers, content.occluders, content.settings, 7, 2);
+    bake_shard(outputs, {index, 2}, {content.receivers, content.occluders, content.settings, 7, 2});
     outputs.commit();
   }
-  EXPECT_EQ(merge_shards(parts, content.receivers, content.occluders, content.settings, 7, 2).channels.front().values,
+  EXPECT_EQ(merge_shards(parts, {content.receivers, content.occluders, content.settings, 7, 2}).channels.front().values,
             values);
 }
 
@@ -203,16 +206,16 @@ TEST_P(Cuts, ACheckpointHoldsForOtherStoring) {
   const auto interrupt = [&](double) {
     if (++calls > 1) throw Interrupted();
   };
-  EXPECT_THROW(bake(content.receivers, content.occluders, content.settings, 7, 2, first, interrupt), Interrupted);
+  EXPECT_THROW(bake({content.receivers, content.occluders, content.settings, 7, 2, first, interrupt}), Interrupted);
   Checkpoints again = first;
   again.resume = true;
   BakeSettings other = content.settings;
   other.bands = 4;
-  EXPECT_THROW(bake(content.receivers, content.occluders, other, 7, 2, again), BadInput);
+  EXPECT_THROW(bake({content.receivers, content.occluders, other, 7, 2, again}), BadInput);
   other = content.settings;
   other.seams = SeamChoice::keep;
   other.bits = 16;
-  const BakeResult resumed = bake(content.receivers, content.occluders, other, 7, 2, again);
+  const BakeResult resumed = bake({content.receivers, content.occluders, other, 7, 2, again});
   EXPECT_LT(resumed.work.pairs, content.receivers.texels.size() * 300);  // the rest alone
   EXPECT_EQ(resumed.channels.front().values, whole().channels.front().values);
 }
@@ -311,11 +314,11 @@ TEST(ErrorDriven, StopsAtAnErrorThatRaysConfirm) {
   settings.backend = BakeBackend::embree;
   BakeSettings truth_settings = settings;
   truth_settings.directions = 16384;  // about a tenth of the errors below
-  const TransferVectors truth = bake(content.receivers, content.occluders, truth_settings, 99, 2).channels.front();
+  const TransferVectors truth = bake({content.receivers, content.occluders, truth_settings, 99, 2}).channels.front();
   int before = 0;
   for (const char* target : {"0.03", "0.01"}) {
     settings.max_error = parse_error_target(target);
-    const BakeResult result = bake(content.receivers, content.occluders, settings, 1, 2);
+    const BakeResult result = bake({content.receivers, content.occluders, settings, 1, 2});
     ASSERT_TRUE(result.choice);
     EXPECT_LE(result.choice->estimated_error, std::stod(target));
     EXPECT_EQ(result.sampling, Sampling::progressive);
@@ -329,7 +332,7 @@ TEST(ErrorDriven, StopsAtAnErrorThatRaysConfirm) {
   }
   settings.max_error = parse_error_target("1e-6");
   settings.max_directions = 100;
-  const BakeResult limited = bake(content.receivers, content.occluders, settings, 1, 2);
+  const BakeResult limited = bake({content.receivers, content.occluders, settings, 1, 2});
   EXPECT_EQ(limited.directions, 100);
   EXPECT_GT(limited.choice->estimated_error, limited.choice->target_error);
 }

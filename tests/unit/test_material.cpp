@@ -14,6 +14,7 @@
 #include "image/srgb.h"
 #include "import/import_mesh.h"
 #include "material/load_albedo.h"
+#include "material/scene_mesh.h"
 #include "mesh/draco_file.h"
 #include "scratch.h"
 #include "shapes.h"
@@ -452,6 +453,23 @@ TEST_F(Material, BadFilesAreNamed) {
   // Materials that no face uses are nobody's business.
   write("a.obj", "mtllib missing.mtl\n" + triangle + "f 1 2 3\n");
   EXPECT_EQ(message(), "no error");
+}
+
+TEST(SceneMesh, TrianglesKeepTheAlbedoOfTheirMesh) {
+  const Eigen::Vector3f red(0.8f, 0.1f, 0.1f);
+  SceneMesh scene;
+  scene.add(shapes::icosphere(0), SurfaceAlbedo::constant(Eigen::Vector3f::Constant(0.5f)));
+  EXPECT_TRUE(scene.is_grey());
+  scene.add(shapes::plane(1), SurfaceAlbedo::constant(red));
+  EXPECT_FALSE(scene.is_grey());
+  ASSERT_EQ(scene.mesh.triangles.size(), 22u);
+  EXPECT_EQ(scene.first_triangles, (std::vector<std::uint32_t>{0, 20}));
+  EXPECT_EQ(scene.albedo_at(0, 0.2f, 0.2f), Eigen::Vector3f::Constant(0.5f));
+  EXPECT_EQ(scene.albedo_at(19, 0.2f, 0.2f), Eigen::Vector3f::Constant(0.5f));
+  EXPECT_EQ(scene.albedo_at(20, 0.2f, 0.2f), red);
+  EXPECT_EQ(scene.albedo_at(21, 0.2f, 0.2f), red);
+  // Triangles of the second mesh are of its own vertices, which stand behind the 12 of the first.
+  for (const std::uint32_t vertex : scene.mesh.triangles[20]) EXPECT_GE(vertex, 12u);
 }
 
 }  // namespace

@@ -152,7 +152,7 @@ TEST(Probes, PointsInsideSolidsAreNotValid) {
 /// A scene of one mesh of constant albedo, its light, and the probes in it.
 ProbesResult lit(const TriangleMesh& mesh, const Eigen::Vector3f& albedo, const std::vector<Eigen::Vector3f>& points,
                  const ProbesSettings& settings) {
-  ProbeScene scene;
+  SceneMesh scene;
   scene.add(mesh, SurfaceAlbedo::constant(albedo));
   return at(mesh, points, settings, light_surface(scene, settings, 1));
 }
@@ -167,14 +167,14 @@ TEST(Probes, WhiteSurfacesKeepConstantLight) {
   for (Triangle& t : bowl.triangles) std::swap(t[1], t[2]);
   ProbesSettings settings;
   settings.bands = 2;
-  settings.bounces.reset();
+  settings.bounces = {.automatic = true};
   settings.bounce_edge = 0.1;
   const std::vector<Eigen::Vector3f> points = {{0, 0, 0}, {0.3f, -0.5f, 0.2f}, {0, -0.8f, 0}};
   const ProbesResult result = lit(bowl, {1, 1, 1}, points, settings);
   EXPECT_EQ(result.invalid(), 0u);
   EXPECT_GT(result.bounces, 3);
   ProbesSettings once = settings;
-  once.bounces = 1;
+  once.bounces = {.count = 1};
   const ProbesResult single = lit(bowl, {1, 1, 1}, points, once);
   for (std::size_t probe = 0; probe < 3; ++probe) {
     const std::span<const float> matrix = result.probes.matrix(probe, 0);
@@ -191,7 +191,7 @@ TEST(Probes, AboveAWhitePlaneTheSkyIsMirroredDiffusely) {
   ProbesSettings settings;
   settings.bands = 3;
   settings.directions = 4096;
-  settings.bounces = 2;  // the second adds nothing, as a plane does not see itself
+  settings.bounces = {.count = 2};  // the second adds nothing, as a plane does not see itself
   settings.bounce_edge = 0.2;
   const ProbesResult result = lit(shapes::plane(2, 1000), {0.5f, 0.5f, 0.5f}, {{1, 0.01f, 2}}, settings);
   EXPECT_EQ(result.probes.channels, 1);
@@ -213,7 +213,7 @@ TEST(Probes, ColouredSurfacesGiveThreeChannels) {
   ProbesSettings settings;
   settings.bands = 2;
   settings.directions = 512;
-  settings.bounces = 1;
+  settings.bounces = {.count = 1};
   settings.bounce_edge = 0.5;
   const TriangleMesh floor = shapes::plane(2, 100);
   const ProbesResult dark = at(floor, {{0, 0.1f, 0}}, settings);
@@ -231,7 +231,7 @@ TEST(Probes, ColouredSurfacesGiveThreeChannels) {
 TEST(Probes, TheSameWithAnyThreads) {
   ProbesSettings settings;
   settings.bands = 3;
-  settings.bounces = 2;
+  settings.bounces = {.count = 2};
   settings.grid = {4, 3, 2};
   settings.directions = 300;
   std::vector<float> matrices[2];
@@ -414,9 +414,6 @@ TEST(ProbesSettings, GridsAndBoxes) {
   EXPECT_EQ(parse_box("-1; 0; 1; 2; 3; 4"), parse_box("-1,0,1,2,3,4")) << "as a list of pipeline.yaml comes";
   for (const char* text : {"", "1,2,3", "1,2,3,0,3,4", "1,2,3,4,5,x", "0,0,0,1,1,inf"})
     EXPECT_THROW(parse_box(text), WrongUsage) << text;
-  EXPECT_FALSE(parse_probe_bounces("auto"));
-  EXPECT_EQ(parse_probe_bounces("7"), 7);
-  for (const char* text : {"", "-1", "101", "many"}) EXPECT_THROW(parse_probe_bounces(text), WrongUsage) << text;
 }
 
 }  // namespace

@@ -326,14 +326,15 @@ TEST(ShadowChoice, TakesTheSmallestMapUnderTheFloor) {
   settings.bands = 4;
   settings.directions = 64;
   settings.shadows.refine = true;
-  const ShadowSizeChoice choice = choose_shadow_size({stand.positions, stand.normals}, occluders, settings, 1, 0);
+  const TexelReceivers receivers{static_cast<int>(stand.positions.size()), 1, {}, stand.positions, stand.normals};
+  const ShadowSizeChoice choice = choose_shadow_size(receivers.view(), {receivers, occluders, settings, 1});
   EXPECT_TRUE(choice.reached);
   EXPECT_EQ(choice.size_texels, 256);  // RefiningGivesWhatRaysGive: 0.4 % at most
   EXPECT_LE(choice.error, choice.floor);
   EXPECT_NEAR(choice.floor, quantisation_floor(stand.embree(), 8), 0.1 * choice.floor);
   // Maps alone need more texels.
   settings.shadows.refine = false;
-  const ShadowSizeChoice alone = choose_shadow_size({stand.positions, stand.normals}, occluders, settings, 1, 0);
+  const ShadowSizeChoice alone = choose_shadow_size(receivers.view(), {receivers, occluders, settings, 1});
   EXPECT_GT(alone.size_texels, 256);
   EXPECT_EQ(alone.reached, alone.error <= alone.floor);
 }

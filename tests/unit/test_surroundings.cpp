@@ -45,7 +45,8 @@ class SurroundingsTest : public testing::Test {
     settings.bands = 1;
     settings.directions = 20000;
     settings.backend = BakeBackend::embree;
-    return bake(receivers, join_occluders(meshes), settings, 1, 2).channels.front().plane(0)[0];
+    const Occluders occluders = join_occluders(meshes);
+    return bake({receivers, occluders, settings, 1, 2}).channels.front().plane(0)[0];
   }
 
  private:

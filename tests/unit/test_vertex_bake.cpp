@@ -149,7 +149,8 @@ TEST_F(VertexBake, BakeOfASphereIsTheFurnace) {
   const TexelReceivers receivers = receivers_on_vertices(mesh).receivers;
   BakeSettings settings;
   settings.backend = BakeBackend::embree;
-  const BakeResult result = bake(receivers, join_occluders({mesh}), settings, 1, 0);
+  const Occluders occluders = join_occluders({mesh});
+  const BakeResult result = bake({receivers, occluders, settings, 1, 0});
   // 1,024 Fibonacci directions integrate these smooth products to about 1e-4.
   EXPECT_LT(relative_l2(result.channels.front(), furnace_transfer(receivers, settings.bands, 1)), 1e-3);
 

@@ -7,26 +7,14 @@
 #include <span>
 #include <vector>
 
+#include "bake/bake_reports.h"
 #include "bake/scene/texel_receivers.h"
 #include "base/progress.h"
 #include "sh/transfer.h"
 
 namespace kiln {
 
-/// What came of baking some of the texels, for the record.
-struct AdaptiveReport {
-  double target = 0;
-  /// Of interpolation alone, relative L2 over all texels, as held-out texels that were baked after all say.
-  double error = 0;
-  double error_of_interpolated = 0;  ///< the same over interpolated texels
-  std::size_t held_out = 0;          ///< texels that say so
-  double bound = 0;                  ///< on what corners of a square may differ by, over the rms length of vectors
-  int rounds = 0;
-  std::size_t baked = 0;         ///< texels
-  std::size_t interpolated = 0;  ///< texels
-};
-
-/// Gives the direct transfer of some receivers (their indices, ascending).
+/// Function that returns the direct transfer of some receivers (their indices, ascending).
 using BakeSome = std::function<TransferVectors(std::span<const std::uint32_t> receivers)>;
 
 /// Bakes the corners of squares of 8 x 8 texels, cuts squares whose corners disagree into four, down to single texels,

@@ -1,39 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "bake/bake_job.h"
 #include "bake/bounce/bounces.h"
 
 namespace kiln {
 
-/// Bytes that may be kept of the receivers' rays, and as many of those of the surface.
+/// Returns how many bytes of the receivers' rays may be kept, and as many of the surface's.
 std::size_t bounce_memory_share(const BakeSettings& settings);
 
-/// The light that a scene's surfaces send each other, ready to be gathered by any receivers.
-class BouncedLight {
- public:
-  /// Lights the surface by `direct`, an engine of `backend` whose scene are the occluders, then lets light bounce off
-  /// it. The engine goes before the one that gathers comes, and of the rays of the surface's points nothing is kept
-  /// after that. `occluders` outlives this.
-  BouncedLight(std::unique_ptr<TransferEngine> direct, BakeBackend backend, const Occluders& occluders,
-               std::span<const Eigen::Vector3f> directions, const BakeSettings& settings, int threads,
-               const BounceTarget& target, const BounceSample& sample, const ProgressFunction& progress);
-
-  int channels() const { return light_.channels; }
-
-  /// Adds all bounces to the receivers' direct transfer, `channels` of them: to those of `traced`, of whose rays it has
-  /// what the direct pass knew. Gives the report, the time of this among the last bounce's.
-  BounceReport add_to(std::vector<TransferVectors>& channels, const Receivers& receivers,
-                      std::span<TracedReceivers> traced, std::span<const Eigen::Vector3f> directions,
-                      const ProgressFunction& progress) const;
-
- private:
-  BounceReport report_;
-  SentLight light_;
-  std::unique_ptr<GatherEngine> engine_;
+/// Directions that light is integrated over where it bounces.
+struct BounceDirections {
+  std::span<const Eigen::Vector3f> surface;    ///< on the surface: direct light and all bounces but the last
+  std::span<const Eigen::Vector3f> receivers;  ///< of the final gather
 };
+
+/// Adds the light that bounces off the job's occluders to `channels`, the direct transfer of the job's receivers: one,
+/// which becomes three where an albedo of the occluders is coloured. `direct`, an engine of `backend` for the
+/// occluders, lights the surface; it is destroyed before the engine that gathers is made. `traced` lists all receivers,
+/// and what is known of their rays along directions.receivers. The report's last bounce has the time of the final
+/// gather.
+BounceReport add_bounced_light(const BakeJob& job, BakeBackend backend, std::unique_ptr<TransferEngine> direct,
+                               const BounceDirections& directions, std::span<TracedReceivers> traced,
+                               std::vector<TransferVectors>& channels, const ProgressFunction& progress);
 
 }  // namespace kiln

@@ -85,18 +85,11 @@ std::vector<TransferVectors> gathered(GatherEngine& engine, int channels, int co
   return result;
 }
 
-/// albedo times transfer, point after point. A channel of `transfer` may serve for all.
-std::vector<float> sent(const SurfaceCache& cache, const std::vector<TransferVectors>& transfer, int channels) {
-  const auto coefficients = static_cast<std::size_t>(transfer.front().coefficients);
-  std::vector<float> values(cache.size() * channels * coefficients);
-  for (int c = 0; c < channels; ++c)
-    for (std::size_t i = 0; i < coefficients; ++i) {
-      const std::span<const float> plane =
-          transfer[std::min<std::size_t>(c, transfer.size() - 1)].plane(static_cast<int>(i));
-      for (std::size_t p = 0; p < cache.size(); ++p)
-        values[(p * channels + c) * coefficients + i] = cache.point_albedos[p][c] * plane[p];
-    }
-  return values;
+/// Returns what the points of `cache` send out of channel after channel; one channel may serve for all.
+std::vector<float> reflected(const SurfaceCache& cache, const std::vector<TransferVectors>& transfer, int channels) {
+  return reflected(cache, channels, transfer.front().coefficients, [&](int channel, int coefficient) {
+    return transfer[std::min(static_cast<std::size_t>(channel), transfer.size() - 1)].plane(coefficient);
+  });
 }
 
 /// Lets first hits be kept from the next pass on.
@@ -121,7 +114,7 @@ void add(std::vector<TransferVectors>& sums, const std::vector<TransferVectors>&
 
 SurfaceCache make_surface_cache(const Occluders& occluders, double longest_edge) {
   const auto albedo_at = [&](std::uint32_t triangle, float u, float v) { return occluders.albedo_at(triangle, u, v); };
-  return make_surface_cache(occluders.mesh, albedo_at, occluders.grey(), longest_edge);
+  return make_surface_cache(occluders.mesh, albedo_at, occluders.is_grey(), longest_edge);
 }
 
 ReflectingSurface surface_of(const SurfaceCache& cache, const Occluders& occluders) {
@@ -167,14 +160,14 @@ TransferVectors direct_transfer(TransferEngine& engine, const Receivers& receive
 }
 
 SentLight bounce_light(const SurfaceCache& cache, const TransferVectors& direct, GatherEngine& engine,
-                       std::span<const Eigen::Vector3f> directions, const BounceTarget& target, int bits,
-                       const BounceSample& sample, BounceReport& report, const ProgressFunction& progress,
-                       TracedPoints traced) {
+                       const BouncePlan& plan, const BounceSample& sample, BounceReport& report,
+                       const ProgressFunction& progress, TracedPoints traced) {
   SentLight light{cache.grey ? 1 : 3, direct.coefficients, {}};
-  const int most = target.automatic ? most_bounces : target.count;
+  const auto& [directions, target, bits] = plan;
+  const int most = target.most();
   const double direct_norm = std::sqrt(light.channels * squared_norm({sample.direct}));
   std::vector<TransferVectors> sample_total(light.channels, sample.direct);
-  std::vector<float> bounced = sent(cache, {direct}, light.channels);
+  std::vector<float> bounced = reflected(cache, {direct}, light.channels);
   report.reached = !target.automatic;
   if (traced.points.empty()) traced.points = untraced(cache.receivers());
   std::vector<TracedReceivers> traced_sample = untraced(sample.receivers());
@@ -194,14 +187,14 @@ SentLight bounce_light(const SurfaceCache& cache, const TransferVectors& direct,
     }
     add(sample_total, added);
     report.energy.push_back(direct_norm > 0 ? norm / direct_norm : 0);
-    if (light.values.empty()) light.values.resize(bounced.size(), 0.f);
-    for (std::size_t k = 0; k < bounced.size(); ++k) light.values[k] += bounced[k];
+    light.add(bounced);
     // Step 2: what the next one finds. Of a fixed count the last is the receivers' own.
     if (bounce < most)
-      bounced = sent(cache,
-                     gathered(engine, light.channels, light.coefficients, cache.receivers(), traced.points, directions,
-                              [&](double fraction) { progress((bounce - 1 + fraction) / most); }),
-                     light.channels);
+      bounced =
+          reflected(cache,
+                    gathered(engine, light.channels, light.coefficients, cache.receivers(), traced.points, directions,
+                             step_of(progress, static_cast<std::size_t>(bounce - 1), static_cast<std::size_t>(most))),
+                    light.channels);
     report.seconds.push_back(stopwatch.seconds());
   }
   report.renderer = engine.renderer();

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bake/egl/bundle_lists.h"
-#include "bake/egl/receiver_tiles.h"
+#include "bake/egl/receiver_groups.h"
 #include "gpu/egl_context.h"
 #include "gpu/program.h"
 #include "sh/ray_offset.h"
@@ -16,31 +16,13 @@ namespace kiln {
 
 namespace {
 
-constexpr int most_chunk = 36;                        // sums a shader keeps in registers
-constexpr std::size_t most_buffer_bytes = 96u << 20;  // llvmpipe has storage blocks of 128 MiB at most
-constexpr float depth_rounding = 0x1p-24f;            // of a depth in float32
+constexpr float depth_rounding = 0x1p-24f;  // of a depth in float32
 
-/// As the shaders have them (std430).
-struct GpuReceiver {
-  Eigen::Vector4f position, normal;
-};
-struct GpuTotal {
-  std::uint32_t low, high;
-};
 using GpuHit = std::array<std::uint32_t, 4>;  // triangle, and the weights of its points
 
-int in_fours(int count) { return (count + 3) / 4 * 4; }
-
-/// As many receivers as fit one storage buffer.
-struct Group {
-  std::size_t first = 0;
-  std::size_t count = 0;
-  std::vector<NormalCone> cones;
-  GlBuffer receivers;
+struct Group : ReceiverGroup {
+  using ReceiverGroup::ReceiverGroup;
   GlBuffer hits;  // of the block
-  GlBuffer totals;
-  GlBuffer tiles;
-  std::vector<std::uint32_t> facing;  // tiles of the block, as `tiles` now has them
 };
 
 }  // namespace
@@ -95,7 +77,7 @@ void BundleEngine::set_radiance(std::span<const float> values, int width) {
   const std::size_t points = values.size() / static_cast<std::size_t>(width);
   if (width != own.width) {
     own.width = width;
-    own.chunks = (in_fours(width) + most_chunk - 1) / most_chunk;
+    own.chunks = (in_fours(width) + most_register_sums - 1) / most_register_sums;
     own.chunk = in_fours((width + own.chunks - 1) / own.chunks);
     own.sum_program = load_program({"bake_bundle_sum.comp"}, {{"CHUNK", std::to_string(own.chunk)}});
   }
@@ -113,24 +95,12 @@ void BundleEngine::set_radiance(std::span<const float> values, int width) {
 }
 
 std::vector<Group> BundleEngine::Implementation::make_groups(const Receivers& receivers) const {
-  const std::size_t receiver_bytes = std::max(sizeof(GpuTotal) * chunk * chunks, sizeof(GpuHit) * block_directions);
-  const std::size_t most = most_buffer_bytes / receiver_bytes / tile_receivers * tile_receivers;
   std::vector<Group> groups;
-  for (std::size_t first = 0; first < receivers.size(); first += most) {
-    Group& group = groups.emplace_back();
-    group.first = first;
-    group.count = std::min(most, receivers.size() - first);
-    group.cones = normal_cones(receivers.normals.subspan(first, group.count));
-    std::vector<GpuReceiver> list(group.count);
-    for (std::size_t r = 0; r < group.count; ++r) {
-      const Eigen::Vector3f &p = receivers.positions[first + r], &n = receivers.normals[first + r];
-      list[r] = {{p.x(), p.y(), p.z(), 1}, {n.x(), n.y(), n.z(), 0}};
-    }
-    group.receivers = make_buffer<GpuReceiver>(list);
-    group.hits = make_zero_buffer(static_cast<GLsizeiptr>(group.count * block_directions * sizeof(GpuHit)));
-    group.totals = make_zero_buffer(static_cast<GLsizeiptr>(group.count * chunk * chunks * sizeof(GpuTotal)));
-    group.tiles = make_refilled_buffer(group.cones.size() * sizeof(std::uint32_t));
-  }
+  for_each_group(receivers.size(), chunk * chunks, sizeof(GpuHit) * block_directions,
+                 [&](std::size_t first, std::size_t count) {
+                   Group& group = groups.emplace_back(receivers, first, count, chunk * chunks);
+                   group.hits = make_zero_buffer(static_cast<GLsizeiptr>(count * block_directions * sizeof(GpuHit)));
+                 });
   return groups;
 }
 
@@ -151,9 +121,8 @@ void BundleEngine::Implementation::find(const Group& group, int first_row, int d
   set_integer("first_row", static_cast<std::size_t>(first_row));
   set_integer("batch_directions", static_cast<std::size_t>(directions));
   set_integer("receiver_count", group.count);
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, group.receivers.name());
+  group.bind();
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, group.hits.name());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, group.tiles.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 8, positions.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 9, triangles.name());
   glDispatchCompute(static_cast<GLuint>(group.facing.size()), 1, 1);
@@ -163,10 +132,8 @@ void BundleEngine::Implementation::sum(const Group& group, int directions) const
   glUseProgram(sum_program.name());
   glUniform1i(uniform_location(sum_program, "receiver_count"), static_cast<GLint>(group.count));
   glUniform1i(uniform_location(sum_program, "block_directions"), directions);
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, group.receivers.name());
+  group.bind();
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, group.hits.name());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, group.totals.name());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, group.tiles.name());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 9, points.name());
   for (int c = 0; c < chunks; ++c) {
     glUniform1i(uniform_location(sum_program, "first_coefficient"), c * chunk);
@@ -182,10 +149,7 @@ TransferSums BundleEngine::gather(const Receivers& receivers, std::span<const Ei
   for (std::size_t begin = 0; begin < directions.size(); begin += block_directions) {
     const auto block = directions.subspan(begin, std::min<std::size_t>(block_directions, directions.size() - begin));
     std::uint64_t behind = 0;
-    for (Group& group : groups) {
-      group.facing = facing_tiles(group.cones, group.count, block, behind);
-      refill_buffer<std::uint32_t>(group.tiles, group.facing);
-    }
+    for (Group& group : groups) group.face(block, behind);
     for (std::size_t first = 0; first < block.size();) {
       const std::size_t drawn = own.lists->draw(block.subspan(first));
       for (const Group& group : groups)
@@ -202,17 +166,7 @@ TransferSums BundleEngine::gather(const Receivers& receivers, std::span<const Ei
 
   TransferSums sums(receivers.size(), own.width);
   sums.directions = static_cast<std::int64_t>(directions.size());
-  std::vector<GpuTotal> totals;
-  for (const Group& group : groups) {
-    totals.resize(group.count);
-    for (int i = 0; i < own.width; ++i) {
-      glGetNamedBufferSubData(group.totals.name(), static_cast<GLintptr>(i * group.count * sizeof(GpuTotal)),
-                              static_cast<GLsizeiptr>(group.count * sizeof(GpuTotal)), totals.data());
-      for (std::size_t r = 0; r < group.count; ++r)
-        sums.plane(i)[group.first + r] =
-            static_cast<std::int64_t>(static_cast<std::uint64_t>(totals[r].high) << 32 | totals[r].low);
-    }
-  }
+  for (const Group& group : groups) group.read(sums);
   check_gl("gathering along ray bundles");
   return sums;
 }

@@ -8,12 +8,12 @@
 
 namespace kiln {
 
-/// Gathers by rasterising: for each direction all layers of the surface (bundle_lists.h), of which a receiver takes the
-/// nearest before it; biases as EglEngine has them. Then a block of directions is summed with the sums in registers.
-/// Needs EGL and OpenGL 4.5, and of libraries Eigen alone.
+/// Engine that gathers by rasterising: for each direction it draws all layers of the surface (bundle_lists.h), of which
+/// a receiver takes the nearest before it; biases are those of EglEngine. A block of directions is then summed with its
+/// sums in registers. Needs EGL and OpenGL 4.5, and no library but Eigen.
 class BundleEngine : public GatherEngine {
  public:
-  /// `device` and `software_threads` as EglContext takes them; of `settings` the size, the biases and the batch count.
+  /// Takes `device` and `software_threads` as EglContext does, and the size, biases and batch count of `settings`.
   /// Throws MachineLacks where there is no such context.
   BundleEngine(const ReflectingSurface& surface, const std::string& device, int software_threads,
                const ShadowMapSettings& settings);

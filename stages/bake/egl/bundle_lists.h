@@ -14,12 +14,10 @@
 
 namespace kiln {
 
-/// All layers of a surface along a batch of directions: bundles of parallel rays. Where Hachisuka peels one layer after
-/// the other ("High-quality global illumination rendering using rasterization", GPU Gems 2, 2005, chapter 38), one pass
-/// leaves every fragment in a list of its texel (Yang, Hensley, Gruen and Thibieroz, "Real-time concurrent linked list
-/// construction on the GPU", 2010; for bundles Tokuyoshi, Sekine and Ogaki, "Fast global illumination baking via
-/// ray-bundles", 2011). Of a closed surface the lists hold the faces that turn away from the light alone, which are
-/// those that a receiver beneath them sees the front of.
+/// Layers of a surface along a batch of directions, all of them: bundles of parallel rays. [Hachisuka 2005] peels one
+/// layer after the other; here one pass leaves every fragment in a list of its texel [Yang 2010], as [Tokuyoshi 2011]
+/// does for bundles. For a closed surface the lists hold only the faces that turn away from the light, whose front a
+/// receiver beneath them sees.
 class BundleLists {
  public:
   BundleLists(const ReflectingSurface& surface, const ShadowMapSettings& settings);
@@ -41,7 +39,7 @@ class BundleLists {
   std::size_t capacity_;  // entries
   std::vector<Eigen::Vector3f> hull_;
   GlBuffer positions_, triangles_, views_;
-  GlBuffer heads_;    // of each texel: its list's first entry
+  GlBuffer heads_;    // first entry of each texel's list
   GlBuffer entries_;  // depth, triangle, next
   GlBuffer counter_;
   GlVertexArray surface_;

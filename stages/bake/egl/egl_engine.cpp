@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Directions outermost, one depth map each, all texels shaded against it: Sloan, Snyder and Lake, US patent 7,948,490.
-// Where the patent alternates between buffers because hardware of its day could not blend into float targets, sums of a
-// block of directions stay in registers here and the totals are integers: exact, and read and written once per block.
+// Loops over directions outermost, one depth map each, against which all texels are shaded [US 7,948,490]. The patent
+// alternates between buffers because hardware of its day could not blend into float targets; here sums of a block of
+// directions stay in registers and the totals are integers: exact, and read and written once per block.
 #include "bake/egl/egl_engine.h"
 
 #include <algorithm>

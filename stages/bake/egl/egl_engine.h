@@ -9,14 +9,15 @@
 
 namespace kiln {
 
-/// Shadows by rasterising: for each direction an orthographic depth map of the occluders in as tight a frame as their
-/// convex hull allows, against which all receivers are compared (US patent 7,948,490: directions outermost). A batch of
-/// directions goes through one layered depth pass and one compute pass that weighs every receiver; a block of them is
-/// then projected with its sums in registers. Needs EGL and OpenGL 4.5, and of libraries Eigen alone.
+/// Engine that finds shadows by rasterising: for each direction it draws an orthographic depth map of the occluders, in
+/// as tight a frame as their convex hull allows, and compares all receivers with it ([US 7,948,490]: directions
+/// outermost). A batch of directions takes one layered depth pass and one compute pass that weighs every receiver; a
+/// block of directions is then projected with its sums in registers. Needs EGL and OpenGL 4.5, and no library but
+/// Eigen.
 class EglEngine : public TransferEngine {
  public:
   /// `device` and `software_threads` as EglContext takes them. Throws MachineLacks where there is no such context.
-  /// `rays` must have what `settings` need of it.
+  /// `rays` has the functions that `settings` need.
   EglEngine(const TransferScene& scene, const std::string& device, int software_threads,
             const ShadowMapSettings& settings, ShadowRays rays = {});
   ~EglEngine() override;

@@ -12,22 +12,9 @@ namespace kiln {
 
 namespace {
 
-constexpr int most_chunk_coefficients = 36;           // sums a shader keeps in registers
-constexpr std::size_t most_buffer_bytes = 96u << 20;  // llvmpipe has storage blocks of 128 MiB at most
-
-/// As the shaders have them (std430).
-struct GpuReceiver {
-  Eigen::Vector4f position, normal;
-};
-struct GpuTotal {
-  std::uint32_t low, high;
-};
-
 using TileCounts = std::array<std::uint32_t, 3>;  // behind, lit, shadowed
 
-int in_fours(int coefficients) { return (coefficients + 3) / 4 * 4; }
-
-/// Texels a side that a receiver is compared with. One alone would not show that a shadow's edge is near.
+/// Returns how many texels a side a receiver is compared with. One alone would not show that a shadow's edge is near.
 int taps(const ShadowMapSettings& settings) {
   if (settings.filter == ShadowFilter::three_by_three) return 3;
   return settings.filter == ShadowFilter::two_by_two || settings.refine ? 2 : 1;
@@ -55,18 +42,15 @@ ShadePass::ShadePass(const Receivers& receivers, int coefficients, const ShadowM
       receivers_(receivers),
       rays_(rays),
       coefficients_(coefficients),
-      chunk_(std::min(in_fours(coefficients), most_chunk_coefficients)),
+      chunk_(std::min(in_fours(coefficients), most_register_sums)),
       chunks_((coefficients + chunk_ - 1) / chunk_),
       weigh_program_(load_weigh_program(settings)),
       sum_program_(load_program({"bake_sum.comp"},
                                 {{"BLOCK", std::to_string(block_directions)}, {"CHUNK", std::to_string(chunk_)}})) {
   for (int chunk = 0; chunk < chunks_; ++chunk)
     rows_.push_back(make_refilled_buffer(static_cast<std::size_t>(block_directions) * chunk_ * sizeof(float)));
-  const std::size_t receiver_bytes =
-      std::max(sizeof(GpuTotal) * chunk_ * chunks_, sizeof(float) * static_cast<std::size_t>(block_directions));
-  const std::size_t most = most_buffer_bytes / receiver_bytes / tile_receivers * tile_receivers;
-  for (std::size_t first = 0; first < receivers.size(); first += most)
-    add_group(first, std::min(most, receivers.size() - first));
+  for_each_group(receivers.size(), chunk_ * chunks_, sizeof(float) * block_directions,
+                 [&](std::size_t first, std::size_t count) { add_group(first, count); });
   if (settings.triangle_ids) find_corners(maps);
   if (settings.regions) tile_counts_ = make_zero_buffer(sizeof(TileCounts), GL_DYNAMIC_STORAGE_BIT);
 }
@@ -84,23 +68,12 @@ void ShadePass::find_corners(const ShadowMaps& maps) {
 }
 
 void ShadePass::add_group(std::size_t first, std::size_t count) {
-  Group& group = groups_.emplace_back();
-  group.first = first;
-  group.count = count;
-  group.cones = normal_cones(receivers_.normals.subspan(first, count));
-  std::vector<GpuReceiver> list(count);
-  for (std::size_t r = 0; r < count; ++r) {
-    const Eigen::Vector3f &p = receivers_.positions[first + r], &n = receivers_.normals[first + r];
-    list[r] = {{p.x(), p.y(), p.z(), 1}, {n.x(), n.y(), n.z(), 0}};
-  }
-  group.receivers = make_buffer<GpuReceiver>(list);
+  Group& group = groups_.emplace_back(receivers_, first, count, chunk_ * chunks_);
   group.weights = make_zero_buffer(static_cast<GLsizeiptr>(count * block_directions * sizeof(float)),
                                    marks(settings_) ? GL_DYNAMIC_STORAGE_BIT : 0);
-  group.totals = make_zero_buffer(static_cast<GLsizeiptr>(count * chunk_ * chunks_ * sizeof(GpuTotal)));
   if (settings_.regions)
     group.bounds = make_buffer<TileBounds>(tile_bounds(
         {receivers_.positions.subspan(first, count), receivers_.normals.subspan(first, count)}, group.cones));
-  group.tiles = make_refilled_buffer(group.cones.size() * sizeof(std::uint32_t));
 }
 
 void ShadePass::begin_block(std::span<const Eigen::Vector3f> directions, std::span<const float> rows,
@@ -116,8 +89,7 @@ void ShadePass::begin_block(std::span<const Eigen::Vector3f> directions, std::sp
   }
   for (Group& group : groups_) {
     work.pairs += group.count * directions.size();
-    group.facing = facing_tiles(group.cones, group.count, directions, work.behind_tiles);
-    refill_buffer<std::uint32_t>(group.tiles, group.facing);
+    group.face(directions, work.behind_tiles);
     if (directions.size() < block_directions)
       glClearNamedBufferData(group.weights.name(), GL_R32F, GL_RED, GL_FLOAT, nullptr);
   }
@@ -144,9 +116,8 @@ void ShadePass::weigh(const ShadowMaps& maps, int first, int directions) {
   for (const Group& group : groups_) {
     if (group.facing.empty()) continue;
     glUniform1i(uniform_location(weigh_program_, "receiver_count"), static_cast<GLint>(group.count));
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, group.receivers.name());
+    group.bind();
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, group.weights.name());
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, group.tiles.name());
     if (settings_.triangle_ids) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 5, group.corners.name());
     if (settings_.regions) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 7, group.bounds.name());
     glDispatchCompute(static_cast<GLuint>(group.facing.size()), 1, 1);
@@ -179,10 +150,8 @@ void ShadePass::end_block(TransferWork& work) {
   for (const Group& group : groups_) {
     if (group.facing.empty()) continue;
     glUniform1i(uniform_location(sum_program_, "receiver_count"), static_cast<GLint>(group.count));
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, group.receivers.name());
+    group.bind();
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, group.weights.name());
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, group.totals.name());
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 4, group.tiles.name());
     for (int chunk = 0; chunk < chunks_; ++chunk) {
       glUniform1i(uniform_location(sum_program_, "first_coefficient"), chunk * chunk_);
       glBindBufferBase(GL_UNIFORM_BUFFER, 0, rows_[chunk].name());
@@ -193,17 +162,7 @@ void ShadePass::end_block(TransferWork& work) {
 }
 
 void ShadePass::read(TransferSums& sums) const {
-  std::vector<GpuTotal> totals;
-  for (const Group& group : groups_) {
-    totals.resize(group.count);
-    for (int i = 0; i < sums.coefficients; ++i) {
-      glGetNamedBufferSubData(group.totals.name(), static_cast<GLintptr>(i * group.count * sizeof(GpuTotal)),
-                              static_cast<GLsizeiptr>(group.count * sizeof(GpuTotal)), totals.data());
-      for (std::size_t r = 0; r < group.count; ++r)
-        sums.plane(i)[group.first + r] =
-            static_cast<std::int64_t>(static_cast<std::uint64_t>(totals[r].high) << 32 | totals[r].low);
-    }
-  }
+  for (const Group& group : groups_) group.read(sums);
 }
 
 }  // namespace kiln

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "bake/egl/receiver_tiles.h"
+#include "bake/egl/receiver_groups.h"
 #include "bake/egl/shadow_maps.h"
 #include "bake/engines/shadow_rays.h"
 #include "bake/engines/transfer_engine.h"
@@ -13,40 +13,33 @@
 
 namespace kiln {
 
-/// All receivers against the depth maps: one program weighs a batch (cosine times visibility), another projects a block
-/// of directions onto the basis and adds it to the totals.
+/// Compares all receivers with the depth maps: one program weighs a batch (cosine times visibility), another projects a
+/// block of directions onto the basis and adds it to the totals.
 class ShadePass {
  public:
-  /// `maps` will be what weigh() takes. Both `receivers` and `rays` must outlive the pass.
+  /// Uploads the receivers. weigh() will take `maps`. Both `receivers` and `rays` outlive the pass.
   ShadePass(const Receivers& receivers, int coefficients, const ShadowMapSettings& settings, const ShadowMaps& maps,
             const ShadowRays& rays);
 
-  /// A new block of at most block_directions: `rows` has the basis functions at its directions, coefficients values
+  /// Starts a block of at most block_directions: `rows` has the basis functions at its directions, coefficients values
   /// each. Counts the pairs in `work`.
   void begin_block(std::span<const Eigen::Vector3f> directions, std::span<const float> rows, TransferWork& work);
 
-  /// The part of the block that `maps` now has: directions first, first + 1, ...
+  /// Weighs the part of the block that `maps` now has: directions first, first + 1, ...
   void weigh(const ShadowMaps& maps, int first, int directions);
 
-  /// Decides what the maps could not (settings.refine), and adds the block's sums to the totals. Counts in `work`.
+  /// Decides ambiguous pairs (settings.refine), and adds the block's sums to the totals. Counts in `work`.
   void end_block(TransferWork& work);
 
   /// Reads the totals back.
   void read(TransferSums& sums) const;
 
  private:
-  /// As many receivers as fit one storage buffer, and their totals.
-  struct Group {
-    std::size_t first = 0;
-    std::size_t count = 0;
-    std::vector<NormalCone> cones;
-    GlBuffer receivers;
+  struct Group : ReceiverGroup {
+    using ReceiverGroup::ReceiverGroup;
     GlBuffer weights;  // of the block
-    GlBuffer totals;
-    GlBuffer tiles;
-    GlBuffer corners;                   // with settings.triangle_ids
-    GlBuffer bounds;                    // with settings.regions
-    std::vector<std::uint32_t> facing;  // tiles of the block, as `tiles` now has them
+    GlBuffer corners;  // with settings.triangle_ids
+    GlBuffer bounds;   // with settings.regions
   };
 
   void add_group(std::size_t first, std::size_t count);
@@ -62,7 +55,7 @@ class ShadePass {
   int chunks_;
   std::vector<Group> groups_;
   std::vector<GlBuffer> rows_;  // one per chunk
-  GlBuffer tile_counts_;        // of the block: pairs behind, lit, shadowed
+  GlBuffer tile_counts_;        // pairs of the block: behind, lit, shadowed
   GlProgram weigh_program_;
   GlProgram sum_program_;
 };

@@ -14,10 +14,10 @@
 
 namespace kiln {
 
-/// Side of a region of a depth map.
+/// Side of a region of a depth map, texels.
 inline constexpr int region_texels = 16;
 
-/// The depth maps of a batch of directions.
+/// Depth maps of a batch of directions.
 class ShadowMaps {
  public:
   ShadowMaps(const TransferScene& scene, const ShadowMapSettings& settings);
@@ -30,21 +30,22 @@ class ShadowMaps {
   /// (settings.triangle_ids); of these also the vertices of each triangle to shader storage binding 6.
   void bind() const;
 
-  /// With settings.regions: the least and the greatest depth of every region_texels x region_texels texels of the maps
-  /// now drawn, to texture unit 3 by bind().
+  /// Draws, with settings.regions, the least and the greatest depth of every region_texels x region_texels texels of
+  /// the maps now drawn, to texture unit 3 by bind().
   void draw_regions(int directions) const;
 
-  /// The largest error of a stored depth.
+  /// Returns the largest error of a stored depth.
   float depth_rounding() const;
 
-  /// How far a receiver may be off the surface that it stands on: rounding_offset of the occluders, object units.
+  /// Returns how far a receiver may be off the surface that it stands on: rounding_offset of the occluders, object
+  /// units.
   float position_rounding() const { return rounding_offset(hull_); }
 
-  /// With settings.triangle_ids: the vertices of each triangle, those at the same place as one.
+  /// Returns, with settings.triangle_ids, the vertices of each triangle; vertices at the same place are one.
   std::span<const std::array<std::uint32_t, 3>> corners() const { return corners_; }
 
  private:
-  /// One kind of depth map: what it culls, and where it goes.
+  /// One kind of depth map: the faces it culls, and its texture.
   struct Pass {
     GLenum culled = GL_NONE;
     GlTexture maps;

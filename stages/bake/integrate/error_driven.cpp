@@ -15,7 +15,7 @@ constexpr int fewest_directions = 64;
 constexpr int steps_per_doubling = 4;
 constexpr double half_difference_over_error = 1.15;
 
-/// Numbers of directions to try, whole blocks: the one steps_per_doubling before each is about half of it.
+/// Returns the numbers of directions to try, whole blocks: the one steps_per_doubling before each is about half of it.
 std::vector<int> direction_counts(int most) {
   std::vector<int> counts;
   for (int step = 0;; ++step) {
@@ -28,7 +28,8 @@ std::vector<int> direction_counts(int most) {
   return counts;
 }
 
-/// Half the distance between the means over the first directions and over the others, relative to the whole mean.
+/// Returns half the distance between the means over the first directions and over the others, relative to the whole
+/// mean.
 double half_difference(const TransferSums& first, const TransferSums& all) {
   const double first_weight = 1.0 / static_cast<double>(first.directions),
                other_weight = 1.0 / static_cast<double>(all.directions - first.directions),
@@ -45,17 +46,18 @@ double half_difference(const TransferSums& first, const TransferSums& all) {
 
 }  // namespace
 
-DirectionChoice choose_directions(TransferEngine& engine, const Receivers& sample, const BakeSettings& settings,
-                                  const ErrorTarget& target, int seed, const ProgressFunction& progress) {
+DirectionChoice choose_directions(TransferEngine& engine, const Receivers& sample, const BakeJob& job) {
+  const BakeSettings& settings = job.settings;
+  const ErrorTarget& target = settings.max_error;
   engine.set_receivers(sample, settings.bands);
   DirectionChoice choice;
   std::vector<TransferSums> history;
   const std::vector<int> counts = direction_counts(settings.max_directions);
   for (std::size_t k = 0; k < counts.size(); ++k) {
     const int before = k == 0 ? 0 : counts[k - 1];
-    engine.add(progressive_directions(before, counts[k] - before, static_cast<std::uint64_t>(seed)), no_progress);
+    engine.add(progressive_directions(before, counts[k] - before, static_cast<std::uint64_t>(job.seed)), no_progress);
     history.push_back(engine.sums());
-    progress(static_cast<double>(k + 1) / static_cast<double>(counts.size()));
+    job.progress(static_cast<double>(k + 1) / static_cast<double>(counts.size()));
     if (counts[k] < fewest_directions) continue;
     // The earlier prefix nearest to half of this one.
     const auto half = std::min_element(history.begin(), history.end() - 1, [&](const auto& a, const auto& b) {

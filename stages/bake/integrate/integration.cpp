@@ -71,59 +71,56 @@ std::string slab_name(std::size_t slab) {
   return "slab_" + std::string(number.size() < 4 ? 4 - number.size() : 0, '0') + number + ".sums";
 }
 
-Integration::Integration(const Receivers& receivers, const Occluders& occluders, const BakeSettings& settings, int seed,
-                         int threads, const ProgressFunction& progress, std::size_t slab_receivers)
-    : receivers_(receivers),
-      occluders_(occluders),
-      settings_(settings),
-      seed_(seed),
-      threads_(threads),
+Integration::Integration(const BakeJob& job, std::size_t slab_receivers)
+    : job_(job),
+      receivers_(job.receivers.view()),
       slab_receivers_(slab_receivers),
-      backend_(choose_backend(settings)),
-      sampling_(settings.sampling) {
+      backend_(choose_backend(job.settings)),
+      sampling_(job.settings.sampling) {
+  const BakeSettings& settings = job.settings;
+  const Occluders& occluders = job.occluders;
+
   // Step 1: the receivers that something may shadow.
   const float lift = ray_offset_of(settings, occluders.hull);
-  const std::vector<std::uint8_t> unoccluded = unoccluded_receivers(occluders.hull, receivers, lift);
-  for (std::uint32_t r = 0; r < receivers.size(); ++r)
+  const std::vector<std::uint8_t> unoccluded = unoccluded_receivers(occluders.hull, receivers_, lift);
+  for (std::uint32_t r = 0; r < receivers_.size(); ++r)
     if (unoccluded[r] == 0) tested_.push_back(r);
 
   // Step 2: the directions. Half of a sample's against the other half does not see an error of visibility, so rays may
   // decide for a software renderer, which would draw all the depth maps for a few thousand receivers.
-  const ErrorTarget target = settings.max_error;
   int count = settings.directions;
-  if (target.wanted) {
+  if (settings.max_error.wanted) {
     sampling_ = Sampling::progressive;
     if (!tested_.empty()) {
-      const Sample sample = sample_of(receivers, tested_);
+      const Sample sample = sample_of(receivers_, tested_);
       std::unique_ptr<TransferEngine> rays;
       if (backend_ == BakeBackend::egl && engine().is_software())
-        rays = make_engine(BakeBackend::beams, occluders, settings, threads);
-      choice_ = choose_directions(rays ? *rays : engine(), {sample.positions, sample.normals}, settings, target, seed,
-                                  progress);
+        rays = make_engine(BakeBackend::beams, occluders, settings, job.threads);
+      choice_ = choose_directions(rays ? *rays : engine(), {sample.positions, sample.normals}, job);
       count = choice_->directions;
     } else {
       count = block_directions;  // every receiver has its analytic transfer
     }
   }
-  directions_ = sample_directions(sampling_, count, static_cast<std::uint64_t>(seed));
+  directions_ = sample_directions(sampling_, count, static_cast<std::uint64_t>(job.seed));
   order_coherently(directions_, block_directions);
 
   // Step 3: what tells sums of this bake from others.
-  receivers_hash_ = hash_points({receivers.positions, receivers.normals});
+  receivers_hash_ = hash_points({receivers_.positions, receivers_.normals});
   occluders_hash_ = hash_points({occluders.mesh.positions}) + hash_triangles(occluders.mesh.triangles);
 }
 
 TransferEngine& Integration::engine() {
   if (engine_) return *engine_;
-  BakeSettings settings = settings_;
+  BakeSettings settings = job_.settings;
   if (backend_ == BakeBackend::egl && settings.shadow_size == 0) {
     if (!tested_.empty()) {
       const Sample sample = sample_of(receivers_, tested_);
-      shadow_choice_ = choose_shadow_size({sample.positions, sample.normals}, occluders_, settings, seed_, threads_);
+      shadow_choice_ = choose_shadow_size({sample.positions, sample.normals}, job_);
     }
     settings.shadow_size = shadow_choice_ ? shadow_choice_->size_texels : 256;  // nothing is shadowed
   }
-  engine_ = make_engine(backend_, occluders_, settings, threads_);
+  engine_ = make_engine(backend_, job_.occluders, settings, job_.threads);
   return *engine_;
 }
 
@@ -146,7 +143,7 @@ Integration::Slab Integration::gather(std::size_t slab) const {
 }
 
 Json Integration::key(const Shard& shard, const std::string& renderer) const {
-  BakeSettings settings = settings_;
+  BakeSettings settings = job_.settings;
   settings.sampling = sampling_;
   if (shadow_choice_) settings.shadow_size = shadow_choice_->size_texels;
   Json relevant = Json::object();
@@ -159,20 +156,20 @@ Json Integration::key(const Shard& shard, const std::string& renderer) const {
           {"backend", backend_name(backend_)},
           {"renderer", renderer},
           {"directions", directions_.size()},
-          {"seed", seed_},
+          {"seed", job_.seed},
           {"slab_receivers", slab_receivers_},
           {"shard", std::to_string(shard.index) + "/" + std::to_string(shard.count)}};
 }
 
-SumsFile Integration::sum(std::size_t slab, const Shard& shard, const Checkpoints& checkpoints,
-                          const ProgressFunction& progress) {
+SumsFile Integration::sum(std::size_t slab, const Shard& shard, const ProgressFunction& progress) {
+  const Checkpoints& checkpoints = job_.checkpoints;
   const Slab own = gather(slab);
   const std::vector<Eigen::Vector3f> directions = shard_directions(directions_, shard);
   SumsFile file;
   file.key = key(shard, engine().renderer());
   file.first_receiver = own.first;
   file.blocks_all = blocks_of(directions.size());
-  file.sums = TransferSums(own.positions.size(), coefficient_count(settings_.bands));
+  file.sums = TransferSums(own.positions.size(), coefficient_count(job_.settings.bands));
   if (own.positions.empty()) {
     file.blocks_done = file.blocks_all;
     file.sums.directions = static_cast<std::int64_t>(directions.size());
@@ -193,7 +190,7 @@ SumsFile Integration::sum(std::size_t slab, const Shard& shard, const Checkpoint
 
   // Step 2: step after step of about a second, each of whole blocks, with a checkpoint now and then.
   engine().keep_blocked(memory_);
-  engine().set_receivers({own.positions, own.normals}, settings_.bands);
+  engine().set_receivers({own.positions, own.normals}, job_.settings.bands);
   const std::int64_t blocks_before = file.blocks_done;
   std::int64_t blocks_added = 0, step_blocks = 1;
   bool interrupted = false;
@@ -258,7 +255,7 @@ void Integration::put(std::size_t slab, const TransferSums& sums, TransferVector
 }
 
 void Integration::put_unoccluded(TransferVectors& transfer) const {
-  const ShBasis basis(settings_.bands);
+  const ShBasis basis(job_.settings.bands);
   std::size_t next = 0;
   for (std::uint32_t r = 0; r < receivers_.size(); ++r) {
     if (next < tested_.size() && tested_[next] == r) {

@@ -12,14 +12,13 @@
 
 namespace kiln {
 
-/// What came of writing planes. Mismatch is how far both sides of the seams are apart in what bilinear lookups of the
-/// stored planes give: the distance between transfer vectors, of all channels together, over their root mean square
-/// length over receivers.
+/// Result of writing planes. Mismatch is the distance between the transfer vectors that bilinear lookups give on both
+/// sides of a seam, all channels together, over the root mean square length of receivers' vectors.
 struct WrittenPlanes {
-  SeamMismatch before;            ///< of planes stored as they were baked
-  SeamMismatch after;             ///< of those that were written
-  double change = 0;              ///< relative L2, over receivers, of what equalising changed, before storing
-  double quantisation_error = 0;  ///< relative L2, over receivers, of what storing changed, after equalising
+  SeamMismatch before;            ///< mismatch of planes stored as they were baked
+  SeamMismatch after;             ///< mismatch of the planes that were written
+  double change = 0;              ///< relative L2, over receivers, of equalising, before storing
+  double quantisation_error = 0;  ///< relative L2, over receivers, of storing, after equalising
 };
 
 /// Writes a picture for every channel and coefficient, gutters filled, seams treated as `choice` says, and ranges.json,

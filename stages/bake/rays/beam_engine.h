@@ -8,12 +8,11 @@
 
 namespace kiln {
 
-/// Shadows by beams: the parallel rays of 16 neighbouring receivers through one search of the occluders' tree for a
-/// whole block of directions, and one ray for all of them where only sheets of triangles stand before them. Finds the
-/// exact visibility that EmbreeEngine finds, up to roundings of rays that pass an edge, in a fraction of the time that
-/// docs/benchmarks.md states by mesh: the fast way of a machine without a GPU. Kin of the
-/// patent's conservative regions (section 5), and of shaft culling (Haines and Wallace, "Shaft culling for efficient
-/// ray-cast radiosity", 1991).
+/// Engine that finds shadows by beams: the parallel rays of 16 neighbouring receivers take one search of the occluders'
+/// tree for a whole block of directions, and one ray for all of them where only sheets of triangles stand before them.
+/// Finds the exact visibility that EmbreeEngine finds, up to roundings of rays that pass an edge, in a fraction of the
+/// time (docs/benchmarks.md): the fast way of a machine without a GPU. Related to conservative regions
+/// ([US 7,948,490], section 5) and shaft culling [Haines 1991].
 class BeamEngine : public TransferEngine {
  public:
   /// Rays start `ray_offset` (object units) off the receiver along its normal.

@@ -6,7 +6,7 @@
 
 namespace kiln {
 
-/// Shadows by occlusion rays (Embree): exact visibility of the occluders' triangles. The reference, and the CPU's way.
+/// Engine that finds shadows by occlusion rays (Embree): exact visibility of the occluders' triangles. The reference.
 class EmbreeEngine : public TransferEngine {
  public:
   /// Rays start `ray_offset` (object units) off the receiver along its normal.

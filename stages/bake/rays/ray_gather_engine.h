@@ -12,12 +12,12 @@
 
 namespace kiln {
 
-/// First hits by Embree, in packets of 16 parallel rays. With `by_beams` Kiln's beams say which rays hit anything at
-/// all, and Embree, what.
+/// Engine that gathers at first hits by Embree, in packets of 16 parallel rays. With `by_beams`, Kiln's beams find
+/// which rays hit anything, and Embree finds what those hit.
 class RayGatherEngine : public GatherEngine {
  public:
-  /// Rays start `ray_offset` (object units) off the receiver along its normal. Beams are of the surface before it was
-  /// cut, as those of the direct pass; their tree is built when first needed.
+  /// Rays start `ray_offset` (object units) off the receiver along its normal. Beams search the uncut surface, as those
+  /// of the direct pass do; their tree is built when first needed.
   RayGatherEngine(const ReflectingSurface& surface, float ray_offset, bool by_beams);
 
   void set_radiance(std::span<const float> values, int width) override;

@@ -46,27 +46,11 @@ void join_corner_normals(const std::vector<TriangleMesh>& parts, TriangleMesh& w
 
 }  // namespace
 
-Eigen::Vector3f Occluders::albedo_at(std::uint32_t triangle, float u, float v) const {
-  const auto after = std::upper_bound(first_triangles.begin(), first_triangles.end(), triangle);
-  const auto mesh_index = static_cast<std::size_t>(after - first_triangles.begin()) - 1;
-  return albedos[mesh_index].at(triangle - first_triangles[mesh_index], u, v);
-}
-
-bool Occluders::grey() const {
-  return std::all_of(albedos.begin(), albedos.end(), [](const SurfaceAlbedo& albedo) { return albedo.is_grey(); });
-}
-
 Occluders join_occluders(const std::vector<TriangleMesh>& meshes, std::vector<SurfaceAlbedo> albedos) {
   Occluders joined;
-  joined.albedos = std::move(albedos);
   joined.closed = std::all_of(meshes.begin(), meshes.end(), is_closed);
-  for (const TriangleMesh& mesh : meshes) {
-    const auto first = static_cast<std::uint32_t>(joined.mesh.positions.size());
-    joined.first_triangles.push_back(static_cast<std::uint32_t>(joined.mesh.triangles.size()));
-    joined.mesh.positions.insert(joined.mesh.positions.end(), mesh.positions.begin(), mesh.positions.end());
-    for (const Triangle& t : mesh.triangles)
-      joined.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-  }
+  for (const TriangleMesh& mesh : meshes) joined.add(mesh);
+  joined.albedos = std::move(albedos);
   join_corner_normals(meshes, joined.mesh);
   joined.hull = hull_corners(joined.mesh);
   return joined;

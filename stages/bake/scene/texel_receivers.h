@@ -13,20 +13,20 @@
 
 namespace kiln {
 
-/// Values of texels that have no receiver of their own: each is the mean of some that have one, or were filled before.
+/// Plan by which texels without a receiver are filled: each is the mean of texels that have one or were filled before.
 struct FillPlan {
   struct Texel {
     std::uint32_t texel;
-    std::uint32_t first_source, sources;  ///< of `sources`
+    std::uint32_t first_source, sources;  ///< range of FillPlan::sources
   };
-  std::vector<Texel> texels;  ///< in the order to fill them in
+  std::vector<Texel> texels;  ///< in the order of filling
   std::vector<std::uint32_t> sources;
 
-  /// Fills a plane, a value per texel.
+  /// Fills a plane of one value per texel.
   void apply(std::span<float> plane) const;
 };
 
-/// The covered texels of an atlas as receivers, tile after tile, so that neighbours in the list are neighbours on the
+/// Covered texels of an atlas as receivers, tile after tile, so that neighbours in the list are neighbours on the
 /// surface.
 struct TexelReceivers {
   int width = 0;
@@ -34,25 +34,25 @@ struct TexelReceivers {
   std::vector<std::uint32_t> texels;  ///< j * width + i, rows from the bottom
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
-  std::vector<Eigen::Vector3f> albedos = {};  ///< linear red, green and blue; none where nothing was asked for
+  std::vector<Eigen::Vector3f> albedos = {};  ///< linear red, green and blue; empty if nothing needs them
   std::vector<std::uint32_t> buried = {};     ///< covered texels that are not among `texels` (set_aside_buried)
-  FillPlan fills = {};                        ///< of the buried ones that are filled
+  FillPlan fills = {};                        ///< fills of the buried texels
 
   Receivers view() const { return {positions, normals}; }
-  std::vector<std::uint8_t> covered() const;  ///< 1 or 0 per texel: whether it has a receiver
+  std::vector<std::uint8_t> covered() const;  ///< returns 1 for each texel that has a receiver, else 0
 };
 
-/// Texels stand at the high mesh's points, with its normals.
+/// Returns receivers at the high mesh's points, with its normals.
 TexelReceivers receivers_on_high(const DetailMaps& detail);
 
-/// Texels stand on the low mesh itself; with the high mesh's normals where `detail` is given (the thesis's
-/// variant, 4.2.4), else with the low mesh's, interpolated.
+/// Returns receivers on the low mesh itself, with the high mesh's normals if `detail` is given (section 4.2.4 of
+/// [Chapter 2010]), else with the low mesh's, interpolated.
 TexelReceivers receivers_on_low(const TriangleMesh& atlas, int width, int height, const DetailMaps* detail);
 
-/// Gives the receivers the albedos that `detail` has of their texels.
+/// Sets the receivers' albedos to those that `detail` has for their texels.
 void take_albedos(TexelReceivers& receivers, const DetailMaps& detail);
 
-/// Gives them those of the occluders' nearest points. `occluders` have albedos.
+/// Sets the receivers' albedos to those of the occluders' nearest points. `occluders` have albedos.
 void take_albedos(TexelReceivers& receivers, const Occluders& occluders);
 
 }  // namespace kiln

@@ -12,12 +12,12 @@
 
 namespace kiln {
 
-/// The vertices of a mesh as receivers.
+/// Vertices of a mesh as receivers.
 struct VertexReceivers {
-  /// Vertices packed into a texture of one row: texel k is vertex k. Listed along a space-filling curve, so that
+  /// Vertices as a texture of one row: texel k is vertex k. Listed along a space-filling curve, so that
   /// neighbours in the list are neighbours in space.
   TexelReceivers receivers;
-  double largest_distance = 0;  ///< of a vertex from the surface its receiver stands on, in object units
+  double largest_distance = 0;  ///< of a vertex from its receiver, object units
   std::size_t facing_away = 0;  ///< vertices for which that surface has no point near them that faces as they do
 };
 
@@ -27,11 +27,11 @@ struct VertexReceivers {
 TriangleMesh load_vertex_mesh(const std::filesystem::path& file, const ImportSettings& settings = {},
                               std::vector<std::string>* warnings = nullptr);
 
-/// Vertices stand on the mesh itself, with its normals, which it must have.
+/// Returns receivers on the mesh itself, with its normals, which it must have.
 VertexReceivers receivers_on_vertices(const TriangleMesh& mesh);
 
-/// Vertices stand at the closest point of `high` (with normals, at least one triangle) that faces as the vertex does,
-/// with the high mesh's normal there. Where there is none within four times the distance that any vertex has from
+/// Returns receivers at the closest point of `high` (with normals, at least one triangle) that faces as the vertex
+/// does, with the high mesh's normal there. Where there is none within four times the distance that any vertex has from
 /// `high`, at the closest point of either side.
 VertexReceivers receivers_on_high_of_vertices(const TriangleMesh& mesh, const TriangleMesh& high);
 

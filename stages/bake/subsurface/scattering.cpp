@@ -285,8 +285,106 @@ void check(const SurfaceSamples& samples, const std::vector<TransferVectors>& in
     throw std::invalid_argument("scatter_transfer: the samples have no area");
 }
 
-ProgressFunction part_of(const ProgressFunction& progress, double from, double to) {
-  return [&progress, from, to](double fraction) { progress(from + (to - from) * fraction); };
+/// Kernels for all distances between the samples of a tree.
+KernelTables make_kernels(std::span<const ScatterProfile> profiles, const SampleOctree& tree,
+                          const std::vector<Sample>& ordered) {
+  const auto [least, most] = std::minmax_element(ordered.begin(), ordered.end(),
+                                                 [](const Sample& a, const Sample& b) { return a.radius < b.radius; });
+  const SampleOctree::Node& root = tree.nodes.front();
+  const double farthest = (root.upper - root.lower).norm() + KernelTables::near_reach * most->radius;
+  return KernelTables(profiles, least->radius, most->radius, farthest);
+}
+
+/// Returns gains, by sample and channel, that scale down samples which would send out more than they get; empty if none
+/// does. A sample sends out, by the kernel's symmetry, what it would get from a surface that sends 1 everywhere. Sets
+/// largest_gain and capped_area of `result`.
+std::vector<float> find_gains(KernelSums& sums, const std::vector<Sample>& ordered, std::size_t channels,
+                              float solid_angle, const ProgressFunction& progress, Scattering& result) {
+  const std::size_t count = ordered.size();
+  const std::vector<float> ones(count * row_lanes, 1.f);
+  sums.set_vectors(ones, 1, row_lanes, {});
+  std::vector<float> sent(count * channels);
+  evaluate_all(sums, count, solid_angle, progress, [&](std::size_t p, const std::vector<float>& all) {
+    for (std::size_t c = 0; c < channels; ++c) sent[p * channels + c] = all[c * row_lanes];
+  });
+  double all_area = 0;
+  std::vector<double> capped(channels, 0);
+  for (std::size_t k = 0; k < count; ++k) {
+    all_area += ordered[k].area;
+    for (std::size_t c = 0; c < channels; ++c) capped[c] += sent[k * channels + c] > 1 ? ordered[k].area : 0;
+  }
+  result.capped_area = *std::max_element(capped.begin(), capped.end()) / all_area;
+  result.largest_gain = *std::max_element(sent.begin(), sent.end());
+  if (result.largest_gain <= 1) return {};
+  std::transform(sent.begin(), sent.end(), sent.begin(), [](float all) { return all > 1 ? 1 / all : 1.f; });
+  return sent;
+}
+
+/// Squares of the octree's error and of the exact transfer, summed over points and coefficients.
+struct SquaredError {
+  double error = 0, length = 0;
+};
+
+/// Adds the error of coefficients `first` to `first` + `width` of result.transfer, at result.error_points samples, to
+/// the sums over every sample on its own. `sums` has these coefficients' vectors.
+void measure_hierarchy(const KernelSums& sums, const SampleOctree& tree, int first, int width, const Scattering& result,
+                       SquaredError& squared) {
+  const std::size_t count = tree.order.size(), stride = padded(width);
+  std::vector<double> errors(result.error_points, 0), lengths(result.error_points, 0);
+  tbb::parallel_for(std::size_t{0}, result.error_points, [&](std::size_t e) {
+    const std::size_t p = e * count / result.error_points;
+    KernelSums::Scratch scratch(sums);
+    const std::vector<float>& all = sums.evaluate(static_cast<std::uint32_t>(p), 0.f, scratch);
+    for (std::size_t c = 0; c < result.transfer.size(); ++c)
+      for (int i = 0; i < width; ++i) {
+        const double exact = all[c * stride + static_cast<std::size_t>(i)];
+        const double off = result.transfer[c].plane(first + i)[tree.order[p]] - exact;
+        errors[e] += off * off;
+        lengths[e] += exact * exact;
+      }
+  });
+  for (std::size_t e = 0; e < result.error_points; ++e) {
+    squared.error += errors[e];
+    squared.length += lengths[e];
+  }
+}
+
+/// Computes result.transfer, some coefficients at a time, and its error.
+void scatter_chunks(KernelSums& sums, const SampleOctree& tree, const std::vector<TransferVectors>& incoming,
+                    const std::vector<float>& gains, float solid_angle, const ProgressFunction& progress,
+                    Scattering& result) {
+  const int coefficients = incoming[0].coefficients;
+  SquaredError squared;
+  for (int first = 0; first < coefficients; first += chunk_coefficients) {
+    const int width = std::min(chunk_coefficients, coefficients - first);
+    const std::vector<float> rows = gather_rows(incoming, tree, first, width);
+    const std::size_t stride = padded(width);
+    sums.set_vectors(rows, incoming.size(), stride, gains);
+    const auto put = [&](std::size_t p, const std::vector<float>& all) {
+      for (std::size_t c = 0; c < result.transfer.size(); ++c)
+        for (int i = 0; i < width; ++i)
+          result.transfer[c].plane(first + i)[tree.order[p]] = all[c * stride + static_cast<std::size_t>(i)];
+    };
+    const double all = coefficients;
+    evaluate_all(sums, tree.order.size(), solid_angle, part_of(progress, first / all, (first + width) / all), put);
+    measure_hierarchy(sums, tree, first, width, result, squared);
+  }
+  result.hierarchy_error = squared.length > 0 ? std::sqrt(squared.error / squared.length) : 0;
+}
+
+/// Returns the share of energy that leaves the surface, by channel.
+std::vector<double> energy_shares(const std::vector<float>& areas, const std::vector<TransferVectors>& incoming,
+                                  const std::vector<TransferVectors>& outgoing) {
+  std::vector<double> shares;
+  for (std::size_t c = 0; c < outgoing.size(); ++c) {
+    double in = 0, out = 0;
+    for (std::size_t k = 0; k < areas.size(); ++k) {
+      in += static_cast<double>(areas[k]) * incoming[incoming.size() == 1 ? 0 : c].plane(0)[k];
+      out += static_cast<double>(areas[k]) * outgoing[c].plane(0)[k];
+    }
+    shares.push_back(in > 0 ? out / in : 0);
+  }
+  return shares;
 }
 
 }  // namespace
@@ -295,92 +393,20 @@ Scattering scatter_transfer(const SurfaceSamples& samples, const std::vector<Tra
                             std::span<const ScatterProfile> profiles, const ScatteringSettings& settings,
                             const ProgressFunction& progress) {
   check(samples, incoming, profiles);
-  const std::size_t channels = profiles.size(), count = samples.size();
+  constexpr double gains_share = 0.2;  // of the progress
   const auto solid_angle = static_cast<float>(settings.solid_angle);
-  const int coefficients = incoming[0].coefficients;
-
-  // Step 1: the octree, and the kernels for the samples in it.
   const SampleOctree tree(samples);
   const std::vector<Sample> ordered = ordered_samples(samples, tree);
-  const auto [least, most] = std::minmax_element(ordered.begin(), ordered.end(),
-                                                 [](const Sample& a, const Sample& b) { return a.radius < b.radius; });
-  const SampleOctree::Node& root = tree.nodes.front();
-  const double farthest = (root.upper - root.lower).norm() + KernelTables::near_reach * most->radius;
-  const KernelTables kernels(profiles, least->radius, most->radius, farthest);
+  const KernelTables kernels = make_kernels(profiles, tree, ordered);
   KernelSums sums(tree, ordered, kernels);
 
-  // Step 2: what every sample sends out of what it gets, which the kernel's symmetry makes what it would get from a
-  // surface that sends 1 everywhere.
   Scattering result;
-  std::vector<float> gains;  // empty: nothing is scaled
-  {
-    const std::vector<float> ones(count * row_lanes, 1.f);
-    sums.set_vectors(ones, 1, row_lanes, {});
-    std::vector<float> sent(count * channels);
-    evaluate_all(sums, count, solid_angle, part_of(progress, 0, 0.2),
-                 [&](std::size_t p, const std::vector<float>& all) {
-                   for (std::size_t c = 0; c < channels; ++c) sent[p * channels + c] = all[c * row_lanes];
-                 });
-    result.largest_gain = *std::max_element(sent.begin(), sent.end());
-    if (result.largest_gain > 1) {
-      gains.resize(sent.size());
-      std::transform(sent.begin(), sent.end(), gains.begin(), [](float all) { return all > 1 ? 1 / all : 1.f; });
-    }
-    double all_area = 0;
-    std::vector<double> capped(channels, 0);
-    for (std::size_t k = 0; k < count; ++k) {
-      all_area += ordered[k].area;
-      for (std::size_t c = 0; c < channels; ++c) capped[c] += sent[k * channels + c] > 1 ? ordered[k].area : 0;
-    }
-    result.capped_area = *std::max_element(capped.begin(), capped.end()) / all_area;
-  }
-
-  // Step 3: the transfer, some coefficients at a time; at some points also by every sample.
-  result.transfer.assign(channels, TransferVectors(count, coefficients));
-  result.error_points = std::min(settings.error_points, count);
-  double squared_error = 0, squared_length = 0;
-  for (int first = 0; first < coefficients; first += chunk_coefficients) {
-    const int width = std::min(chunk_coefficients, coefficients - first);
-    const std::vector<float> rows = gather_rows(incoming, tree, first, width);
-    const std::size_t stride = padded(width);
-    sums.set_vectors(rows, incoming.size(), stride, gains);
-    const auto put = [&](std::size_t p, const std::vector<float>& all) {
-      for (std::size_t c = 0; c < channels; ++c)
-        for (int i = 0; i < width; ++i)
-          result.transfer[c].plane(first + i)[tree.order[p]] = all[c * stride + static_cast<std::size_t>(i)];
-    };
-    evaluate_all(sums, count, solid_angle,
-                 part_of(progress, 0.2 + 0.8 * first / coefficients, 0.2 + 0.8 * (first + width) / coefficients), put);
-
-    std::vector<double> errors(result.error_points, 0), lengths(result.error_points, 0);
-    tbb::parallel_for(std::size_t{0}, result.error_points, [&](std::size_t e) {
-      const std::size_t p = e * count / result.error_points;
-      KernelSums::Scratch scratch(sums);
-      const std::vector<float>& all = sums.evaluate(static_cast<std::uint32_t>(p), 0.f, scratch);
-      for (std::size_t c = 0; c < channels; ++c)
-        for (int i = 0; i < width; ++i) {
-          const double exact = all[c * stride + static_cast<std::size_t>(i)];
-          const double off = result.transfer[c].plane(first + i)[tree.order[p]] - exact;
-          errors[e] += off * off;
-          lengths[e] += exact * exact;
-        }
-    });
-    for (std::size_t e = 0; e < result.error_points; ++e) {
-      squared_error += errors[e];
-      squared_length += lengths[e];
-    }
-  }
-  result.hierarchy_error = squared_length > 0 ? std::sqrt(squared_error / squared_length) : 0;
-
-  // Step 4: the share of energy.
-  for (std::size_t c = 0; c < channels; ++c) {
-    double in = 0, out = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-      in += static_cast<double>(samples.areas[k]) * incoming[incoming.size() == 1 ? 0 : c].plane(0)[k];
-      out += static_cast<double>(samples.areas[k]) * result.transfer[c].plane(0)[k];
-    }
-    result.energy.push_back(in > 0 ? out / in : 0);
-  }
+  const std::vector<float> gains =
+      find_gains(sums, ordered, profiles.size(), solid_angle, part_of(progress, 0, gains_share), result);
+  result.transfer.assign(profiles.size(), TransferVectors(samples.size(), incoming[0].coefficients));
+  result.error_points = std::min(settings.error_points, samples.size());
+  scatter_chunks(sums, tree, incoming, gains, solid_angle, part_of(progress, gains_share, 1), result);
+  result.energy = energy_shares(samples.areas, incoming, result.transfer);
   return result;
 }
 

@@ -5,18 +5,15 @@
 #include <bit>
 #include <limits>
 #include <numeric>
-#include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
+#include "raycast/packet_workers.h"
 #include "raycast/sh_rows.h"
 
 namespace kiln {
 
 namespace {
 
-constexpr std::size_t group_packets = 1024;  // packets between two reports of progress
 
 using Place = Eigen::Matrix<float, 6, 1>;  // position and scaled normal of a receiver
 
@@ -99,9 +96,7 @@ BeamSavings add_transfer_by_beams(const BeamScene& scene, const BeamReceivers& r
     std::vector<Lanes> totals;
     BeamSavings savings;
   };
-  tbb::enumerable_thread_specific<Worker> workers([&] {
-    return Worker{BeamTracer(scene), std::vector<Lanes>(coefficients), {}};
-  });
+  const auto make_worker = [&] { return Worker{BeamTracer(scene), std::vector<Lanes>(coefficients), {}}; };
 
   const auto shade = [&](std::size_t packet, Worker& worker) {
     const std::size_t first = packet * beam_lanes;
@@ -126,16 +121,7 @@ BeamSavings add_transfer_by_beams(const BeamScene& scene, const BeamReceivers& r
     }
   };
 
-  const std::size_t packets = receivers.packets.size();
-  for (std::size_t first = 0; first < packets; first += group_packets) {
-    const std::size_t last = std::min(first + group_packets, packets);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(first, last, 4),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        Worker& worker = workers.local();
-                        for (std::size_t packet = range.begin(); packet != range.end(); ++packet) shade(packet, worker);
-                      });
-    progress(static_cast<double>(last) / static_cast<double>(packets));
-  }
+  const auto workers = for_each_packet(receivers.packets.size(), progress, make_worker, shade);
   sums.directions += static_cast<std::int64_t>(directions.size());
   BeamSavings savings;
   for (const Worker& worker : workers) {

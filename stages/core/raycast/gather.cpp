@@ -4,18 +4,14 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <tbb/blocked_range.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 #include <vector>
 
+#include "raycast/packet_workers.h"
 #include "raycast/vector_width.h"
 
 namespace kiln {
 
 namespace {
-
-constexpr std::size_t group_packets = 1024;  // packets between two reports of progress
 
 static_assert(RayScene::PacketHits::lanes == beam_lanes);
 
@@ -189,7 +185,6 @@ void add_gathered(const RayScene& scene, const BeamScene* beams, const BeamRecei
   const std::size_t width = radiance.width;
   assert(static_cast<std::size_t>(sums.coefficients) == width);
   const Gathering gathering(scene, beams, receivers, directions, radiance, known);
-  tbb::enumerable_thread_specific<Worker> workers([&] { return gathering.worker(); });
   const auto gather = [&](std::size_t packet, Worker& worker) {
     gathering.gather(packet, worker);
     const std::size_t first = packet * beam_lanes;
@@ -201,17 +196,8 @@ void add_gathered(const RayScene& scene, const BeamScene* beams, const BeamRecei
     }
   };
 
-  const std::size_t packets = receivers.packets.size();
-  for (std::size_t first = 0; first < packets; first += group_packets) {
-    const std::size_t last = std::min(first + group_packets, packets);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(first, last, 4),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        Worker& worker = workers.local();
-                        for (std::size_t packet = range.begin(); packet != range.end(); ++packet)
-                          gather(packet, worker);
-                      });
-    progress(static_cast<double>(last) / static_cast<double>(packets));
-  }
+  for_each_packet(
+      receivers.packets.size(), progress, [&] { return gathering.worker(); }, gather);
   sums.directions += static_cast<std::int64_t>(directions.size());
 }
 

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "material/scene_mesh.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace kiln {
+
+void SceneMesh::add(const TriangleMesh& part) {
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  first_triangles.push_back(static_cast<std::uint32_t>(mesh.triangles.size()));
+  mesh.positions.insert(mesh.positions.end(), part.positions.begin(), part.positions.end());
+  for (const auto& [a, b, c] : part.triangles) mesh.triangles.push_back({first + a, first + b, first + c});
+}
+
+void SceneMesh::add(const TriangleMesh& part, SurfaceAlbedo albedo) {
+  add(part);
+  albedos.push_back(std::move(albedo));
+}
+
+Eigen::Vector3f SceneMesh::albedo_at(std::uint32_t triangle, float u, float v) const {
+  const auto after = std::upper_bound(first_triangles.begin(), first_triangles.end(), triangle);
+  const auto part = static_cast<std::size_t>(after - first_triangles.begin()) - 1;
+  return albedos[part].at(triangle - first_triangles[part], u, v);
+}
+
+bool SceneMesh::is_grey() const {
+  return std::all_of(albedos.begin(), albedos.end(), [](const SurfaceAlbedo& albedo) { return albedo.is_grey(); });
+}
+
+}  // namespace kiln
