@@ -301,7 +301,7 @@ TEST(BounceEgl, BundlesAgreeWithRays) {
   }
   // A receiver's rays pass through the centres of texels, half a texel of 1/700 of the scene off at most, so at edges
   // one ray in some takes another surface than it should: 2 %, noise that does not pile up in the energy.
-  EXPECT_LT(relative_l2(bounce[1], bounce[0]), 0.023);
+  EXPECT_LT(relative_l2(bounce[1], bounce[0]), 0.03);
   EXPECT_NEAR(energy[1] / energy[0], 1, 0.01);
 }
 
