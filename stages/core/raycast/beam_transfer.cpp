@@ -14,7 +14,6 @@ namespace kiln {
 
 namespace {
 
-
 using Place = Eigen::Matrix<float, 6, 1>;  // position and scaled normal of a receiver
 
 /// Sorts a range so that its halves, their halves, and so on down to 16 places, lie close together.
