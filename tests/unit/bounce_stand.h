@@ -8,6 +8,7 @@
 
 #include "bake/backends.h"
 #include "bake/bake.h"
+#include "bake/bounce/bounces.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 

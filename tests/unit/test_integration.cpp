@@ -59,7 +59,7 @@ TEST_P(Cuts, SlabsGiveTheSameBits) {
   integration.put_unoccluded(transfer);
   ASSERT_GT(integration.slabs(), 1u);
   for (std::size_t slab = 0; slab < integration.slabs(); ++slab)
-    integration.put(slab, integration.sum(slab, {}, {}, no_progress).sums, transfer);
+    integration.put(slab, integration.sum(slab, {}, no_progress).sums, transfer);
   if (GetParam() == BakeBackend::beams || GetParam() == BakeBackend::mixed)
     // Other neighbours share a beam, and round a ray that passes an edge another way. Slabs have one size, always.
     EXPECT_LT(relative_l2(transfer, whole().channels.front()), 1e-4);
