@@ -79,7 +79,7 @@ TransferVectors looked_up(const TriangleMesh& atlas, int size, const UvRaster& r
       if (covered[i] != 0) plane.values()[i] = texels.plane(k)[next++];
     fill_gutters(plane, covered);
     for (std::size_t p = 0; p < points.size(); ++p) {
-      const Eigen::Vector2f uv = interpolate(atlas, atlas.uvs, {points[p].triangle, points[p].u, points[p].v});
+      const Eigen::Vector2f uv = interpolate(atlas, atlas.uvs, points[p]);
       const double x = static_cast<double>(uv.x()) * size - 0.5, y = static_cast<double>(uv.y()) * size - 0.5;
       const int i = std::clamp(static_cast<int>(std::floor(x)), 0, size - 2);
       const int j = std::clamp(static_cast<int>(std::floor(y)), 0, size - 2);

@@ -333,13 +333,13 @@ TEST(BounceCount, AutomaticStopsUnderTheFloor) {
   ASSERT_GE(taken, 1u);
   // The same number of bounces, given explicitly, gives the same bytes; the next bounce is below the floor, the last
   // above.
-  stand.settings.bounces = {.count = taken + 1};
+  stand.settings.bounces = {.count = static_cast<int>(taken) + 1};
   const BakeResult more = stand.bake();
   for (std::size_t b = 0; b < taken; ++b) EXPECT_EQ(more.bounces->energy[b], automatic.bounces->energy[b]);
   double total = 1;
   for (double energy : automatic.bounces->energy) total += energy;
   EXPECT_LT(more.bounces->energy[taken], automatic.bounces->floor * total);
-  stand.settings.bounces = {.count = taken};
+  stand.settings.bounces = {.count = static_cast<int>(taken)};
   const BakeResult same = stand.bake();
   for (int c = 0; c < 3; ++c) EXPECT_EQ(same.channels[c].values, automatic.channels[c].values);
 }

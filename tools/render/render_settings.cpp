@@ -7,6 +7,7 @@
 
 #include "base/errors.h"
 #include "base/numbers.h"
+#include "runtime/light/incident_samples.h"
 
 namespace kiln {
 
