@@ -14,7 +14,8 @@ namespace kiln {
 namespace {
 
 constexpr std::size_t group_packets = 16;     // a stream of rays holds as many receivers
-constexpr std::size_t blocks_apart = 48;      // of the blocks that a packet is cast along
+constexpr std::size_t packets_apart = 4;      // of the packets that are sampled: each has work of its own to begin with
+constexpr std::size_t blocks_apart = 12;      // of the blocks that a packet is cast along
 constexpr std::size_t directions_apart = 16;  // of the single rays in such a block
 constexpr float loose = 2;                    // times the diagonal of its neighbours' boxes
 
@@ -102,7 +103,7 @@ class Sampler {
  public:
   explicit Sampler(const BeamScene& scene) : tracer_(scene), counter_(scene) {}
 
-  /// Casts a packet along every 48th of `blocks`, from block `first` on.
+  /// Casts a packet along every twelfth of `blocks`, from block `first` on.
   void sample(const BeamPacket& packet, std::span<const BeamBlock> blocks, std::size_t first, BeamPilot& pilot) {
     if (first >= blocks.size()) return;
     const BeamWork before = tracer_.work();
@@ -171,7 +172,7 @@ BeamSplit split_by_cost(const BeamScene& scene, BeamReceivers receivers, std::sp
   tbb::enumerable_thread_specific<Sampler> samplers([&] { return Sampler(scene); });
   tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
     Sampler& sampler = samplers.local();
-    for (std::size_t k = 0; k < groups[g].size(); ++k)
+    for (std::size_t k = g % packets_apart % groups[g].size(); k < groups[g].size(); k += packets_apart)
       sampler.sample(receivers.packets[groups[g][k]], blocks, (g + k * blocks_apart / group_packets) % blocks_apart,
                      pilots[g]);
   });
