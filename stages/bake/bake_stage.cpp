@@ -14,7 +14,8 @@ namespace {
 constexpr const char* metric_names =
     "software_renderer texels buried_texels moved_texels directions texel_directions_per_second coefficients channels "
     "occluder_triangles "
-    "occluders_closed skipped.unoccluded_texels skipped.behind_tiles skipped.lit_tiles skipped.shadowed_tiles single_rays "
+    "occluders_closed skipped.unoccluded_texels skipped.behind_tiles skipped.lit_tiles skipped.shadowed_tiles "
+    "single_rays "
     "ambiguous refined quantisation_error width height seams.edges seams.seam_mismatch_mean_before "
     "seams.seam_mismatch_max_before seams.seam_mismatch_mean seams.seam_mismatch_max seams.change";
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "bake/bounce/bounced_light.h"
 #include "bake/backends.h"
+#include "bake/bounce/bounced_light.h"
 #include "bench_scene.h"
 #include "cost.h"
 #include "sh/basis.h"

@@ -222,8 +222,9 @@ TEST(Pipeline, RefusalsNameTheLine) {
             std::string::npos);
   EXPECT_NE(refusal("assets:\n  a:\n    mesh: x.obj\n    cook: {}\n").find("pipeline.yaml:4: unknown key 'cook'"),
             std::string::npos);
-  EXPECT_NE(refusal("defaults:\n  bake:\n    backend: cuda\nassets: {a: {mesh: x}}\n").find("egl, mixed, beams or embree"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal("defaults:\n  bake:\n    backend: cuda\nassets: {a: {mesh: x}}\n").find("egl, mixed, beams or embree"),
+      std::string::npos);
   EXPECT_EQ(refusal("assets:\n  a: {mesh: x.obj}\n"), "");
 }
 

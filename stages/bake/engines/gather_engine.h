@@ -13,9 +13,9 @@
 
 namespace kiln {
 
-/// Surface that receivers see: triangles whose front, the side from which they wind counter-clockwise, sends out vectors,
-/// linear between the vectors of three points. The engine copies what it keeps, except the uncut surface, which outlives
-/// it.
+/// Surface that receivers see: triangles whose front, the side from which they wind counter-clockwise, sends out
+/// vectors, linear between the vectors of three points. The engine copies what it keeps, except the uncut surface,
+/// which outlives it.
 struct ReflectingSurface {
   std::span<const Eigen::Vector3f> positions;
   std::span<const std::array<std::uint32_t, 3>> triangles;
@@ -28,7 +28,8 @@ struct ReflectingSurface {
 };
 
 /// Interface of what gathers bounced light: receivers, a surface that sends out vectors, directions in; sums of what is
-/// received out. A TransferEngine integrates what receivers see of the sky, a GatherEngine what they see of the surface.
+/// received out. A TransferEngine integrates what receivers see of the sky, a GatherEngine what they see of the
+/// surface.
 class GatherEngine {
  public:
   virtual ~GatherEngine() = default;
