@@ -2,16 +2,15 @@
 # SPDX-License-Identifier: MIT
 """load_asset.py FOLDER: relights three texels of a baked folder under two lights, the worked numbers of docs/format.md.
 
-Written from that page alone: version 2, planes in pictures, a constant albedo, one channel. Needs Pillow.
+Written from that page alone: version 2, planes in pictures, one channel. Needs Pillow.
 """
 import json, math, pathlib, sys
 from PIL import Image
-
 folder = pathlib.Path(sys.argv[1])
 asset = json.loads((folder / "ranges.json").read_text())
-unknown = set(asset["requires"]) - {"albedo"}
-if (asset["format"], asset["version"], unknown) != ("kiln-prt", 2, set()):
-    sys.exit(f"cannot read {asset['format']} of version {asset['version']} that requires {sorted(unknown)}")
+unknown = set(asset.get("requires", [])) - {"albedo"}
+if (asset["format"], asset["version"], asset["channels"], unknown) != ("kiln-prt", 2, 1, set()):
+    sys.exit(f"cannot read {asset['format']} {asset['version']} of {asset['channels']} channels that requires {unknown}")
 bands, top = asset["bands"], 2 ** asset["bits"] - 1
 
 def basis(x, y, z):
@@ -47,10 +46,15 @@ def transfer(i, j):  # row j counts from the bottom, Pillow's from the top
         stored = Image.open(folder / plane["file"]).getpixel((i, asset["height"] - 1 - j))
         yield plane["min"] + stored / top * (plane["max"] - plane["min"])
 
+def albedo(i, j):
+    known = asset.get("albedo", [0.8, 0.8, 0.8])  # where it is left out, a grey of our choice
+    encoded = Image.open(folder / known).getpixel((i, asset["height"] - 1 - j)) if isinstance(known, str) else ()
+    return [((v / 255 + 0.055) / 1.055) ** 2.4 if v > 10 else v / 255 / 12.92 for v in encoded] or known
+
 lights = {"directional:45,30,1,1,1": directional(45, 30, (1, 1, 1)),
           "hemisphere:0,90,0.4,0.6,1,0.2,0.1,0.05": hemisphere((0.4, 0.6, 1), (0.2, 0.1, 0.05))}
 for texel in ((15, 13), (22, 13), (7, 20)):
     t = list(transfer(*texel))
     for name, light in lights.items():
-        colour = [albedo * sum(map(lambda l, v: l * v, L, t)) for albedo, L in zip(asset["albedo"], light)]
+        colour = [a * sum(map(lambda l, v: l * v, L, t)) for a, L in zip(albedo(*texel), light)]
         print(f"| {texel} | `{name}` | " + " | ".join(f"{value:.6f}" for value in colour) + " |")
