@@ -33,7 +33,7 @@ struct SceneLights {
 struct DirectLight {
   Eigen::Vector3f place;  ///< centre of a ball, or unit vector towards a distant light
   float radius = 0;       ///< of a ball, object units; 0 if distant
-  /// Of a ball its own radiance; of a distant light that of a white surface that faces it.
+  /// Radiance of a ball itself, or of a white surface that faces a distant light.
   std::array<float, 3> radiance = {};
 };
 

@@ -23,7 +23,6 @@ int main(int argc, char** argv) {
     command.options("Atlas", atlas_options(settings));
     command.parse(argc, argv);
     settings.seed = command.seed();
-
     check_size_settings(settings, command.given("size"));
 
     // Load.

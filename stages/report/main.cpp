@@ -33,8 +33,7 @@ int main(int argc, char** argv) {
         ->group("Budgets");
     command.app()
         .add_flag("--reuse", reuses,
-                  "Where a report of these inputs and settings is there already, judge what it has measured and draw "
-                  "nothing")
+                  "Where a report of these inputs and settings is there, judge what it has measured and draw nothing")
         ->group("Budgets");
     command.parse(argc, argv);
 

@@ -228,7 +228,7 @@ TEST_F(ManyParts, AreTheSameOnOneThreadAndTwo) {
 
 TEST(FlippedTriangles, AreThoseThatFaceAgainstAllThatIsNear) {
   const TriangleMesh bowl = shapes::thin_bowl(32, 8, 0.001f);
-  // The same, slightly smaller: each side lies on the other one or beyond it.
+  // A copy, slightly smaller: each side lies on the other one or beyond it.
   const TriangleMesh smaller = shapes::scaled(bowl, Eigen::Vector3f::Constant(0.998f));
   EXPECT_EQ(count_flipped(smaller, bowl, flipped_reach(smaller, 0.002)), 0);
   TriangleMesh turned = shapes::icosphere(3);
