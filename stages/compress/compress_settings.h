@@ -18,7 +18,7 @@ struct CompressSettings {
 
 OptionSet compress_options(CompressSettings& settings);
 
-/// Of --max-error: nothing for "auto". Throws WrongUsage.
+/// Parses the text of --max-error; returns nothing for "auto". Throws WrongUsage.
 std::optional<double> parse_compression_error(const std::string& text);
 
 }  // namespace kiln

@@ -13,7 +13,7 @@ namespace kiln {
 
 enum class SubsurfaceModel { dipole, diffusion };
 
-/// Of red, green and blue; nothing where it is not given.
+/// A quantity for red, green and blue, or nothing where the command line does not give it.
 using GivenColours = std::optional<std::array<double, 3>>;
 
 struct SubsurfaceSettings {

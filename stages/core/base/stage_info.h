@@ -15,7 +15,7 @@ namespace kiln {
 /// What pipeline.yaml says of one stage: the text of each setting by its name, the defaults left out.
 using StageSettings = std::map<std::string, std::string>;
 
-/// Those of an asset's stages by their names; a stage on request is in here where the asset passes it.
+/// Settings of an asset's stages, by stage name. A stage on request has an entry only where the asset passes it.
 using AssetSettings = std::map<std::string, StageSettings>;
 
 /// The settings of a stage as its program knows them, with their defaults, and what pipeline.yaml may say besides.

@@ -14,10 +14,10 @@ namespace kiln {
 namespace {
 
 constexpr std::size_t group_packets = 16;     // a stream of rays holds as many receivers
-constexpr std::size_t packets_apart = 4;      // of the packets that are sampled: each has work of its own to begin with
-constexpr std::size_t blocks_apart = 12;      // of the blocks that a packet is cast along
-constexpr std::size_t directions_apart = 16;  // of the single rays in such a block
-constexpr float loose = 2;                    // times the diagonal of its neighbours' boxes
+constexpr std::size_t packets_apart = 4;      // every fourth packet is sampled, as beginning one costs by itself
+constexpr std::size_t blocks_apart = 12;      // a sampled packet is cast along every twelfth block
+constexpr std::size_t directions_apart = 16;  // in such a block every sixteenth direction gets a single ray
+constexpr float loose = 2;                    // a packet this many times as wide as its neighbours stands apart
 
 /// The diagonal of the box of a packet's origins.
 float diagonal_of(const BeamPacket& packet) {
