@@ -16,7 +16,7 @@ constexpr std::size_t most_heads_bytes = 32u << 20;
 constexpr std::size_t most_entries_bytes = 96u << 20;  // llvmpipe has storage blocks of 128 MiB at most
 constexpr std::size_t entry_bytes = 12;
 constexpr std::size_t first_capacity = 1u << 20;
-constexpr GLsizei most_draw_triangles = 16'000'000;  // of all directions: a few tens of milliseconds on hardware
+constexpr GLsizei most_bundle_triangles = 16'000'000;  // of all directions: a few tens of milliseconds on hardware
 constexpr GLuint end_of_list = ~0u;
 
 GlBuffer make_entries(std::size_t capacity) { return make_refilled_buffer(capacity * entry_bytes); }
@@ -72,7 +72,7 @@ std::uint32_t BundleLists::draw_once(std::span<const Eigen::Vector3f> directions
   glUniform1i(uniform_location(program_, "size"), size_);
   glUniform1ui(uniform_location(program_, "capacity"), static_cast<GLuint>(capacity_));
   const auto count = static_cast<GLsizei>(directions.size());
-  const GLsizei step = 3 * std::max<GLsizei>(1, most_draw_triangles / count);
+  const GLsizei step = 3 * std::max<GLsizei>(1, most_bundle_triangles / count);
   for (GLsizei begin = 0; begin < indices_; begin += step) {
     glUniform1ui(uniform_location(program_, "first_triangle"), static_cast<GLuint>(begin / 3));
     glDrawElementsInstanced(GL_TRIANGLES, std::min(step, indices_ - begin), GL_UNSIGNED_INT,

@@ -13,6 +13,8 @@
 #include "import/obj_materials.h"
 #include "import/obj_vertices.h"
 #include "import/readers.h"
+#include "import/remedies.h"
+#include "import/text_words.h"
 #include "import/wavefront_lines.h"
 
 namespace kiln {
@@ -20,8 +22,6 @@ namespace kiln {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr char remedy[] = "export the mesh again";
 
 /// Kind of elements that corners refer to.
 struct Kind {
@@ -81,25 +81,25 @@ class ObjReader {
       if (initial == 'f' || initial == 'F') return read_face(statement);
       if (initial == 's' || initial == 'S') return read_smoothing(statement);
     } else if (keyword.size() == 2) {
-      if (is_keyword(keyword, "vt")) return read_uv(statement);
-      if (is_keyword(keyword, "vn")) return read_normal(statement);
-      if (is_keyword(keyword, "fo")) return read_face(statement);  // of version 2.11
+      if (same_word(keyword, "vt")) return read_uv(statement);
+      if (same_word(keyword, "vn")) return read_normal(statement);
+      if (same_word(keyword, "fo")) return read_face(statement);  // of version 2.11
     }
     read_rare(keyword, statement);
   }
 
   void read_rare(std::string_view keyword, std::string_view rest) {
-    if (is_keyword(keyword, "usemtl")) {
+    if (same_word(keyword, "usemtl")) {
       material_ = materials_.use(rest);
-    } else if (is_keyword(keyword, "mtllib")) {
+    } else if (same_word(keyword, "mtllib")) {
       materials_.add_library(rest, lines_.line());
-    } else if (is_keyword(keyword, "#mrgb")) {
+    } else if (same_word(keyword, "#mrgb")) {
       vertices_.colors().add_polypaint(rest, mesh_.places.size());
     } else {
-      lines_of_shape_ += is_keyword(keyword, "l");
-      points_of_shape_ += is_keyword(keyword, "p");
-      surfaces_ += is_keyword(keyword, "surf");
-      calls_ += is_keyword(keyword, "call");
+      lines_of_shape_ += same_word(keyword, "l");
+      points_of_shape_ += same_word(keyword, "p");
+      surfaces_ += same_word(keyword, "surf");
+      calls_ += same_word(keyword, "call");
     }
   }
 
@@ -139,7 +139,7 @@ class ObjReader {
     if (group)
       smoothing_group_ = static_cast<std::uint32_t>(std::clamp<std::int64_t>(*group, 0, SourceMesh::none));
     else
-      smoothing_group_ = is_keyword(word, "on") ? 1 : 0;
+      smoothing_group_ = same_word(word, "on") ? 1 : 0;
   }
 
   /// Reads numbers up to a comment or the end. Returns their count; the first ones are in `numbers`.
@@ -208,12 +208,12 @@ class ObjReader {
     const std::string_view digits = rest.substr(0, k);
     rest.remove_prefix(k);
     if (value == 0)
-      refuse("a face names " + std::string(kind.name) + " 0", "numbers from 1: OBJ counts from 1", remedy);
+      refuse("a face names " + std::string(kind.name) + " 0", "numbers from 1: OBJ counts from 1", export_again);
     const std::int64_t index = is_negative ? static_cast<std::int64_t>(count) - value : value - 1;
     if (index < 0)
       refuse("a face names " + std::string(kind.name) + " " + std::string(digits) + " of " + std::to_string(count) +
                  " before it",
-             "numbers from -" + std::to_string(count), remedy);
+             "numbers from -" + std::to_string(count), export_again);
     if (index >= SourceMesh::none) refuse_missing(lines_.line(), kind, std::string(digits), count_statements(kind));
     return static_cast<std::uint32_t>(index);
   }
@@ -278,23 +278,23 @@ class ObjReader {
   [[noreturn]] void refuse_word(std::string_view word, const char* what) const {
     const bool has_comma = word.find(',') != std::string_view::npos;
     refuse(shown(word) + " for " + what, has_comma ? "a number with a decimal point" : "a number",
-           has_comma ? "export the mesh again with decimal points" : remedy);
+           has_comma ? "export the mesh again with decimal points" : export_again);
   }
 
   [[noreturn]] void refuse_corner(std::string_view word) const {
-    refuse(shown(word) + " in a face", "VERTEX, VERTEX/UV, VERTEX//NORMAL or VERTEX/UV/NORMAL", remedy);
+    refuse(shown(word) + " in a face", "VERTEX, VERTEX/UV, VERTEX//NORMAL or VERTEX/UV/NORMAL", export_again);
   }
 
   [[noreturn]] void refuse_few(std::size_t count, const std::string& what, const std::string& expected,
                                const std::string& of = "number") const {
-    if (lines_.is_cut_off()) refuse("is truncated within " + what, expected, remedy);
-    refuse(what + " of " + counted(count, of), expected, remedy);
+    if (lines_.is_cut_off()) refuse("is truncated within " + what, expected, export_again);
+    refuse(what + " of " + counted(count, of), expected, export_again);
   }
 
   [[noreturn]] void refuse_missing(std::uint32_t line, const Kind& kind, const std::string& index,
                                    std::size_t count) const {
     throw BadInput(place(line), "a face names " + std::string(kind.name) + " " + index + " of " + std::to_string(count),
-                   "numbers up to " + std::to_string(count), remedy);
+                   "numbers up to " + std::to_string(count), export_again);
   }
 
   [[noreturn]] void refuse_no_faces() const {
@@ -303,7 +303,7 @@ class ObjReader {
     if (lines_of_shape_ > 0) found += ", " + counted(lines_of_shape_, "line");
     if (points_of_shape_ > 0) found += ", " + counted(points_of_shape_, "point statement");
     if (surfaces_ > 0) found += ", " + counted(surfaces_, "free-form surface");
-    throw BadInput(file_.string(), found, "a mesh of triangles or polygons", remedy);
+    throw BadInput(file_.string(), found, "a mesh of triangles or polygons", export_again);
   }
 
   [[noreturn]] void refuse_place(std::size_t index, std::uint32_t face_line) const {
@@ -316,16 +316,16 @@ class ObjReader {
     WavefrontLines lines(text_);
     for (std::string_view statement; lines.next(statement);) {
       std::string_view rest = statement;
-      if (is_keyword(next_word(rest), "v") && index-- == 0)
-        throw BadInput(place(lines.line()), "vertex " + shown(trimmed(rest)) + " " + found, expected, remedy);
+      if (same_word(next_word(rest), "v") && index-- == 0)
+        throw BadInput(place(lines.line()), "vertex " + shown(trimmed(rest)) + " " + found, expected, export_again);
     }
-    throw BadInput(file_.string(), "a vertex " + found, expected, remedy);
+    throw BadInput(file_.string(), "a vertex " + found, expected, export_again);
   }
 
   std::size_t count_statements(const Kind& kind) const {
     WavefrontLines lines(text_);
     std::size_t count = 0;
-    for (std::string_view statement; lines.next(statement);) count += is_keyword(next_word(statement), kind.keyword);
+    for (std::string_view statement; lines.next(statement);) count += same_word(next_word(statement), kind.keyword);
     return count;
   }
 

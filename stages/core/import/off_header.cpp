@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "base/errors.h"
+#include "import/remedies.h"
 #include "import/text_lines.h"
 #include "import/text_words.h"
 
@@ -14,13 +15,10 @@ namespace kiln {
 
 namespace {
 
-constexpr char remedy[] = "export the mesh again";
-constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-
-class HeaderReader {
+class OffHeaderReader {
  public:
-  HeaderReader(const std::string& file, std::string_view text)
-      : file_(file), text_(text), words_(file, without_mark(text), 1, '#') {}
+  OffHeaderReader(const std::string& file, std::string_view text)
+      : file_(file), text_(text), words_(file, without_byte_order_mark(text), 1, '#') {}
 
   OffHeader read() {
     if (!words_.to_word()) throw BadInput(file_, "is empty", "an OFF file", "check what file it is");
@@ -36,10 +34,6 @@ class HeaderReader {
   }
 
  private:
-  static std::string_view without_mark(std::string_view text) {
-    return text.starts_with(byte_order_mark) ? text.substr(byte_order_mark.size()) : text;
-  }
-
   /// Reads the keyword; returns the word after it on the same line, or the number attached to it.
   std::string_view read_keyword(std::string_view word) {
     const auto end = std::ranges::search(word, std::string_view("OFF"), [](char a, char b) {
@@ -92,9 +86,9 @@ class HeaderReader {
     const auto count = parse_integer(word);
     if (count && *count >= 0) return static_cast<std::uint64_t>(*count);
     if (word.empty())
-      throw BadInput(file_, "is truncated: it ends before the number of " + name, "a whole OFF file", remedy);
+      throw BadInput(file_, "is truncated: it ends before the number of " + name, "a whole OFF file", export_again);
     throw BadInput(words_.where(), "the number of " + name + " is " + in_quotes(word), "a whole number, 0 or more",
-                   remedy);
+                   export_again);
   }
 
   void read_counts(std::string_view word) {
@@ -110,7 +104,8 @@ class HeaderReader {
     else if (one_a_line)
       skip_edges_line();
     if (!words_.next_on_line().empty())
-      throw BadInput(words_.where(), "more than three numbers", "the numbers of vertices, faces and edges", remedy);
+      throw BadInput(words_.where(), "more than three numbers", "the numbers of vertices, faces and edges",
+                     export_again);
   }
 
   /// Skips a line of one number, the number of edges.
@@ -128,6 +123,6 @@ class HeaderReader {
 
 }  // namespace
 
-OffHeader read_off_header(const std::string& file, std::string_view text) { return HeaderReader(file, text).read(); }
+OffHeader read_off_header(const std::string& file, std::string_view text) { return OffHeaderReader(file, text).read(); }
 
 }  // namespace kiln

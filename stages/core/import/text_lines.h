@@ -8,6 +8,9 @@
 
 namespace kiln {
 
+/// Returns a text without the byte order mark of UTF-8 that may precede it.
+std::string_view without_byte_order_mark(std::string_view text);
+
 /// Lines of a text, ended by a line feed, a carriage return or both. A byte order mark is skipped.
 class TextLines {
  public:

@@ -32,7 +32,7 @@ double double_area(const TriangleMesh& mesh, const Triangle& triangle) {
   return (b - a).cross(c - a).norm();
 }
 
-bool is_flat(const TriangleMesh& mesh, const Triangle& triangle) { return !(double_area(mesh, triangle) > 0); }
+bool has_no_area(const TriangleMesh& mesh, const Triangle& triangle) { return !(double_area(mesh, triangle) > 0); }
 
 /// Converts a mesh; vertices and faces keep their numbers.
 SurfaceMesh to_surface(const TriangleMesh& mesh) {
@@ -110,7 +110,7 @@ class FlatTriangles {
 
   void push_if_flat(std::uint32_t triangle) {
     const Triangle& t = mesh_.triangles[triangle];
-    if (!is_flat(mesh_, t)) return;
+    if (!has_no_area(mesh_, t)) return;
     const std::size_t k = longest_edge_of(t);
     queue_.push({squared_length(t[k], t[(k + 1) % 3]), triangle, t});
   }
