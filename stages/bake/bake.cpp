@@ -11,6 +11,7 @@
 #include "bake/bounce/receiver_albedo.h"
 #include "bake/integrate/integration.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/stopwatch.h"
 #include "sh/basis.h"
 

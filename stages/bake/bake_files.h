@@ -7,9 +7,11 @@
 #include "asset/prt_asset.h"
 #include "bake/bake.h"
 #include "bake/scene/buried_receivers.h"
-#include "base/command_line.h"
+#include "base/json.h"
 
 namespace kiln {
+
+class CommandLine;
 
 /// Files of a bake.
 struct BakePaths {

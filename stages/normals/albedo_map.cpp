@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "base/json.h"
 #include "image/gutter.h"
 #include "image/srgb.h"
 

@@ -11,6 +11,7 @@
 #include <tbb/parallel_for.h>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/stopwatch.h"
 #include "image/gutter.h"
 #include "image/srgb.h"

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <tbb/parallel_for.h>
 
+#include "base/json.h"
 #include "probes/winding.h"
 #include "raycast/ray_scene.h"
 #include "sh/basis.h"

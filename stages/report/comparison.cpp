@@ -5,6 +5,7 @@
 
 #include "base/asset_layout.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/process.h"
 #include "base/stopwatch.h"
 #include "image/image_file.h"

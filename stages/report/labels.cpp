@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <string_view>
 
+#include "base/json.h"
 #include "sh/light_spec.h"
 
 namespace kiln {

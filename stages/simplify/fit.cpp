@@ -33,8 +33,7 @@ TriangleMesh in_frame(const TriangleMesh& mesh, const UnitFrame& frame) {
   return result;
 }
 
-/// Returns a number in [0, 1) for each i: the fractional parts of multiples of roots (Roberts, "The unreasonable
-/// effectiveness of quasirandom sequences", 2018).
+/// Returns a number in [0, 1) for each i: the fractional parts of multiples of roots [Roberts 2018].
 double quasi_random(std::size_t i, double step) {
   const double x = 0.5 + static_cast<double>(i + 1) * step;
   return x - std::floor(x);

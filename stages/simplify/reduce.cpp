@@ -16,7 +16,7 @@ namespace kiln {
 namespace {
 
 /// Stages of a collapse, as multiples of the triangles wanted. `standard` collapses by quick quadrics down to
-/// quick_times of them, then by Lindstrom and Turk. From compared_times of them on, triangles are compared with the
+/// quick_times of them, then by collapse_edges. From compared_times of them on, triangles are compared with the
 /// input's surface.
 constexpr int quick_times = 3, compared_times = 3;
 

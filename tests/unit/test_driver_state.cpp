@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include "base/file_names.h"
+#include "base/json.h"
 #include "base/outputs.h"
 #include "kiln/index_page.h"
 #include "kiln/nearest.h"

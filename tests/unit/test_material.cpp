@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "image/image_file.h"
 #include "image/srgb.h"
 #include "import/import_mesh.h"

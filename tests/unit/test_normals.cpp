@@ -10,6 +10,7 @@
 #include <tbb/global_control.h>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/outputs.h"
 #include "detail/asset_hints.h"
 #include "detail/detail_maps.h"

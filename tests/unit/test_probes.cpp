@@ -8,6 +8,7 @@
 
 #include "asset/probe_set.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "probes/probe_points.h"
 #include "probes/probes.h"
 #include "probes/surface_light.h"

@@ -14,6 +14,7 @@
 #include "bake/rays/embree_shadow_rays.h"
 #include "bake/scene/occluders.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 #include "sh/ray_offset.h"

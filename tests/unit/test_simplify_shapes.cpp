@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/outputs.h"
 #include "hard_shapes.h"
 #include "import/import_mesh.h"

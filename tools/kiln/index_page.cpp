@@ -5,6 +5,7 @@
 #include <cctype>
 #include <fmt/format.h>
 
+#include "base/json.h"
 #include "kiln/summary.h"
 
 namespace kiln {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Transfer bounces as radiance does, because it is linear in the light (Sloan, Kautz and Snyder, "Precomputed radiance
-// transfer for real-time rendering in dynamic, low-frequency lighting environments", 2002, section 5). Gathered at
-// points of the surface bounce after bounce, and at the receivers once: a final gather, as of radiosity (Lischinski,
-// Tampieri and Greenberg, "Combining hierarchical radiosity and discontinuity meshing", 1993).
+// Transfer bounces as radiance does, because it is linear in the light ([Sloan 2002], section 5). It is
+// gathered at points of the surface bounce after bounce, and at the receivers once: a final gather, as for radiosity
+// [Lischinski 1993].
 #include "bake/bounce/bounces.h"
 
 #include <algorithm>

@@ -10,8 +10,8 @@ namespace kiln {
 
 namespace {
 
-/// The corners of the convex hull in counter-clockwise order (Andrew, "Another efficient algorithm for convex hulls in
-/// two dimensions", 1979); of a degenerate set as many as there are.
+/// Returns the corners of the convex hull in counter-clockwise order [Andrew 1979]; one or two if all points lie on a
+/// point or a line.
 std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
   const auto before = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());

@@ -8,6 +8,7 @@
 #include "bake/backends.h"
 #include "bake/integrate/unoccluded.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/stopwatch.h"
 #include "raycast/beam_transfer.h"
 #include "sh/basis.h"

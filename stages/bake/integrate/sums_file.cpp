@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/outputs.h"
 
 namespace kiln {

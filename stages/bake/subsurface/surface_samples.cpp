@@ -40,7 +40,7 @@ struct Polygon {
   }
 };
 
-/// What of `polygon` has sign * (coordinate - bound) >= 0 (Sutherland and Hodgman, "Reentrant polygon clipping", 1974).
+/// Cuts a polygon to the side where sign * (coordinate - bound) >= 0 [Sutherland 1974].
 Polygon clip(const Polygon& polygon, int axis, double bound, double sign) {
   Polygon kept;
   for (int k = 0; k < polygon.size; ++k) {

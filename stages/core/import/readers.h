@@ -23,6 +23,9 @@ SourceMesh read_fbx(const std::filesystem::path& file);
 /// Reads a mesh by its extension: obj, ply, stl, off, drc, gltf, glb or fbx, in any case of letters.
 SourceMesh read_source_mesh(const std::filesystem::path& file);
 
+/// Turns a place or direction of a file such that `up` becomes +Y, without mirroring.
+Eigen::Vector3d turned_upright(const Eigen::Vector3d& place, UpAxis up);
+
 /// Converts coordinates and normals to our axes and units, as `settings` say.
 void turn_and_scale(SourceMesh& source, const ImportSettings& settings);
 
