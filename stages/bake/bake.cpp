@@ -48,9 +48,9 @@ constexpr double direct_share = 0.3;
 
 /// Bakes some of the receivers and interpolates the others.
 AdaptiveReport bake_adaptively(const BakeJob& job, Integration& integration, TransferVectors& transfer) {
-  const TexelReceivers& receivers = job.receivers;
+  const ReceiverSet& receivers = job.receivers;
   const BakeSettings& settings = job.settings;
-  std::vector<std::uint8_t> known(receivers.texels.size(), 1);
+  std::vector<std::uint8_t> known(receivers.slots.size(), 1);
   for (std::uint32_t r : integration.tested()) known[r] = 0;
   const BakeSome bake_some = [&](std::span<const std::uint32_t> some) {
     std::vector<Eigen::Vector3f> positions, normals;
@@ -93,7 +93,7 @@ BakeResult bake(const BakeJob& job) {
   Integration integration(direct);
   if (job.settings.bounces.any()) integration.keep_blocked(memory);
   const TransferWork before = integration.engine().work();
-  TransferVectors transfer(job.receivers.texels.size(), coefficient_count(job.settings.bands));
+  TransferVectors transfer(job.receivers.slots.size(), coefficient_count(job.settings.bands));
   integration.put_unoccluded(transfer);
   std::optional<AdaptiveReport> adaptive;
   if (job.settings.adaptive > 0) adaptive = bake_adaptively(direct, integration, transfer);
@@ -139,7 +139,7 @@ BakeResult merge_shards(const std::vector<fs::path>& folders, const BakeJob& giv
 
   // Step 2: slab after slab, add.
   const int count = static_cast<int>(folders.size());
-  TransferVectors transfer(job.receivers.texels.size(), coefficient_count(merged.bands));
+  TransferVectors transfer(job.receivers.slots.size(), coefficient_count(merged.bands));
   integration.put_unoccluded(transfer);
   for (std::size_t slab = 0; slab < integration.slabs(); ++slab) {
     std::map<std::string, fs::path> seen;

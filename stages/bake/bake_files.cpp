@@ -119,8 +119,8 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
                                      : receivers_on_vertices(scene.vertex_mesh);
   scene.receivers = std::move(vertices.receivers);
   if (on_high) scene.high_area = surface_area(occluders.front());
-  for (std::size_t r = 0; r < scene.receivers.texels.size(); ++r)
-    scene.vertex_mesh.normals[scene.receivers.texels[r]] = scene.receivers.normals[r];
+  for (std::size_t r = 0; r < scene.receivers.slots.size(); ++r)
+    scene.vertex_mesh.normals[scene.receivers.slots[r]] = scene.receivers.normals[r];
   set_aside_buried(paths, settings, scene);
   if (settings.bake_albedo) take_albedos(scene.receivers, scene.occluders);
   scene.vertex_metrics = {{"receiver_distance_largest", vertices.largest_distance},
@@ -248,7 +248,7 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
                                                   : packed_size(paths.atlas);
     scene.receivers = receivers_on_low(atlas, size.width, size.height, detail ? &*detail : nullptr);
   }
-  if (scene.receivers.texels.empty())
+  if (scene.receivers.slots.empty())
     throw BadInput(paths.atlas.string(), "covers no texel", "an atlas packed for this size", "bake at a larger size");
 
   const std::vector<TriangleMesh> occluders = load_occluders(paths, settings, scene);
@@ -263,12 +263,12 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
 }
 
 Json describe_bake(const BakeScene& scene, const BakeResult& result) {
-  const double texel_directions = static_cast<double>(scene.receivers.texels.size()) * result.directions;
+  const double texel_directions = static_cast<double>(scene.receivers.slots.size()) * result.directions;
   const double integration_seconds = result.seconds - (result.subsurface ? result.subsurface->seconds : 0);
   Json metrics = {{"backend", backend_name(result.backend)},
                   {"renderer", result.renderer},
                   {"software_renderer", result.software_renderer},
-                  {"texels", scene.receivers.texels.size() + scene.buried.buried},
+                  {"texels", scene.receivers.slots.size() + scene.buried.buried},
                   {"buried_texels", scene.buried.buried},
                   {"moved_texels", scene.buried.moved},
                   {"directions", result.directions},
@@ -299,11 +299,11 @@ Json describe_bake(const BakeScene& scene, const BakeResult& result) {
   // Shares of all pairs of a texel and a direction.
   const auto all = static_cast<double>(result.work.pairs);
   const auto share = [&](std::uint64_t pairs) { return all > 0 ? static_cast<double>(pairs) / all : 0; };
-  metrics["skipped"] = {{"unoccluded_texels",
-                         static_cast<double>(result.unoccluded) / static_cast<double>(scene.receivers.texels.size())},
-                        {"behind_tiles", share(result.work.behind_tiles)},
-                        {"lit_tiles", share(result.work.lit_tiles)},
-                        {"shadowed_tiles", share(result.work.shadowed_tiles)}};
+  metrics["skipped"] = {
+      {"unoccluded_texels", static_cast<double>(result.unoccluded) / static_cast<double>(scene.receivers.slots.size())},
+      {"behind_tiles", share(result.work.behind_tiles)},
+      {"lit_tiles", share(result.work.lit_tiles)},
+      {"shadowed_tiles", share(result.work.shadowed_tiles)}};
   metrics["single_rays"] = share(result.work.single_rays);
   metrics["ambiguous"] = share(result.work.ambiguous);
   metrics["refined"] = share(result.work.refined);
@@ -345,7 +345,7 @@ Json save_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scen
     places.update(scene.vertex_metrics);
   } else {
     places = write_textured(outputs, paths, scene, result, settings);
-    stored = read_transfer(outputs.staging(), scene.receivers.texels);
+    stored = read_transfer(outputs.staging(), scene.receivers.slots);
     places.update({{"width", scene.receivers.width}, {"height", scene.receivers.height}});
   }
 

@@ -24,7 +24,7 @@ struct BakePaths {
 /// Loaded inputs of a bake.
 struct BakeScene {
   TriangleMesh atlas;  ///< empty in a bake per vertex
-  TexelReceivers receivers;
+  ReceiverSet receivers;
   Occluders occluders;
   std::vector<std::filesystem::path>
       further_files;                    ///< other files that were read: neighbours, and files of meshes' albedo

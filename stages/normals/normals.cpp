@@ -13,6 +13,7 @@
 #include "base/errors.h"
 #include "base/json.h"
 #include "base/stopwatch.h"
+#include "detail/seam_solver.h"
 #include "image/gutter.h"
 #include "image/srgb.h"
 #include "mesh/uv_raster.h"

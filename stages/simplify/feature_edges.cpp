@@ -13,8 +13,7 @@ namespace kiln {
 namespace {
 
 Eigen::Vector3d unit_normal(const TriangleMesh& mesh, std::uint32_t triangle) {
-  const auto at = [&](int k) { return mesh.positions[mesh.triangles[triangle][k]].cast<double>().eval(); };
-  return (at(1) - at(0)).cross(at(2) - at(0)).normalized();
+  return area_normal(mesh, mesh.triangles[triangle]).normalized();
 }
 
 /// Tells whether a mesh has a border. Around an inner vertex each neighbour follows one triangle and precedes another,

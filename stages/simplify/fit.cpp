@@ -103,10 +103,7 @@ int sample_count(const TriangleMesh& low, const TriangleMesh& high, const FitSet
 /// Returns the triangles' normals, as long as twice their areas.
 std::vector<Vector> triangle_normals(const TriangleMesh& mesh) {
   std::vector<Vector> normals;
-  for (const Triangle& t : mesh.triangles) {
-    const Vector a = mesh.positions[t[0]].cast<double>();
-    normals.push_back((mesh.positions[t[1]].cast<double>() - a).cross(mesh.positions[t[2]].cast<double>() - a));
-  }
+  for (const Triangle& triangle : mesh.triangles) normals.push_back(area_normal(mesh, triangle));
   return normals;
 }
 

@@ -9,10 +9,10 @@
 #include "asset/probe_set.h"
 #include "base/errors.h"
 #include "base/json.h"
+#include "mesh/winding.h"
 #include "probes/probe_points.h"
 #include "probes/probes.h"
 #include "probes/surface_light.h"
-#include "probes/winding.h"
 #include "scratch.h"
 #include "sh/basis.h"
 #include "shapes.h"
@@ -146,8 +146,8 @@ TEST(Probes, PointsInsideSolidsAreNotValid) {
   // With a hole: the winding number of a point in the middle is what of the sphere is left.
   TriangleMesh open = shapes::icosphere(2);
   std::erase_if(open.triangles, [&](const Triangle& t) { return open.positions[t[0]].y() > 0.8f; });
-  EXPECT_GT(winding_number(open, Eigen::Vector3f::Zero()), 0.8);
-  EXPECT_LT(winding_number(open, Eigen::Vector3f::Zero()), 0.99);
+  EXPECT_GT(winding_number(open, Eigen::Vector3d::Zero()), 0.8);
+  EXPECT_LT(winding_number(open, Eigen::Vector3d::Zero()), 0.99);
 }
 
 /// A scene of one mesh of constant albedo, its light, and the probes in it.

@@ -6,7 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include "detail/detail_maps.h"
-#include "detail/seams.h"
+#include "detail/seam_solver.h"
 #include "image/gutter.h"
 #include "normals/normals.h"
 #include "shapes.h"

@@ -327,7 +327,7 @@ TEST(ShadowChoice, TakesTheSmallestMapUnderTheFloor) {
   settings.bands = 4;
   settings.directions = 64;
   settings.shadows.refine = true;
-  const TexelReceivers receivers{static_cast<int>(stand.positions.size()), 1, {}, stand.positions, stand.normals};
+  const ReceiverSet receivers{static_cast<int>(stand.positions.size()), 1, {}, stand.positions, stand.normals};
   const ShadowSizeChoice choice = choose_shadow_size(receivers.view(), {receivers, occluders, settings, 1});
   EXPECT_TRUE(choice.reached);
   EXPECT_EQ(choice.size_texels, 256);  // RefiningGivesWhatRaysGive: 0.4 % at most

@@ -37,9 +37,9 @@ class VertexBake : public testing::Test {
 };
 
 /// Computes the transfer of receivers that nothing occludes, times `albedo`.
-TransferVectors furnace_transfer(const TexelReceivers& receivers, int bands, float albedo) {
+TransferVectors furnace_transfer(const ReceiverSet& receivers, int bands, float albedo) {
   const ShBasis basis(bands);
-  TransferVectors transfer(receivers.texels.size(), basis.size());
+  TransferVectors transfer(receivers.slots.size(), basis.size());
   for (std::size_t r = 0; r < transfer.receivers; ++r) {
     const std::vector<float> truth = unoccluded_transfer(basis, receivers.normals[r]);
     for (int i = 0; i < basis.size(); ++i) transfer.plane(i)[r] = albedo * truth[i];
@@ -109,7 +109,7 @@ TEST_F(VertexBake, FilesWithoutNamedIntegersAreRefused) {
 
 TEST_F(VertexBake, FurnaceGoesThroughTheFileWithinHalfAStep) {
   const TriangleMesh mesh = shapes::icosphere(3);
-  const TexelReceivers receivers = receivers_on_vertices(mesh).receivers;
+  const ReceiverSet receivers = receivers_on_vertices(mesh).receivers;
   for (const int bits : {8, 16}) {
     // Three bands leave a last attribute of one component; two channels.
     const std::vector<TransferVectors> channels = {furnace_transfer(receivers, 3, 1),
@@ -147,7 +147,7 @@ TEST_F(VertexBake, FurnaceGoesThroughTheFileWithinHalfAStep) {
 TEST_F(VertexBake, BakeOfASphereIsTheFurnace) {
   // A convex polyhedron hides nothing of the hemisphere above its vertices.
   const TriangleMesh mesh = shapes::icosphere(3);
-  const TexelReceivers receivers = receivers_on_vertices(mesh).receivers;
+  const ReceiverSet receivers = receivers_on_vertices(mesh).receivers;
   BakeSettings settings;
   settings.backend = BakeBackend::embree;
   const Occluders occluders = join_occluders({mesh});
@@ -168,7 +168,7 @@ TEST_F(VertexBake, TouchingSheetsAreSplitInTheFileAndReadBack) {
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
   mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 4, 5}, {0, 6, 4}, {0, 5, 6}, {4, 6, 5}};
   compute_vertex_normals(mesh);
-  const TexelReceivers receivers = receivers_on_vertices(mesh).receivers;
+  const ReceiverSet receivers = receivers_on_vertices(mesh).receivers;
   const TransferVectors transfer = furnace_transfer(receivers, 5, 1);
   OutputSet outputs(folder());
   const std::vector<std::uint32_t> sources = write_vertex_planes(outputs, {transfer}, receivers, mesh, 16);
@@ -208,20 +208,20 @@ TEST_F(VertexBake, ReceiversLieAlongACurve) {
     mixed.positions[k] = mesh.positions[shuffled[k]];
     mixed.normals[k] = mesh.normals[shuffled[k]];
   }
-  const TexelReceivers receivers = receivers_on_vertices(mixed).receivers;
+  const ReceiverSet receivers = receivers_on_vertices(mixed).receivers;
 
-  ASSERT_EQ(receivers.texels.size(), mesh.positions.size());
+  ASSERT_EQ(receivers.slots.size(), mesh.positions.size());
   std::vector<int> seen(mesh.positions.size(), 0);
   double length = 0;
-  for (std::size_t r = 0; r < receivers.texels.size(); ++r) {
-    ++seen.at(receivers.texels[r]);
-    EXPECT_EQ(receivers.positions[r], mixed.positions[receivers.texels[r]]);
-    EXPECT_EQ(receivers.normals[r], mixed.normals[receivers.texels[r]]);
+  for (std::size_t r = 0; r < receivers.slots.size(); ++r) {
+    ++seen.at(receivers.slots[r]);
+    EXPECT_EQ(receivers.positions[r], mixed.positions[receivers.slots[r]]);
+    EXPECT_EQ(receivers.normals[r], mixed.normals[receivers.slots[r]]);
     if (r > 0) length += (receivers.positions[r] - receivers.positions[r - 1]).norm();
   }
   EXPECT_EQ(seen, std::vector<int>(mesh.positions.size(), 1));
   // An edge is 0.07 long, two random points are 4/3 apart: a curve that jumps now and then is nearer to the former.
-  EXPECT_LT(length / static_cast<double>(receivers.texels.size()), 0.2);
+  EXPECT_LT(length / static_cast<double>(receivers.slots.size()), 0.2);
 }
 
 TEST_F(VertexBake, VerticesStandOnTheHighMesh) {
@@ -229,8 +229,8 @@ TEST_F(VertexBake, VerticesStandOnTheHighMesh) {
   const VertexReceivers found = receivers_on_high_of_vertices(low, high);
   EXPECT_EQ(found.facing_away, 0u);
   EXPECT_NEAR(found.largest_distance, 0.03, 1e-3);
-  for (std::size_t r = 0; r < found.receivers.texels.size(); ++r) {
-    const Eigen::Vector3f truth = low.positions[found.receivers.texels[r]].normalized();
+  for (std::size_t r = 0; r < found.receivers.slots.size(); ++r) {
+    const Eigen::Vector3f truth = low.positions[found.receivers.slots[r]].normalized();
     // Facets of edges of 0.04 stay within 2e-4 of the sphere; the closest facet's normal is half an edge away at most.
     EXPECT_NEAR(found.receivers.positions[r].norm(), 1, 3e-4);
     EXPECT_GT(found.receivers.positions[r].normalized().dot(truth), 0.999f);
@@ -246,7 +246,7 @@ TEST_F(VertexBake, VerticesOfAThinPlateStayOnTheirSide) {
   TriangleMesh low = shapes::plane(4, 0.7f, -0.002f);
   const VertexReceivers found = receivers_on_high_of_vertices(low, high);
   EXPECT_EQ(found.facing_away, 0u);
-  for (std::size_t r = 0; r < found.receivers.texels.size(); ++r) {
+  for (std::size_t r = 0; r < found.receivers.slots.size(); ++r) {
     EXPECT_NEAR(found.receivers.positions[r].y(), 0.005, 1e-6);
     EXPECT_GT(found.receivers.normals[r].y(), 0.99f);
   }
@@ -259,7 +259,7 @@ TEST_F(VertexBake, VerticesOfAThinPlateStayOnTheirSide) {
 
 TEST_F(VertexBake, RuntimesReadTheFolderOrSayWhatIsWrong) {
   const TriangleMesh mesh = shapes::icosphere(1);
-  const TexelReceivers receivers = receivers_on_vertices(mesh).receivers;
+  const ReceiverSet receivers = receivers_on_vertices(mesh).receivers;
   const auto write = [&] {
     OutputSet outputs(folder());
     write_vertex_planes(outputs, {furnace_transfer(receivers, 3, 1)}, receivers, mesh, 16,

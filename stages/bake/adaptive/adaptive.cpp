@@ -28,7 +28,7 @@ struct Square {
 
 class AdaptiveBake {
  public:
-  AdaptiveBake(const TexelReceivers& receivers, std::vector<std::uint8_t> known, const BakeSome& bake_some,
+  AdaptiveBake(const ReceiverSet& receivers, std::vector<std::uint8_t> known, const BakeSome& bake_some,
                TransferVectors& transfer, const ProgressFunction& progress)
       : receivers_(receivers),
         known_(std::move(known)),
@@ -36,12 +36,12 @@ class AdaptiveBake {
         transfer_(transfer),
         progress_(progress),
         receiver_at_(static_cast<std::size_t>(receivers.width) * receivers.height, none),
-        square_of_(receivers.texels.size()),
+        square_of_(receivers.slots.size()),
         basis_(band_of(transfer.coefficients - 1) + 1),
         width_(static_cast<std::size_t>(transfer.coefficients)),
-        taken_(receivers.texels.size() * width_) {
-    for (std::uint32_t r = 0; r < receivers.texels.size(); ++r) {
-      receiver_at_[receivers.texels[r]] = r;
+        taken_(receivers.slots.size() * width_) {
+    for (std::uint32_t r = 0; r < receivers.slots.size(); ++r) {
+      receiver_at_[receivers.slots[r]] = r;
       if (known_[r] != 0) note(r);
     }
   }
@@ -226,7 +226,7 @@ class AdaptiveBake {
   std::vector<float> interpolate(std::uint32_t r) const {
     const Square& square = square_of_[r];
     const std::array<std::uint32_t, 4> at = corners(square);
-    const auto texel = static_cast<int>(receivers_.texels[r]);
+    const auto texel = static_cast<int>(receivers_.slots[r]);
     const float s = static_cast<float>(texel % receivers_.width - square.i) / static_cast<float>(square.side),
                 t = static_cast<float>(texel / receivers_.width - square.j) / static_cast<float>(square.side);
     const std::array<float, 4> bilinear = {(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t};
@@ -279,7 +279,7 @@ class AdaptiveBake {
     std::fill(known_.begin(), known_.end(), 1);
   }
 
-  const TexelReceivers& receivers_;
+  const ReceiverSet& receivers_;
   std::vector<std::uint8_t> known_;
   const BakeSome& bake_some_;
   TransferVectors& transfer_;
@@ -294,7 +294,7 @@ class AdaptiveBake {
 
 }  // namespace
 
-AdaptiveReport adaptive_transfer(const TexelReceivers& receivers, std::vector<std::uint8_t> known,
+AdaptiveReport adaptive_transfer(const ReceiverSet& receivers, std::vector<std::uint8_t> known,
                                  const BakeSome& bake_some, double target, TransferVectors& transfer,
                                  const ProgressFunction& progress) {
   return AdaptiveBake(receivers, std::move(known), bake_some, transfer, progress).run(target);

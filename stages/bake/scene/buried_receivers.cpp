@@ -70,15 +70,15 @@ void for_each_neighbour(std::uint32_t texel, int width, int height, const Visit&
 }
 
 /// The receivers that are kept, in order.
-void keep_only(TexelReceivers& receivers, const std::vector<std::uint8_t>& dropped) {
+void keep_only(ReceiverSet& receivers, const std::vector<std::uint8_t>& dropped) {
   std::size_t kept = 0;
   for (std::size_t r = 0; r < dropped.size(); ++r) {
     if (dropped[r] != 0) continue;
-    receivers.texels[kept] = receivers.texels[r];
+    receivers.slots[kept] = receivers.slots[r];
     receivers.positions[kept] = receivers.positions[r];
     receivers.normals[kept++] = receivers.normals[r];
   }
-  receivers.texels.resize(kept);
+  receivers.slots.resize(kept);
   receivers.positions.resize(kept);
   receivers.normals.resize(kept);
 }
@@ -111,13 +111,13 @@ FillPlan plan_fills(std::vector<std::uint32_t> open, std::vector<std::uint8_t> k
 }
 
 /// Gives receivers that are buried places in their texels that are not, where there are any, and takes their mark.
-std::size_t move_to_seen_places(TexelReceivers& receivers, const TriangleMesh& atlas, const UvRaster& raster,
+std::size_t move_to_seen_places(ReceiverSet& receivers, const TriangleMesh& atlas, const UvRaster& raster,
                                 const Occluders& occluders, const BuriedTest& is_buried,
                                 std::vector<std::uint8_t>& buried) {
   const RayScene surface(occluders.mesh);
   const Components parts = find_components(join_at_positions(occluders.mesh));
   std::vector<std::uint8_t> seen(raster.texels.size(), 0);
-  for (std::size_t r = 0; r < buried.size(); ++r) seen[receivers.texels[r]] = buried[r] == 0 ? 1 : 0;
+  for (std::size_t r = 0; r < buried.size(); ++r) seen[receivers.slots[r]] = buried[r] == 0 ? 1 : 0;
 
   // Step 1: the points of the surface that other places of the texels stand for.
   struct Candidate {
@@ -126,9 +126,9 @@ std::size_t move_to_seen_places(TexelReceivers& receivers, const TriangleMesh& a
   };
   std::vector<Candidate> candidates;
   for (std::uint32_t r = 0; r < buried.size(); ++r) {
-    if (buried[r] == 0 || !raster.texels[receivers.texels[r]].covered()) continue;
+    if (buried[r] == 0 || !raster.texels[receivers.slots[r]].covered()) continue;
     bool is_near = false;
-    for_each_neighbour(receivers.texels[r], raster.width, raster.height,
+    for_each_neighbour(receivers.slots[r], raster.width, raster.height,
                        [&](std::uint32_t neighbour) { is_near = is_near || seen[neighbour] != 0; });
     for (std::size_t k = is_near ? 0 : places.size() - far_places; k < places.size(); ++k)
       candidates.push_back({r, static_cast<std::uint8_t>(k)});
@@ -137,7 +137,7 @@ std::size_t move_to_seen_places(TexelReceivers& receivers, const TriangleMesh& a
   std::vector<std::uint8_t> usable(candidates.size(), 0);
   tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t k) {
     const auto& [r, place] = candidates[k];
-    const TexelSteps steps(atlas, raster.texels[receivers.texels[r]].triangle, raster.width, raster.height);
+    const TexelSteps steps(atlas, raster.texels[receivers.slots[r]].triangle, raster.width, raster.height);
     const Eigen::Vector3f step = places[place][0] * steps.across + places[place][1] * steps.up;
     const Eigen::Vector3f &from = receivers.positions[r], &normal = receivers.normals[r];
     const float reach = step.norm();
@@ -168,22 +168,22 @@ bool all_of(const std::vector<std::uint8_t>& marks) {
 }
 
 /// The places of receivers that are marked, and marks of the others' places.
-std::vector<std::uint32_t> places_of(const TexelReceivers& receivers, const std::vector<std::uint8_t>& marks,
+std::vector<std::uint32_t> places_of(const ReceiverSet& receivers, const std::vector<std::uint8_t>& marks,
                                      std::vector<std::uint8_t>& others) {
   std::vector<std::uint32_t> marked;
   others.assign(static_cast<std::size_t>(receivers.width) * static_cast<std::size_t>(receivers.height), 0);
   for (std::size_t r = 0; r < marks.size(); ++r) {
     if (marks[r] != 0)
-      marked.push_back(receivers.texels[r]);
+      marked.push_back(receivers.slots[r]);
     else
-      others[receivers.texels[r]] = 1;
+      others[receivers.slots[r]] = 1;
   }
   return marked;
 }
 
 }  // namespace
 
-BuriedReport set_aside_buried(TexelReceivers& receivers, const TriangleMesh& atlas, const Occluders& occluders,
+BuriedReport set_aside_buried(ReceiverSet& receivers, const TriangleMesh& atlas, const Occluders& occluders,
                               float ray_offset) {
   const BuriedTest is_buried(occluders.mesh.positions, occluders.mesh.triangles, ray_offset);
   std::vector<std::uint8_t> buried = is_buried(receivers.view());
@@ -210,7 +210,7 @@ BuriedReport set_aside_buried(TexelReceivers& receivers, const TriangleMesh& atl
   return report;
 }
 
-BuriedReport set_aside_buried_vertices(TexelReceivers& receivers, const TriangleMesh& mesh, const Occluders& occluders,
+BuriedReport set_aside_buried_vertices(ReceiverSet& receivers, const TriangleMesh& mesh, const Occluders& occluders,
                                        float ray_offset) {
   const std::vector<std::uint8_t> buried =
       BuriedTest(occluders.mesh.positions, occluders.mesh.triangles, ray_offset)(receivers.view());

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "bake/scene/occluders.h"
-#include "bake/scene/texel_receivers.h"
+#include "bake/scene/receiver_set.h"
 #include "mesh/triangle_mesh.h"
 
 namespace kiln {
@@ -21,11 +21,11 @@ struct BuriedReport {
 /// texel whose centre is buried other places are tried, and if one is not the receiver moves there. Texels that stay
 /// buried get a plan to fill them from others of their chart, from the line inwards; those of charts that are buried as
 /// a whole get none. `ray_offset` in object units, as the engines have it; `atlas` is what the texels belong to.
-BuriedReport set_aside_buried(TexelReceivers& receivers, const TriangleMesh& atlas, const Occluders& occluders,
+BuriedReport set_aside_buried(ReceiverSet& receivers, const TriangleMesh& atlas, const Occluders& occluders,
                               float ray_offset);
 
 /// The same for the vertices of `mesh`, which are not moved, and filled along its edges.
-BuriedReport set_aside_buried_vertices(TexelReceivers& receivers, const TriangleMesh& mesh, const Occluders& occluders,
+BuriedReport set_aside_buried_vertices(ReceiverSet& receivers, const TriangleMesh& mesh, const Occluders& occluders,
                                        float ray_offset);
 
 }  // namespace kiln

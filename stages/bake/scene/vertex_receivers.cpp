@@ -28,10 +28,10 @@ constexpr float largest_detour = 4;
 constexpr float smallest_search = 1e-4f;
 
 /// Points and normals by vertex, listed along the curve.
-TexelReceivers pack(const std::vector<Eigen::Vector3f>& positions, const std::vector<Eigen::Vector3f>& normals) {
-  TexelReceivers receivers{static_cast<int>(positions.size()), 1, {}, {}, {}};
+ReceiverSet pack(const std::vector<Eigen::Vector3f>& positions, const std::vector<Eigen::Vector3f>& normals) {
+  ReceiverSet receivers{static_cast<int>(positions.size()), 1, {}, {}, {}};
   for (const auto& [code, vertex] : morton_order(positions)) {
-    receivers.texels.push_back(vertex);
+    receivers.slots.push_back(vertex);
     receivers.positions.push_back(positions[vertex]);
     receivers.normals.push_back(normals[vertex]);
   }

@@ -69,9 +69,9 @@ class ReceiverMap {
  public:
   static constexpr std::uint32_t none = ~0u;
 
-  explicit ReceiverMap(const TexelReceivers& receivers)
+  explicit ReceiverMap(const ReceiverSet& receivers)
       : receivers_(receivers), map_(static_cast<std::size_t>(receivers.width) * receivers.height, none) {
-    for (std::uint32_t r = 0; r < receivers.texels.size(); ++r) map_[receivers.texels[r]] = r;
+    for (std::uint32_t r = 0; r < receivers.slots.size(); ++r) map_[receivers.slots[r]] = r;
   }
 
   std::uint32_t at(int i, int j) const {
@@ -97,15 +97,15 @@ class ReceiverMap {
   }
 
  private:
-  const TexelReceivers& receivers_;
+  const ReceiverSet& receivers_;
   std::vector<std::uint32_t> map_;
 };
 
 }  // namespace
 
-std::vector<float> texel_areas(const TriangleMesh& atlas, const TexelReceivers& receivers) {
+std::vector<float> texel_areas(const TriangleMesh& atlas, const ReceiverSet& receivers) {
   const ReceiverMap map(receivers);
-  std::vector<double> areas(receivers.texels.size(), 0);
+  std::vector<double> areas(receivers.slots.size(), 0);
   for (const Triangle& t : atlas.triangles) {
     // Step 1: the triangle in texels, and how much surface a square texel of it is.
     Polygon triangle;
@@ -148,13 +148,13 @@ std::vector<float> texel_areas(const TriangleMesh& atlas, const TexelReceivers& 
   return {areas.begin(), areas.end()};
 }
 
-std::vector<float> vertex_areas(const TriangleMesh& mesh, const TexelReceivers& receivers) {
+std::vector<float> vertex_areas(const TriangleMesh& mesh, const ReceiverSet& receivers) {
   std::vector<double> of_vertex(mesh.positions.size(), 0);
   for (const Triangle& t : mesh.triangles)
     for (std::uint32_t vertex : t) of_vertex[vertex] += twice_area_normal(mesh, t).norm() / 6;
   std::vector<float> areas;
-  areas.reserve(receivers.texels.size());
-  for (std::uint32_t vertex : receivers.texels) areas.push_back(static_cast<float>(of_vertex[vertex]));
+  areas.reserve(receivers.slots.size());
+  for (std::uint32_t vertex : receivers.slots) areas.push_back(static_cast<float>(of_vertex[vertex]));
   return areas;
 }
 

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bake/scene/texel_receivers.h"
+#include "bake/scene/receiver_set.h"
 #include "mesh/triangle_mesh.h"
 
 namespace kiln {
@@ -22,9 +22,9 @@ struct SurfaceSamples {
 /// the texel's square, divided by the cosine between the triangle and the receiver's normal (at least 1/4), which is
 /// how much larger the surface is that the texel was projected from. What lies in texels whose centre no triangle
 /// covers goes to the covered neighbour nearest to it.
-std::vector<float> texel_areas(const TriangleMesh& atlas, const TexelReceivers& receivers);
+std::vector<float> texel_areas(const TriangleMesh& atlas, const ReceiverSet& receivers);
 
 /// Area that each receiver stands for, those being the vertices of `mesh`: a third of every triangle around it.
-std::vector<float> vertex_areas(const TriangleMesh& mesh, const TexelReceivers& receivers);
+std::vector<float> vertex_areas(const TriangleMesh& mesh, const ReceiverSet& receivers);
 
 }  // namespace kiln
