@@ -122,7 +122,7 @@ BakeResult bake_shard(OutputSet& outputs, const Shard& shard, const BakeJob& job
 
 BakeResult merge_shards(const std::vector<fs::path>& folders, const BakeJob& given) {
   const Stopwatch stopwatch;
-  // Step 1: the first shard says how many directions there are, and what integrated them.
+  // Step 1: read from the first shard how many directions there are, and what integrated them.
   const Json first = read_sums(folders.front() / slab_name(0)).key;
   BakeJob job = given;
   BakeSettings& merged = job.settings;
@@ -137,7 +137,7 @@ BakeResult merge_shards(const std::vector<fs::path>& folders, const BakeJob& giv
   RayMemory memory(bounce_memory_share(merged));
   Integration integration(job);
 
-  // Step 2: slab after slab, add.
+  // Step 2: add the shards' sums, slab after slab.
   const int count = static_cast<int>(folders.size());
   TransferVectors transfer(job.receivers.slots.size(), coefficient_count(merged.bands));
   integration.put_unoccluded(transfer);

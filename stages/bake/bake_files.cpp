@@ -27,13 +27,13 @@ namespace {
 
 constexpr int default_size_texels = 512;
 
-/// The size that kiln-atlas packed for, from the record beside the atlas.
+/// Returns the size that kiln-atlas packed for, from the record beside the atlas.
 Extent packed_size(const fs::path& atlas) {
   const AssetHints hints = read_asset_hints(folder_of(atlas));
   return hints.width > 0 ? Extent(hints.width, hints.height) : Extent(default_size_texels);
 }
 
-/// Fills scene.occluders, with albedos where settings need them. Gives the meshes.
+/// Fills scene.occluders, with albedos where settings need them. Returns the meshes.
 std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSettings& settings, BakeScene& scene) {
   std::vector<TriangleMesh> meshes;
   std::vector<fs::path> files = paths.occluders;
@@ -68,7 +68,7 @@ std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSetti
     add_albedo(files[k].string(), load_albedo(imported[k], settings.material));
   for (ImportedMesh& mesh : imported) meshes.push_back(std::move(mesh.mesh));
 
-  // What stands around.
+  // Add the surroundings.
   scene.neighbours = settings.surroundings.neighbours;
   BoundingBox own;
   for (const TriangleMesh& mesh : meshes) own.merge(bounding_box(mesh));
@@ -97,7 +97,7 @@ void set_aside_buried(const BakePaths& paths, const BakeSettings& settings, Bake
          "as it is"});
 }
 
-/// Whether the transfer has it: then it must not be multiplied again, as if the surface were white.
+/// Tells whether the transfer includes the albedo: then it must not be multiplied again, as if the surface were white.
 bool has_albedo_within(const BakeSettings& settings) { return settings.bake_albedo || settings.subsurface.wanted(); }
 
 BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings) {
@@ -146,7 +146,7 @@ Json describe_adaptive(const AdaptiveReport& report, int directions) {
           {"share_saved", all > 0 ? static_cast<double>(report.interpolated) / all : 0}};
 }
 
-/// What ranges.json is to say of the reflectance: that of the settings, else what the normals stage found.
+/// Returns the albedo for ranges.json: that of the settings, else what the normals stage found.
 PrtAlbedo shipped_albedo(const DetailMaps& detail, const MaterialSettings& material) {
   const auto given = material.albedo;
   if (given) return PrtAlbedo::of_constant({(*given)[0], (*given)[1], (*given)[2]});
@@ -167,7 +167,7 @@ Json describe_subsurface(const SubsurfaceReport& report) {
           {"seconds", report.seconds}};
 }
 
-/// Gives what came of storing and of the seams, for bake.json.
+/// Writes the planes of an atlas. Returns the metrics of storing and of the seams, for bake.json.
 Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeResult& result,
                     const BakeSettings& settings) {
   PrtDescription asset;
@@ -206,7 +206,7 @@ void BakeScene::add_warnings(const std::vector<std::string>& further) {
 }
 
 std::vector<std::string> direction_warnings(const BakeSettings& settings) {
-  const bool by_error = settings.max_error.wanted;  // of progressive directions as many as it takes
+  const bool by_error = settings.max_error.wanted;  // then directions are progressive, as many as it takes
   const int most = by_error ? settings.max_directions : settings.directions;
   const std::int64_t needed =
       directions_for_bands(by_error ? Sampling::progressive : settings.sampling, settings.bands);
@@ -222,7 +222,7 @@ BakeJob make_job(const BakeScene& scene, const BakeSettings& settings, const Com
 }
 
 BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) {
-  subsurface_profiles(settings.subsurface);  // says what does not go together before anything is baked
+  subsurface_profiles(settings.subsurface);  // throws before anything is baked, if settings do not go together
   if (settings.subsurface.wanted() && settings.bake_albedo)
     throw WrongUsage("subsurface: found --bake-albedo; expected one of them, the material has its own albedo");
   if (settings.bits != 8 && settings.bits != 16)
@@ -296,7 +296,7 @@ Json describe_bake(const BakeScene& scene, const BakeResult& result) {
                           {"kept_bytes", bounces.kept_bytes}};
     if (bounces.floor > 0) metrics["bounces"]["floor"] = bounces.floor;
   }
-  // Shares of all pairs of a texel and a direction.
+  // Count shares of all pairs of a texel and a direction.
   const auto all = static_cast<double>(result.work.pairs);
   const auto share = [&](std::uint64_t pairs) { return all > 0 ? static_cast<double>(pairs) / all : 0; };
   metrics["skipped"] = {
@@ -336,7 +336,7 @@ Json describe_verification(const BakeVerification& verification) {
 Json save_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeResult& result,
                const BakeSettings& settings, const CommandLine& command) {
   std::vector<TransferVectors> stored;
-  Json places;  // what they are and how many
+  Json places;  // metrics of the texels or vertices
   if (settings.per_vertex) {
     const std::vector<std::uint32_t> sources =
         write_vertex_planes(outputs, result.channels, scene.receivers, scene.vertex_mesh, settings.bits, scene.albedo);

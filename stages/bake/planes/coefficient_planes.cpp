@@ -14,7 +14,8 @@ namespace kiln {
 
 namespace {
 
-/// Looser than a normal map's, whose texels are the receivers' normals: gutters have no values of their own here.
+/// Weights of the seams' least squares. Covered texels are held less firmly than those of a normal map, which are the
+/// receivers' normals; gutters have no values of their own here.
 constexpr SeamWeights plane_weights = {.covered = 0.02};
 
 Image<float> filled_plane(std::span<const float> values, const ReceiverSet& receivers,
@@ -26,14 +27,14 @@ Image<float> filled_plane(std::span<const float> values, const ReceiverSet& rece
   return plane;
 }
 
-/// Texels whose values come of receivers: their own, or those of others of their chart.
+/// Returns 1 for each texel whose value comes of receivers: its own, or others of its chart.
 std::vector<std::uint8_t> filled_texels(const ReceiverSet& receivers) {
   std::vector<std::uint8_t> filled = receivers.covered();
   for (const FillPlan::Texel& fill : receivers.fills.texels) filled[fill.texel] = 1;
   return filled;
 }
 
-/// Points along the seams whose lookups see no buried texel: what mismatch is measured at.
+/// Returns the points at which mismatch is measured: those along the seams whose lookups see no buried texel.
 std::vector<SeamPoint> seen_points(const Seams& seams, const ReceiverSet& receivers) {
   std::vector<std::uint8_t> is_buried(static_cast<std::size_t>(receivers.width) * receivers.height, 0);
   for (const std::uint32_t texel : receivers.buried) is_buried[texel] = 1;
@@ -47,7 +48,7 @@ std::vector<SeamPoint> seen_points(const Seams& seams, const ReceiverSet& receiv
   return points;
 }
 
-/// As a runtime sees it.
+/// Returns a plane as a runtime sees it: stored and recovered.
 Image<float> shown_plane(const Image<float>& plane, const PlaneRange& range, int bits) {
   Image<float> shown(plane.width(), plane.height(), 1);
   std::transform(plane.values().begin(), plane.values().end(), shown.values().begin(),
@@ -74,7 +75,7 @@ class MismatchSums {
   std::vector<double> squares_;
 };
 
-/// Has `solver` weigh those points more where it leaves more than elsewhere, by the planes that hold most of transfer.
+/// Makes `solver` weigh points more where it leaves larger mismatches, by the planes that hold most of transfer.
 void reweigh_points(SeamSolver& solver, const std::vector<TransferVectors>& channels, const ReceiverSet& receivers,
                     const std::vector<std::uint8_t>& filled) {
   constexpr int rounds = 2;
@@ -107,7 +108,7 @@ WrittenPlanes write_planes(OutputSet& outputs, const std::vector<TransferVectors
   for (std::size_t channel = 0; channel < channels.size(); ++channel)
     for (int i = 0; i < channels[channel].coefficients; ++i) {
       const std::span<const float> values = channels[channel].plane(i);
-      // The range of what was baked is what is possible: no equalising and no slope that a gutter continues leaves it.
+      // Keep to the range of what was baked: neither equalising nor a slope that a gutter continues may leave it.
       const PlaneRange range = range_of(values);
       Image<float> plane = filled_plane(values, receivers, filled);
       before.add(shown_plane(plane, range, asset.bits));

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::uint32_t none = ~0u;
 
-/// Places of a texel that are tried where its centre is buried, in texels from it, the nearest first.
+/// Places that are tried in a texel whose centre is buried: offsets from it in texels, the nearest first.
 constexpr std::array<std::array<float, 2>, 16> places = {{{-.125f, -.125f},
                                                           {.125f, -.125f},
                                                           {-.125f, .125f},
@@ -39,10 +39,10 @@ constexpr std::array<std::array<float, 2>, 16> places = {{{-.125f, -.125f},
                                                           {-.375f, .375f},
                                                           {.375f, .375f}}};
 
-/// Texels farther from any that is not buried are tried at their outermost places alone, the last of the list.
+/// Number of places, the outermost and last of the list, that are tried in texels far from any that is not buried.
 constexpr std::size_t far_places = 4;
 
-/// How a texel's place moves on the low mesh from texel to texel, object units.
+/// Steps on the low mesh from a texel to the next, across and up, object units.
 struct TexelSteps {
   Eigen::Vector3f across = Eigen::Vector3f::Zero(), up = Eigen::Vector3f::Zero();
 
@@ -69,7 +69,7 @@ void for_each_neighbour(std::uint32_t texel, int width, int height, const Visit&
       if (x != i || y != j) visit(static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(width) + x);
 }
 
-/// The receivers that are kept, in order.
+/// Removes the receivers that are marked in `dropped`; the others stay in order.
 void keep_only(ReceiverSet& receivers, const std::vector<std::uint8_t>& dropped) {
   std::size_t kept = 0;
   for (std::size_t r = 0; r < dropped.size(); ++r) {
@@ -103,14 +103,14 @@ FillPlan plan_fills(std::vector<std::uint32_t> open, std::vector<std::uint8_t> k
       else
         left.push_back(place);
     }
-    if (plan.texels.size() == before) break;  // charts that are buried as a whole
+    if (plan.texels.size() == before) break;  // the rest is in charts that are buried as a whole
     for (std::size_t k = before; k < plan.texels.size(); ++k) known[plan.texels[k].texel] = 1;
     open = std::move(left);
   }
   return plan;
 }
 
-/// Gives receivers that are buried places in their texels that are not, where there are any, and takes their mark.
+/// Moves buried receivers to places in their texels that are not buried, where there are any, and removes their mark.
 std::size_t move_to_seen_places(ReceiverSet& receivers, const TriangleMesh& atlas, const UvRaster& raster,
                                 const Occluders& occluders, const BuriedTest& is_buried,
                                 std::vector<std::uint8_t>& buried) {
@@ -119,7 +119,7 @@ std::size_t move_to_seen_places(ReceiverSet& receivers, const TriangleMesh& atla
   std::vector<std::uint8_t> seen(raster.texels.size(), 0);
   for (std::size_t r = 0; r < buried.size(); ++r) seen[receivers.slots[r]] = buried[r] == 0 ? 1 : 0;
 
-  // Step 1: the points of the surface that other places of the texels stand for.
+  // Step 1: find the points of the surface that other places of the texels stand for.
   struct Candidate {
     std::uint32_t receiver;
     std::uint8_t place;
@@ -150,7 +150,7 @@ std::size_t move_to_seen_places(ReceiverSet& receivers, const TriangleMesh& atla
     normals[k] = normal;
   });
 
-  // Step 2: the first of them that is seen.
+  // Step 2: take the first of them that is seen.
   const std::vector<std::uint8_t> is_hidden = is_buried({positions, normals});
   std::size_t moved = 0;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
@@ -167,7 +167,7 @@ bool all_of(const std::vector<std::uint8_t>& marks) {
   return std::all_of(marks.begin(), marks.end(), [](std::uint8_t mark) { return mark != 0; });
 }
 
-/// The places of receivers that are marked, and marks of the others' places.
+/// Returns the slots of the receivers that are marked, and marks the slots of the `others`.
 std::vector<std::uint32_t> places_of(const ReceiverSet& receivers, const std::vector<std::uint8_t>& marks,
                                      std::vector<std::uint8_t>& others) {
   std::vector<std::uint32_t> marked;
@@ -222,7 +222,7 @@ BuriedReport set_aside_buried_vertices(ReceiverSet& receivers, const TriangleMes
   std::vector<std::uint32_t> open = places_of(receivers, buried, known);
   report.buried = open.size();
   receivers.buried = open;
-  std::vector<EdgeKey> edges;  // both ways
+  std::vector<EdgeKey> edges;  // each edge in both directions
   for (const Triangle& t : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
       edges.emplace_back(t[k], t[(k + 1) % 3]);

@@ -9,11 +9,11 @@
 
 namespace kiln {
 
-/// What set_aside_buried found.
+/// Result of set_aside_buried.
 struct BuriedReport {
   std::size_t buried = 0;   ///< receivers that no one can see, set aside
-  std::size_t moved = 0;    ///< receivers that were buried, but not all of their texel: they stand beside it now
-  bool everything = false;  ///< all are buried, and none was set aside
+  std::size_t moved = 0;    ///< receivers that moved within their texel to a place that is not buried
+  bool everything = false;  ///< whether all are buried, in which case none was set aside
 };
 
 /// Takes out receivers that stand inside a part of the occluders (BuriedTest): black for everyone, they would bleed
@@ -24,7 +24,7 @@ struct BuriedReport {
 BuriedReport set_aside_buried(ReceiverSet& receivers, const TriangleMesh& atlas, const Occluders& occluders,
                               float ray_offset);
 
-/// The same for the vertices of `mesh`, which are not moved, and filled along its edges.
+/// Does the same for the vertices of `mesh`, which are not moved, and filled along its edges.
 BuriedReport set_aside_buried_vertices(ReceiverSet& receivers, const TriangleMesh& mesh, const Occluders& occluders,
                                        float ray_offset);
 

@@ -12,8 +12,8 @@ namespace kiln {
 
 namespace {
 
-constexpr int outer_tile_texels = 16;  // 256 texels of a full tile are one stream of rays
-constexpr int inner_tile_texels = 8;   // 64 are one workgroup of the GPU
+constexpr int outer_tile_texels = 16;  // the 256 texels of a full tile are one stream of rays
+constexpr int inner_tile_texels = 8;   // its 64 texels are one workgroup of the GPU
 
 /// Calls visit(i, j) for all texels, tile after tile, and within each in four smaller tiles.
 template <class Visit>

@@ -16,7 +16,7 @@ namespace kiln {
 struct VertexReceivers {
   /// One receiver for each vertex, along a space-filling curve.
   ReceiverSet receivers;
-  double largest_distance = 0;  ///< of a vertex from its receiver, object units
+  double largest_distance = 0;  ///< largest distance of a vertex from its receiver, object units
   std::size_t facing_away = 0;  ///< vertices for which that surface has no point near them that faces as they do
 };
 

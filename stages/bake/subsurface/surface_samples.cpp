@@ -13,9 +13,9 @@ namespace kiln {
 namespace {
 
 constexpr float least_cosine = 0.25f;
-constexpr int neighbourhood = 2;  // texels around an uncovered one in which a covered one is sought
+constexpr int neighbourhood = 2;  // texels around an uncovered one that are searched for a covered one
 
-/// A convex polygon of at most seven corners: a triangle cut by a square's four sides.
+/// Convex polygon of at most seven corners: a triangle cut by a square's four sides.
 struct Polygon {
   std::array<Eigen::Vector2d, 8> corners;
   int size = 0;
@@ -59,12 +59,7 @@ Polygon clip_to_texel(Polygon polygon, int i, int j) {
   return clip(polygon, 1, j + 1, -1);
 }
 
-Eigen::Vector3d twice_area_normal(const TriangleMesh& mesh, const Triangle& t) {
-  const Eigen::Vector3d a = mesh.positions[t[0]].cast<double>();
-  return (mesh.positions[t[1]].cast<double>() - a).cross(mesh.positions[t[2]].cast<double>() - a);
-}
-
-/// The receiver of each texel, or `none`.
+/// Map from texels to receivers.
 class ReceiverMap {
  public:
   static constexpr std::uint32_t none = ~0u;
@@ -79,7 +74,7 @@ class ReceiverMap {
     return inside ? map_[static_cast<std::size_t>(j) * receivers_.width + i] : none;
   }
 
-  /// The receiver nearest to `point` in the texels around, or `none`.
+  /// Returns the receiver nearest to `point` in the texels around, or `none`.
   std::uint32_t nearest(int i, int j, const Eigen::Vector3d& point) const {
     std::uint32_t best = none;
     double least = std::numeric_limits<double>::infinity();
@@ -107,13 +102,13 @@ std::vector<float> texel_areas(const TriangleMesh& atlas, const ReceiverSet& rec
   const ReceiverMap map(receivers);
   std::vector<double> areas(receivers.slots.size(), 0);
   for (const Triangle& t : atlas.triangles) {
-    // Step 1: the triangle in texels, and how much surface a square texel of it is.
+    // Step 1: map the triangle to texels, and find how much surface a square texel of it is.
     Polygon triangle;
     for (std::uint32_t vertex : t)
       triangle.add({static_cast<double>(atlas.uvs[vertex].x()) * receivers.width,
                     static_cast<double>(atlas.uvs[vertex].y()) * receivers.height});
     const double twice_texels = triangle.twice_area();
-    const Eigen::Vector3d cross = twice_area_normal(atlas, t);
+    const Eigen::Vector3d cross = area_normal(atlas, t);
     if (!(std::abs(twice_texels) > 0) || !(cross.norm() > 0)) continue;
     const double area_per_texel = cross.norm() / std::abs(twice_texels);
     const Eigen::Vector3d normal = cross.normalized();
@@ -121,7 +116,7 @@ std::vector<float> texel_areas(const TriangleMesh& atlas, const ReceiverSet& rec
     sides << triangle.corners[1] - triangle.corners[0], triangle.corners[2] - triangle.corners[0];
     const Eigen::Matrix2d weights_of = sides.inverse();
 
-    // Step 2: its part of every texel that it touches.
+    // Step 2: add its part of every texel that it touches.
     Eigen::Vector2d lowest = triangle.corners[0], highest = lowest;
     for (int k = 1; k < 3; ++k) {
       lowest = lowest.cwiseMin(triangle.corners[k]);
@@ -151,7 +146,7 @@ std::vector<float> texel_areas(const TriangleMesh& atlas, const ReceiverSet& rec
 std::vector<float> vertex_areas(const TriangleMesh& mesh, const ReceiverSet& receivers) {
   std::vector<double> of_vertex(mesh.positions.size(), 0);
   for (const Triangle& t : mesh.triangles)
-    for (std::uint32_t vertex : t) of_vertex[vertex] += twice_area_normal(mesh, t).norm() / 6;
+    for (std::uint32_t vertex : t) of_vertex[vertex] += area_normal(mesh, t).norm() / 6;
   std::vector<float> areas;
   areas.reserve(receivers.slots.size());
   for (std::uint32_t vertex : receivers.slots) areas.push_back(static_cast<float>(of_vertex[vertex]));
