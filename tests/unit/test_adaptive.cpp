@@ -16,7 +16,7 @@ namespace {
 constexpr int bands = 3;
 constexpr int coefficients = bands * bands;
 
-/// A plane's texels, most of an atlas of 200 x 200.
+/// Returns a plane's texels, most of an atlas of 200 x 200.
 ReceiverSet plane_texels() { return receivers_on_low(shapes::plane(4, 2), 200, 200, nullptr); }
 
 TransferVectors nothing(const ReceiverSet& receivers) { return TransferVectors(receivers.slots.size(), coefficients); }

@@ -91,13 +91,13 @@ TEST(Buried, FurnitureInARoomIsNot) {
   const TriangleMesh room = turned(scaled(shapes::cube(2), {4, 4, 4})), box = shapes::cube(2);
   const TriangleMesh mesh = shapes::joined(box, room, {0, 0, 0});
   EXPECT_EQ(count_buried(mesh, points_on(mesh, 0, mesh.triangles.size(), 3000)), 0u);
-  // But a box in a box in that room is.
+  // A box in a box in that room is buried.
   const TriangleMesh nested = shapes::joined(scaled(box, {0.5f, 0.5f, 0.5f}), mesh, {0, 0, 0});
   EXPECT_EQ(count_buried(nested, points_on(nested, 0, box.triangles.size(), 1000)), 1000u);
 }
 
 TEST(Buried, APartThatRunsIntoItselfIsWhereItDoes) {
-  // A torus whose tube is thicker than its ring: its inner side is inside itself.
+  // The inner side of a torus whose tube is thicker than its ring is inside itself.
   const TriangleMesh spindle = shapes::torus(48, 0.5f, 0.8f);
   const Points points = points_on(spindle, 0, spindle.triangles.size(), 20000);
   const std::vector<std::uint8_t> marks = buried(spindle, points);
@@ -129,7 +129,7 @@ TEST(Buried, UnderASkirtIsDarkNotBuriedAndInAHeadIsBuried) {
   EXPECT_LT(count_buried(skirt, points_on(skirt, 0, small.triangles.size(), 1000)),
             200u);  // its top alone sees nothing
   const TriangleMesh head = shapes::joined(small, open_sphere(-0.98f), {0, -0.3f, 0});
-  // Its bottom sees light through the neck.
+  // The bottom sees light through the neck.
   EXPECT_GE(count_buried(head, points_on(head, 0, small.triangles.size(), 1000)), 830u);
 }
 

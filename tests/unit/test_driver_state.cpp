@@ -100,7 +100,7 @@ TEST_F(Stage, AnInputThatChangedDuringTheRunIsSeenNextTime) {
 }
 
 TEST_F(Stage, AStampSavesReading) {
-  // A stamp with a hash that is no file's, and all else as it is.
+  // The stamp has a hash that is no file's, and is else as it was.
   FileHashes hashes(scratch_.folder());
   set_year("a.obj", 1999);
   FileStamp stamp = *hashes.stamp("a.obj");

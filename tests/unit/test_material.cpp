@@ -319,7 +319,7 @@ TEST_F(Material, MaterialsAndUvsFollowTrianglesThroughRepair) {
     EXPECT_COLOR(loaded.albedo.at(t, u, v), PaintedCube::truth(p, normal), rounding);
   });
 
-  // One texture for all in place of the materials.
+  // One texture replaces all materials.
   const LoadedAlbedo ramp = load_albedo(imported, {.texture = path("ramp.exr").string()});
   EXPECT_EQ(ramp.albedo.source(), SurfaceAlbedo::Source::texture);
   const std::uint32_t t = 3;

@@ -222,7 +222,7 @@ TEST(ShadowMaps, SumsAreTrueForAnyNumberOfDirections) {
   settings.size_texels = 16;
   const ShBasis basis(4);
   for (const int count : {1, 1000, 1000000}) {
-    // Only the sphere's upper part, where no receiver can look down at the plane.
+    // Take only the sphere's upper part, where no receiver can look down at the plane.
     stand.directions = sample_directions(Sampling::fibonacci, count + 1, 1);
     std::erase_if(stand.directions, [](const Eigen::Vector3f& direction) { return direction.y() < 0.2f; });
     if (count == 1) stand.directions = {Eigen::Vector3f(0.3f, 0.8f, 0.5f).normalized()};

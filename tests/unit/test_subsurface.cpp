@@ -228,7 +228,7 @@ TEST(Subsurface, EnergyIsConserved) {
   EXPECT_GT(sheet.capped_area, 0.8);
   EXPECT_LE(sheet.energy[0], 1.0001);
   EXPECT_GT(sheet.energy[0], 0.95);
-  // Half a sheet lit: what one side sends out of both.
+  // One side of the sheet is lit; both send out.
   TransferVectors light(samples.size(), 1);
   std::fill(light.values.begin(), light.values.begin() + cells * cells, 1.f);
   EXPECT_LE(scatter_transfer(samples, {light}, {{spectralon}}).energy[0], 1.0001);
@@ -333,7 +333,7 @@ TEST(Subsurface, TexelsHaveTheAtlasAreaWholly) {
   const ReceiverSet receivers = receivers_on_low(mesh, 37, 37, nullptr);
   const std::vector<float> areas = texel_areas(mesh, receivers);
   EXPECT_NEAR(std::accumulate(areas.begin(), areas.end(), 0.0), 9, 1e-5);
-  // A texel amid the chart: (3 / (0.8 * 37))^2.
+  // The area of a texel amid the chart is (3 / (0.8 * 37))^2.
   for (std::size_t r = 0; r < areas.size(); ++r) {
     const std::uint32_t i = receivers.slots[r] % 37, j = receivers.slots[r] / 37;
     if (i == 18 && j == 18) {

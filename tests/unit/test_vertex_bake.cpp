@@ -56,7 +56,7 @@ void expect_within_half_a_step(const TransferVectors& stored, const TransferVect
     double worst = 0;
     for (std::size_t r = 0; r < exact.receivers; ++r)
       worst = std::max(worst, std::abs(static_cast<double>(stored.plane(i)[r]) - exact.plane(i)[r]));
-    // And the rounding of a value below 1 to float32.
+    // Add the rounding of a value below 1 to float32.
     EXPECT_LE(worst, half_step + 3e-8) << "coefficient " << i;
   }
 }
@@ -80,7 +80,7 @@ TEST_F(VertexBake, DracoKeepsIntegersExactly) {
   std::vector<int> seen(sources.size(), 0);
   for (std::size_t k = 0; k < sources.size(); ++k) {
     ++seen.at(sources[k]);
-    // Half of a step of 16 bits over the box of side 6, and a twentieth more for the rounding of floats.
+    // The error is half a step of 16 bits over the box of side 6, and a twentieth more for the rounding of floats.
     EXPECT_LE((loaded.mesh.positions[k] - mesh.positions[sources[k]]).cwiseAbs().maxCoeff(), 1.05f * 0.5f * 6 / 65535);
     EXPECT_LE((loaded.mesh.uvs[k] - mesh.uvs[sources[k]]).cwiseAbs().maxCoeff(), 1.05f * 0.5f / 65535);
   }
@@ -121,8 +121,9 @@ TEST_F(VertexBake, FurnaceGoesThroughTheFileWithinHalfAStep) {
     for (std::size_t c = 0; c < 2; ++c) expect_within_half_a_step(stored[c], channels[c], bits);
     outputs.commit();
 
-    // As a consumer reads it: by ranges.json and the mesh alone. The mesh's own normals say what the truth is; those
-    // are good to half a step of 12 bits, 1e-3 or less, which moves no coefficient of three bands by more than 1e-3.
+    // Read it as a consumer does: by ranges.json and the mesh alone. The mesh's own normals say what the truth is;
+    // those are good to half a step of 12 bits, 1e-3 or less, which moves no coefficient of three bands by more than
+    // 1e-3.
     const Json ranges = Json::parse(read_text(path("ranges.json")));
     EXPECT_EQ(ranges["vertices"], mesh.positions.size());
     const AttributedMesh asset = load_attributed_draco(path(ranges["mesh"]));
@@ -199,7 +200,7 @@ TEST_F(VertexBake, UnusedVerticesAreLeftOut) {
 
 TEST_F(VertexBake, ReceiversLieAlongACurve) {
   TriangleMesh mesh = shapes::icosphere(4);
-  // In random order, as a file may have them.
+  // Put the triangles in random order, as a file may have them.
   std::vector<std::uint32_t> shuffled(mesh.positions.size());
   for (std::uint32_t k = 0; k < shuffled.size(); ++k) shuffled[k] = k;
   std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(3));
@@ -271,7 +272,7 @@ TEST_F(VertexBake, RuntimesReadTheFolderOrSayWhatIsWrong) {
   ASSERT_TRUE(asset.is_per_vertex());
   EXPECT_EQ(asset.albedo.constant, Eigen::Vector3f(0.5f, 0.25f, 1));
   ASSERT_EQ(asset.vertex_transfer.size(), asset.mesh.positions.size() * 9);
-  // Half a step of 16 bits, and the mesh's own normals, good to half a step of 12 bits.
+  // Errors: half a step of 16 bits, and that of the mesh's normals, half a step of 12 bits.
   const ShBasis basis(3);
   for (std::size_t v = 0; v < asset.mesh.positions.size(); ++v) {
     const std::vector<float> truth = unoccluded_transfer(basis, asset.mesh.normals[v]);
