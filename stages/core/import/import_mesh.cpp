@@ -17,8 +17,6 @@ namespace kiln {
 
 namespace {
 
-constexpr char remedy_export[] = "export the mesh again";
-
 /// Makes a mesh of the vertices that triangles use, in the order of first use.
 TriangleMesh to_mesh(const std::string& name, const SourceMesh& source, const std::vector<CutTriangle>& triangles,
                      const MeshFrame& frame) {
@@ -77,7 +75,7 @@ int clamp_colors(const std::string& name, std::vector<Eigen::Vector3f>& colors) 
   for (Eigen::Vector3f& color : colors) {
     if (!color.allFinite())
       throw BadInput(name, "a colour of a vertex that is not a finite number", "red, green and blue of 0 to 1",
-                     remedy_export);
+                     export_again);
     const Eigen::Vector3f inside = color.cwiseMax(0).cwiseMin(1);
     clamped += inside != color;
     color = inside;
@@ -133,7 +131,7 @@ ImportedMesh import_mesh(const std::filesystem::path& file, const ImportSettings
   constexpr double least_area = 1e-16;  // relative to the squared diagonal; less is a line drawn with triangles
   const double diagonal = bounding_box(mesh).diagonal();
   if (mesh.triangles.empty() || !(surface_area(mesh) > least_area * diagonal * diagonal))
-    throw BadInput(name, "has no triangle with an area", "a mesh of triangles or polygons", remedy_export);
+    throw BadInput(name, "has no triangle with an area", "a mesh of triangles or polygons", export_again);
   repairs.clamped_colors = clamped_colors;
   repairs.triangulated_polygons = polygons;
   repairs.unused_vertices += static_cast<int>(source.places.size()) - used_vertices;

@@ -21,8 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char remedy[] = "export the mesh again";
-
 /// Kind of elements that corners refer to.
 struct Kind {
   const char* name;
@@ -208,12 +206,12 @@ class ObjReader {
     const std::string_view digits = rest.substr(0, k);
     rest.remove_prefix(k);
     if (value == 0)
-      refuse("a face names " + std::string(kind.name) + " 0", "numbers from 1: OBJ counts from 1", remedy);
+      refuse("a face names " + std::string(kind.name) + " 0", "numbers from 1: OBJ counts from 1", export_again);
     const std::int64_t index = is_negative ? static_cast<std::int64_t>(count) - value : value - 1;
     if (index < 0)
       refuse("a face names " + std::string(kind.name) + " " + std::string(digits) + " of " + std::to_string(count) +
                  " before it",
-             "numbers from -" + std::to_string(count), remedy);
+             "numbers from -" + std::to_string(count), export_again);
     if (index >= SourceMesh::none) refuse_missing(lines_.line(), kind, std::string(digits), count_statements(kind));
     return static_cast<std::uint32_t>(index);
   }
@@ -278,23 +276,23 @@ class ObjReader {
   [[noreturn]] void refuse_word(std::string_view word, const char* what) const {
     const bool has_comma = word.find(',') != std::string_view::npos;
     refuse(shown(word) + " for " + what, has_comma ? "a number with a decimal point" : "a number",
-           has_comma ? "export the mesh again with decimal points" : remedy);
+           has_comma ? "export the mesh again with decimal points" : export_again);
   }
 
   [[noreturn]] void refuse_corner(std::string_view word) const {
-    refuse(shown(word) + " in a face", "VERTEX, VERTEX/UV, VERTEX//NORMAL or VERTEX/UV/NORMAL", remedy);
+    refuse(shown(word) + " in a face", "VERTEX, VERTEX/UV, VERTEX//NORMAL or VERTEX/UV/NORMAL", export_again);
   }
 
   [[noreturn]] void refuse_few(std::size_t count, const std::string& what, const std::string& expected,
                                const std::string& of = "number") const {
-    if (lines_.is_cut_off()) refuse("is truncated within " + what, expected, remedy);
-    refuse(what + " of " + counted(count, of), expected, remedy);
+    if (lines_.is_cut_off()) refuse("is truncated within " + what, expected, export_again);
+    refuse(what + " of " + counted(count, of), expected, export_again);
   }
 
   [[noreturn]] void refuse_missing(std::uint32_t line, const Kind& kind, const std::string& index,
                                    std::size_t count) const {
     throw BadInput(place(line), "a face names " + std::string(kind.name) + " " + index + " of " + std::to_string(count),
-                   "numbers up to " + std::to_string(count), remedy);
+                   "numbers up to " + std::to_string(count), export_again);
   }
 
   [[noreturn]] void refuse_no_faces() const {
@@ -303,7 +301,7 @@ class ObjReader {
     if (lines_of_shape_ > 0) found += ", " + counted(lines_of_shape_, "line");
     if (points_of_shape_ > 0) found += ", " + counted(points_of_shape_, "point statement");
     if (surfaces_ > 0) found += ", " + counted(surfaces_, "free-form surface");
-    throw BadInput(file_.string(), found, "a mesh of triangles or polygons", remedy);
+    throw BadInput(file_.string(), found, "a mesh of triangles or polygons", export_again);
   }
 
   [[noreturn]] void refuse_place(std::size_t index, std::uint32_t face_line) const {
@@ -317,9 +315,9 @@ class ObjReader {
     for (std::string_view statement; lines.next(statement);) {
       std::string_view rest = statement;
       if (is_keyword(next_word(rest), "v") && index-- == 0)
-        throw BadInput(place(lines.line()), "vertex " + shown(trimmed(rest)) + " " + found, expected, remedy);
+        throw BadInput(place(lines.line()), "vertex " + shown(trimmed(rest)) + " " + found, expected, export_again);
     }
-    throw BadInput(file_.string(), "a vertex " + found, expected, remedy);
+    throw BadInput(file_.string(), "a vertex " + found, expected, export_again);
   }
 
   std::size_t count_statements(const Kind& kind) const {

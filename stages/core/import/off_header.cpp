@@ -7,15 +7,13 @@
 #include <algorithm>
 
 #include "base/errors.h"
+#include "import/readers.h"
 #include "import/text_lines.h"
 #include "import/text_words.h"
 
 namespace kiln {
 
 namespace {
-
-constexpr char remedy[] = "export the mesh again";
-constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
 class HeaderReader {
  public:
@@ -92,9 +90,9 @@ class HeaderReader {
     const auto count = parse_integer(word);
     if (count && *count >= 0) return static_cast<std::uint64_t>(*count);
     if (word.empty())
-      throw BadInput(file_, "is truncated: it ends before the number of " + name, "a whole OFF file", remedy);
+      throw BadInput(file_, "is truncated: it ends before the number of " + name, "a whole OFF file", export_again);
     throw BadInput(words_.where(), "the number of " + name + " is " + in_quotes(word), "a whole number, 0 or more",
-                   remedy);
+                   export_again);
   }
 
   void read_counts(std::string_view word) {
@@ -110,7 +108,8 @@ class HeaderReader {
     else if (one_a_line)
       skip_edges_line();
     if (!words_.next_on_line().empty())
-      throw BadInput(words_.where(), "more than three numbers", "the numbers of vertices, faces and edges", remedy);
+      throw BadInput(words_.where(), "more than three numbers", "the numbers of vertices, faces and edges",
+                     export_again);
   }
 
   /// Skips a line of one number, the number of edges.

@@ -5,16 +5,11 @@
 #include <cmath>
 
 #include "base/errors.h"
+#include "import/readers.h"
 #include "import/stored_colors.h"
 #include "import/text_words.h"
 
 namespace kiln {
-
-namespace {
-
-constexpr char remedy[] = "export the mesh again";
-
-}  // namespace
 
 OffMesh::OffMesh(const std::filesystem::path& file, const OffHeader& header, std::size_t byte_count)
     : path_(file), file_(file.string()), header_(header) {
@@ -51,7 +46,7 @@ void OffMesh::begin_face(double corner_count, std::size_t room, std::uint32_t li
   mesh_.faces.push_back(face);
   const auto name = [&] { return face_name(mesh_.faces.size() - 1); };
   if (!(corner_count >= 3) || corner_count != std::trunc(corner_count))
-    throw BadInput(where(), name() + " has fewer than three corners", "three corners or more", remedy);
+    throw BadInput(where(), name() + " has fewer than three corners", "three corners or more", export_again);
   if (corner_count > static_cast<double>(room)) throw_truncated(name());
   if (mesh_.corners.size() + static_cast<std::size_t>(corner_count) >= SourceMesh::none)
     throw BadInput(where(), name() + " is beyond 4294967294 corners", "fewer corners", "split the mesh");
@@ -64,7 +59,7 @@ void OffMesh::add_corner(double index) {
                    face_name(mesh_.faces.size() - 1) + " refers to the vertex of index " +
                        std::to_string(static_cast<std::int64_t>(index)),
                    "an index from 0 to below " + std::to_string(mesh_.places.size()) + ", the number of vertices",
-                   remedy);
+                   export_again);
   mesh_.corners.push_back({.place = static_cast<std::uint32_t>(index)});
   ++mesh_.faces.back().corner_count;
 }
@@ -78,7 +73,7 @@ std::string OffMesh::face_name(std::size_t face) const {
 }
 
 void OffMesh::throw_truncated(const std::string& name) const {
-  throw BadInput(file_, "is truncated: it ends before or within " + name, "a whole OFF file", remedy);
+  throw BadInput(file_, "is truncated: it ends before or within " + name, "a whole OFF file", export_again);
 }
 
 void OffMesh::take_colors() {
@@ -106,7 +101,7 @@ SourceMesh OffMesh::take() {
   if (mesh_.faces.empty())
     throw BadInput(file_, mesh_.places.empty() ? "has no faces" : "has points and no faces",
                    "a mesh of triangles or polygons",
-                   mesh_.places.empty() ? remedy : "make a mesh of the points first");
+                   mesh_.places.empty() ? export_again : "make a mesh of the points first");
   const double largest =
       largest_used_coordinate(file_, mesh_, [&](std::uint32_t place) { return vertex_name(mesh_, place); });
   mesh_.precision = header_.is_binary ? float_precision(largest) : text_precision.of(largest);

@@ -19,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char remedy[] = "export the mesh again";
-
 /// Words of a line, or of several, and their numbers.
 struct Words {
   std::vector<std::string_view> words;
@@ -82,7 +80,7 @@ class OffText {
     other_numbers_ += !is_color;
     if (header_.has_colors && (color_size < 3 || !is_color))
       throw BadInput(words_.where(), "a vertex of " + counted(line_.size(), "number", "numbers"),
-                     "its coordinates and three or four numbers of its colour", remedy);
+                     "its coordinates and three or four numbers of its colour", export_again);
   }
 
   void read_vertex_words() {
@@ -98,7 +96,7 @@ class OffText {
     const std::string where = words_.where(), name = mesh_.next_vertex_name();
     if (!words_.to_word()) mesh_.throw_truncated(name);
     throw BadInput(where, name + " has " + counted(line_.size(), "number", "numbers"),
-                   std::to_string(least) + " or more", remedy);
+                   std::to_string(least) + " or more", export_again);
   }
 
   void read_face() {
@@ -120,7 +118,7 @@ class OffText {
     const std::string where = words_.where(), name = mesh_.face_name(mesh_.face_count() - 1);
     if (!words_.to_word()) mesh_.throw_truncated(name);
     throw BadInput(where, name + " has too few indices", counted(static_cast<std::uint64_t>(count), "index", "indices"),
-                   remedy);
+                   export_again);
   }
 
   void add_face_color() {
@@ -180,7 +178,7 @@ class OffBinary {
   OffHeader read_counts(OffHeader header) {
     if (data_.size() < 12)
       throw BadInput(file_, "is truncated: it ends within the numbers of vertices, faces and edges", "a whole OFF file",
-                     remedy);
+                     export_again);
     const std::string_view all = data_;
     const auto read = [&](bool is_little) {
       is_little_ = is_little;
@@ -192,7 +190,7 @@ class OffBinary {
     };
     if (!read(false) && !read(true)) read(false);
     if ((header.vertex_count | header.face_count) > 0x7fffffff)
-      throw BadInput(file_, "a negative number of vertices or faces", "whole numbers, 0 or more", remedy);
+      throw BadInput(file_, "a negative number of vertices or faces", "whole numbers, 0 or more", export_again);
     return header;
   }
 
@@ -206,7 +204,7 @@ class OffBinary {
     const double size = next_integer();
     if (size < 0 || size > 4)
       throw BadInput(file_, name() + " has a colour of " + std::to_string(static_cast<int>(size)) + " numbers",
-                     "0, 1, 3 or 4 numbers", remedy);
+                     "0, 1, 3 or 4 numbers", export_again);
     if (static_cast<double>(data_.size()) < 4 * size) mesh_.throw_truncated(name());
     std::array<double, 4> color{};
     for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i) color[i] = next_float();
@@ -227,7 +225,7 @@ class OffBinary {
 
 SourceMesh read_off(const fs::path& file) {
   const std::string name = file.string(), text = read_text(file);
-  if (text.empty()) throw BadInput(name, "is empty", "a mesh of triangles or polygons", remedy);
+  if (text.empty()) throw BadInput(name, "is empty", "a mesh of triangles or polygons", export_again);
   const OffHeader header = read_off_header(name, text);
   const std::string_view data = std::string_view(text).substr(header.size);
   return header.is_binary ? OffBinary(file, name, header, data).read() : OffText(file, name, header, data).read();

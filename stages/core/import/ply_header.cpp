@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/errors.h"
+#include "import/readers.h"
 #include "import/text_lines.h"
 #include "import/text_words.h"
 
@@ -16,7 +17,6 @@ namespace kiln {
 
 namespace {
 
-constexpr char remedy[] = "export the mesh again";
 constexpr std::size_t most_properties = 1000;
 
 std::optional<PlyType> type_of(std::string_view name) {
@@ -48,19 +48,20 @@ class HeaderReader {
     }
     if (!has_format_)
       throw BadInput(file_, "the header has no line 'format'",
-                     "one such as 'format ascii 1.0' or 'format binary_little_endian 1.0'", remedy);
+                     "one such as 'format ascii 1.0' or 'format binary_little_endian 1.0'", export_again);
     find_data();
     return std::move(header_);
   }
 
  private:
   BadInput truncated() const {
-    return BadInput(file_, "is truncated in its header, which has no line 'end_header'", "a whole PLY file", remedy);
+    return BadInput(file_, "is truncated in its header, which has no line 'end_header'", "a whole PLY file",
+                    export_again);
   }
 
   BadInput fail(const std::string& found, const std::string& expected) const {
     if (lines_.rest().empty() && lines_.number() > 1) return truncated();
-    return BadInput(file_ + ":" + std::to_string(lines_.number()), found, expected, remedy);
+    return BadInput(file_ + ":" + std::to_string(lines_.number()), found, expected, export_again);
   }
 
   void check_first_line() {

@@ -25,7 +25,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char expected_mesh[] = "a mesh of triangles or polygons";
-constexpr char remedy[] = "export the mesh again";
 
 using Indices = std::vector<std::size_t>;
 
@@ -79,7 +78,7 @@ class PlyReader {
     rows_->finish(mesh_.warnings);
     if (mesh_.faces.empty())
       throw BadInput(file_, mesh_.places.empty() ? "has no faces" : "has points and no faces", expected_mesh,
-                     mesh_.places.empty() ? remedy : "make a mesh of the points first");
+                     mesh_.places.empty() ? export_again : "make a mesh of the points first");
     find_precision();
     finish_normals();
     finish_uvs();
@@ -107,7 +106,7 @@ class PlyReader {
       const auto index = element.find(name, false);
       if (!index)
         throw BadInput(where(element), std::string("the vertices have no ") + name, "properties x, y and z of vertices",
-                       remedy);
+                       export_again);
       found.push_back(*index);
     }
     return found;
@@ -154,7 +153,7 @@ class PlyReader {
   std::size_t corners_property(const PlyElement& element) const {
     if (const auto corners = find_corners(element)) return *corners;
     throw BadInput(where(element), "the element " + in_quotes(element.name) + " has no list of vertices",
-                   "a property 'list uchar int vertex_indices'", remedy);
+                   "a property 'list uchar int vertex_indices'", export_again);
   }
 
   FaceProperties face_properties(const PlyElement& element, std::vector<PlyUse>& uses) const {
@@ -208,14 +207,15 @@ class PlyReader {
     std::string text = std::to_string(index);
     if (index == std::trunc(index)) text.erase(text.find('.'));
     throw BadInput(where, name() + " refers to the vertex of index " + text,
-                   "an index from 0 to below " + std::to_string(vertex_count_) + ", the number of vertices", remedy);
+                   "an index from 0 to below " + std::to_string(vertex_count_) + ", the number of vertices",
+                   export_again);
   }
 
   template <class Name>
   void add_face(const std::vector<double>& corners, std::uint32_t line, const Name& name) {
     if (corners.size() < 3)
       throw BadInput(line == 0 ? file_ : file_ + ":" + std::to_string(line), name() + " has fewer than three corners",
-                     "three corners or more", remedy);
+                     "three corners or more", export_again);
     if (mesh_.corners.size() + corners.size() >= SourceMesh::none)
       throw BadInput(file_, name() + " is beyond 4294967294 corners", "fewer corners", "split the mesh");
     SourceMesh::Face face;
@@ -381,7 +381,7 @@ class PlyReader {
 
 SourceMesh read_ply(const fs::path& file) {
   const std::string text = read_text(file);
-  if (text.empty()) throw BadInput(file.string(), "is empty", expected_mesh, remedy);
+  if (text.empty()) throw BadInput(file.string(), "is empty", expected_mesh, export_again);
   return PlyReader(file, text).read();
 }
 

@@ -11,6 +11,7 @@
 
 #include "base/errors.h"
 #include "import/coordinates.h"
+#include "import/readers.h"
 #include "import/text_words.h"
 
 namespace kiln {
@@ -18,7 +19,6 @@ namespace kiln {
 namespace {
 
 constexpr char expected[] = "a whole PLY file";
-constexpr char remedy[] = "export the mesh again";
 
 class TextRows : public PlyRows {
  public:
@@ -72,7 +72,7 @@ class TextRows : public PlyRows {
     if (!word.empty()) return word;
     const std::string where = words_.where();
     if (!words_.to_word()) throw_truncated();
-    throw BadInput(where, row_name() + " has too few values", "a value for each property of the header", remedy);
+    throw BadInput(where, row_name() + " has too few values", "a value for each property of the header", export_again);
   }
 
   void end_line() {
@@ -268,12 +268,12 @@ std::string PlyRows::row_name() const {
 }
 
 void PlyRows::throw_truncated() const {
-  throw BadInput(file_, "is truncated: it ends before or within " + row_name(), expected, remedy);
+  throw BadInput(file_, "is truncated: it ends before or within " + row_name(), expected, export_again);
 }
 
 void PlyRows::check_list(double length, std::size_t size) const {
   const auto fail = [&](const std::string& found) {
-    return BadInput(file_, row_name() + " has a list of " + found, expected, remedy);
+    return BadInput(file_, row_name() + " has a list of " + found, expected, export_again);
   };
   if (!(length >= 0) || length != std::trunc(length)) throw fail("a negative or broken number of values");
   const double bytes = length * static_cast<double>(size);

@@ -12,6 +12,9 @@ namespace kiln {
 // what was expected and what to do; "truncated" appears only for files that end too early. What a reader ignores is in
 // `warnings`. Positions are read in double.
 
+/// Remedy that most faults of mesh files have.
+inline constexpr char export_again[] = "export the mesh again";
+
 SourceMesh read_obj(const std::filesystem::path& file);
 SourceMesh read_ply(const std::filesystem::path& file);
 SourceMesh read_stl(const std::filesystem::path& file);

@@ -24,9 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char expected_mesh[] = "a mesh of triangles";
-constexpr char remedy[] = "export the mesh again";
 constexpr std::size_t header_size = 84, record_size = 50;
-constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
 /// Tells whether a text begins with a word, in any case of letters.
 bool has_word(std::string_view text, std::string_view word) {
@@ -77,7 +75,7 @@ class StlText {
     if (word.front() == '#' || word.front() == ';' || word.starts_with("//")) return words_.skip_line();
     if (words_.rest().empty()) throw truncated();
     throw BadInput(words_.where(), "the unknown word " + in_quotes(word),
-                   "solid, facet normal, outer loop, vertex, endloop, endfacet or endsolid", remedy);
+                   "solid, facet normal, outer loop, vertex, endloop, endfacet or endsolid", export_again);
   }
 
   /// Skips a solid's name, which ends with its line, or before a facet on that line.
@@ -95,11 +93,12 @@ class StlText {
   BadInput truncated() const {
     return BadInput(file_,
                     "is truncated: it ends within facet " + std::to_string(mesh_.faces.size() + (has_loop_ ? 0 : 1)),
-                    "a whole STL file", remedy);
+                    "a whole STL file", export_again);
   }
 
   BadInput odd(const std::string& found) const {
-    return BadInput(words_.where(), found, "facet, outer loop, vertices, endloop and endfacet in this order", remedy);
+    return BadInput(words_.where(), found, "facet, outer loop, vertices, endloop and endfacet in this order",
+                    export_again);
   }
 
   void begin_facet() {
@@ -121,7 +120,7 @@ class StlText {
     for (double& value : place) {
       const std::string_view word = words_.next_on_line();
       if (word.empty() && words_.rest().empty()) throw truncated();
-      if (word.empty()) throw BadInput(where, "a vertex of fewer than three numbers", "three numbers", remedy);
+      if (word.empty()) throw BadInput(where, "a vertex of fewer than three numbers", "three numbers", export_again);
       value = words_.number(word);
       precision_.add(word);
     }
@@ -133,7 +132,7 @@ class StlText {
     if (!in_facet_) throw odd("'endloop' outside of a facet");
     if (corners_.size() < 3)
       throw BadInput(words_.where(), "a facet of " + counted(corners_.size(), "vertex", "vertices"), "three vertices",
-                     remedy);
+                     export_again);
     if (mesh_.places.size() + corners_.size() >= SourceMesh::none)
       throw BadInput(words_.where(), "more than 4294967294 vertices", "fewer", "split the mesh");
     SourceMesh::Face face;
@@ -156,7 +155,7 @@ class StlText {
   }
 
   void check_places() {
-    if (mesh_.faces.empty()) throw BadInput(file_, "has no facets", expected_mesh, remedy);
+    if (mesh_.faces.empty()) throw BadInput(file_, "has no facets", expected_mesh, export_again);
     mesh_.is_unwelded = true;
     const double largest = largest_used_coordinate(file_, mesh_, [&](std::uint32_t place) {
       const auto after = std::ranges::upper_bound(mesh_.faces, place, {}, &SourceMesh::Face::first_corner);
@@ -211,7 +210,7 @@ class StlBinary {
       mesh_.faces[i].first_corner = static_cast<std::uint32_t>(3 * i);
       mesh_.faces[i].corner_count = 3;
     }
-    if (count_ == 0) throw BadInput(file_, "has no triangles", expected_mesh, remedy);
+    if (count_ == 0) throw BadInput(file_, "has no triangles", expected_mesh, export_again);
     mesh_.is_unwelded = true;
     mesh_.precision = float_precision(
         largest_used_coordinate(file_, mesh_, [&](std::uint32_t place) { return triangle_name(place / 3, count_); }));
@@ -226,7 +225,7 @@ class StlBinary {
       throw BadInput(
           file_, "is truncated: it has " + std::to_string(text_.size()) + " bytes",
           "84 bytes of header and 50 for each triangle of a binary STL file, or a text that begins with 'solid'",
-          remedy);
+          export_again);
     const std::uint64_t counted_there = little_endian<std::uint32_t>(text_.data() + 80);
     const std::size_t data = text_.size() - header_size, records = data / record_size;
     const std::string numbers = "its header counts " + counted(counted_there, "triangle", "triangles") +
@@ -240,8 +239,8 @@ class StlBinary {
       mesh_.warnings.push_back(numbers + ", all of which were taken");
       return records;
     }
-    if (counted_there > records) throw BadInput(file_, "is truncated: " + numbers, "a whole STL file", remedy);
-    if (counted_there == 0) throw BadInput(file_, numbers, "the number of triangles that follow", remedy);
+    if (counted_there > records) throw BadInput(file_, "is truncated: " + numbers, "a whole STL file", export_again);
+    if (counted_there == 0) throw BadInput(file_, numbers, "the number of triangles that follow", export_again);
     mesh_.warnings.push_back(counted(data - counted_there * record_size, "byte follows", "bytes follow") +
                              " the last of the " + counted(counted_there, "triangle", "triangles") +
                              " that the header counts and are not used");
@@ -310,7 +309,7 @@ bool is_binary(const std::string& file, std::string_view text) {
 
 SourceMesh read_stl(const fs::path& file) {
   const std::string name = file.string(), bytes = read_text(file);
-  if (bytes.empty()) throw BadInput(name, "is empty", expected_mesh, remedy);
+  if (bytes.empty()) throw BadInput(name, "is empty", expected_mesh, export_again);
   std::string_view text = bytes;
   if (is_binary(name, text.starts_with(byte_order_mark) ? text.substr(byte_order_mark.size()) : text))
     return StlBinary(file, name, text).read();

@@ -10,8 +10,6 @@ namespace kiln {
 
 namespace {
 
-constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-
 /// Returns a word without the plus sign before its number, which from_chars does not accept.
 std::string_view without_plus(std::string_view word) {
   const bool has_plus = word.size() > 1 && word[0] == '+' && word[1] != '-' && word[1] != '+';

@@ -8,6 +8,9 @@
 
 namespace kiln {
 
+/// Bytes that some programs write before a text in UTF-8.
+inline constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+
 /// Lines of a text, ended by a line feed, a carriage return or both. A byte order mark is skipped.
 class TextLines {
  public:
@@ -32,6 +35,9 @@ class TextLines {
 
 /// Tells whether a character separates words: space, tab, form feed, vertical tab or carriage return.
 constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\f' || c == '\v' || c == '\r'; }
+
+/// Returns a letter of ASCII in lower case, and any other character as it is.
+constexpr char in_lower_case(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 /// Removes the next word from a line; blanks are spaces, tabs, form feeds and vertical tabs. Empty where there is none.
 std::string_view next_word(std::string_view& line);

@@ -7,8 +7,6 @@ namespace kiln {
 
 namespace {
 
-constexpr char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
 /// Tells whether the # at `position` belongs to "1.#INF", "1.#IND", "1.#QNAN" or "1.#SNAN".
 bool is_no_number(std::string_view line, std::size_t position) {
   if (position == 0 || line[position - 1] != '.') return false;
@@ -49,7 +47,7 @@ void WavefrontLines::join(std::string_view& statement) {
 
 bool is_keyword(std::string_view word, std::string_view lower_case) {
   return word.size() == lower_case.size() &&
-         std::equal(word.begin(), word.end(), lower_case.begin(), [](char a, char b) { return lower(a) == b; });
+         std::equal(word.begin(), word.end(), lower_case.begin(), [](char a, char b) { return in_lower_case(a) == b; });
 }
 
 std::string_view without_comment(std::string_view numbers) {
