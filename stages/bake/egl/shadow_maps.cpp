@@ -12,8 +12,6 @@ namespace kiln {
 
 namespace {
 
-constexpr GLsizei most_draw_triangles = 16'000'000;  // in one submission: a few tens of milliseconds on hardware
-
 constexpr GLuint no_triangle = ~0u;
 
 GLenum depth_format(ShadowDepth depth) {

@@ -7,6 +7,9 @@
 
 namespace kiln {
 
+/// Triangles to draw in one submission, at most: hardware takes a few tens of milliseconds for them.
+inline constexpr int most_draw_triangles = 16'000'000;
+
 /// Frame of one direction as shaders/bake_views.glsl has it (std430).
 struct View {
   Eigen::Vector4f row_u, row_v, row_depth;
