@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Draws the ball in out/bunny/prt by the lines of docs/guide/engine.md, and checks its pixels.
 
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <epoxy/egl.h>
-#include <epoxy/gl.h>
 #include <kiln/asset.h>
 #include <kiln/gl/renderer.h>
 #include <kiln/light.h>

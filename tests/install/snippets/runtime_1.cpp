@@ -12,8 +12,8 @@ int main() {
 #include "runtime_1.inc"
 
   const float brightest = *std::max_element(radiance.begin(), radiance.end());
-  // Texels are 64 x 64. The ball is white; what faces the light has its radiance, 1, and that of the ambient light, 0.1,
-  // up to a step of 8 bits in each of 9 planes.
+  // Texels are 64 x 64. The ball is white; what faces the light has its radiance, 1, and that of the ambient light,
+  // 0.1, up to a step of 8 bits in each of 9 planes.
   std::printf("%zu numbers, the brightest %.3f\n", radiance.size(), static_cast<double>(brightest));
   return radiance.size() == 3 * 64 * 64 && brightest > 1.07f && brightest < 1.11f ? 0 : 1;
 }
