@@ -46,7 +46,8 @@ void turn_and_scale(SourceMesh& source, const ImportSettings& settings) {
   const double factor = settings.factor();
   if (settings.up == UpAxis::plus_y && factor == 1) return;
   for (Eigen::Vector3d& place : source.places) place = factor * turned_upright(place, settings.up);
-  for (Eigen::Vector3f& normal : source.normals) normal = turned_upright(normal.cast<double>(), settings.up).cast<float>();
+  for (Eigen::Vector3f& normal : source.normals)
+    normal = turned_upright(normal.cast<double>(), settings.up).cast<float>();
   source.precision *= factor;
 }
 
