@@ -7,7 +7,7 @@
 
 #include "base/errors.h"
 #include "detail/detail_maps.h"
-#include "detail/seams.h"
+#include "detail/footprint.h"
 #include "gpu/program.h"
 #include "image/image_file.h"
 

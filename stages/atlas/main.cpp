@@ -6,6 +6,7 @@
 #include "base/asset_layout.h"
 #include "base/command_line.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "detail/asset_hints.h"
 #include "image/image_file.h"
 #include "import/import_mesh.h"

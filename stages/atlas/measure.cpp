@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "atlas/surface.h"
+#include "base/json.h"
 #include "mesh/same_position.h"
 #include "mesh/triangle_edges.h"
 #include "raycast/surface_transfer.h"

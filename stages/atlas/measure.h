@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "atlas/stretch.h"
-#include "base/options.h"
+#include "base/json_fwd.h"
 #include "mesh/triangle_mesh.h"
 #include "mesh/uv_raster.h"
 

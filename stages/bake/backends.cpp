@@ -22,8 +22,8 @@ namespace {
 /// directions are too wide for one search to settle many of them, and a pilot costs more than it saves.
 constexpr int enough_for_beams = 192;
 
-/// Directions as dense as those of the bake to come; of a bake to an error, whose number nobody knows, as those of
-/// most.
+/// Returns directions as dense as those of the bake; for a bake to a target error, whose number is not known yet, as
+/// dense as the most it may take.
 std::vector<Eigen::Vector3f> planned(const BakeSettings& settings) {
   constexpr int by_error = 1024;
   std::vector<Eigen::Vector3f> directions =

@@ -11,6 +11,7 @@
 #include "bake/bounce/receiver_albedo.h"
 #include "bake/integrate/integration.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/stopwatch.h"
 #include "sh/basis.h"
 
@@ -47,9 +48,9 @@ constexpr double direct_share = 0.3;
 
 /// Bakes some of the receivers and interpolates the others.
 AdaptiveReport bake_adaptively(const BakeJob& job, Integration& integration, TransferVectors& transfer) {
-  const TexelReceivers& receivers = job.receivers;
+  const ReceiverSet& receivers = job.receivers;
   const BakeSettings& settings = job.settings;
-  std::vector<std::uint8_t> known(receivers.texels.size(), 1);
+  std::vector<std::uint8_t> known(receivers.slots.size(), 1);
   for (std::uint32_t r : integration.tested()) known[r] = 0;
   const BakeSome bake_some = [&](std::span<const std::uint32_t> some) {
     std::vector<Eigen::Vector3f> positions, normals;
@@ -92,7 +93,7 @@ BakeResult bake(const BakeJob& job) {
   Integration integration(direct);
   if (job.settings.bounces.any()) integration.keep_blocked(memory);
   const TransferWork before = integration.engine().work();
-  TransferVectors transfer(job.receivers.texels.size(), coefficient_count(job.settings.bands));
+  TransferVectors transfer(job.receivers.slots.size(), coefficient_count(job.settings.bands));
   integration.put_unoccluded(transfer);
   std::optional<AdaptiveReport> adaptive;
   if (job.settings.adaptive > 0) adaptive = bake_adaptively(direct, integration, transfer);
@@ -121,7 +122,7 @@ BakeResult bake_shard(OutputSet& outputs, const Shard& shard, const BakeJob& job
 
 BakeResult merge_shards(const std::vector<fs::path>& folders, const BakeJob& given) {
   const Stopwatch stopwatch;
-  // Step 1: the first shard says how many directions there are, and what integrated them.
+  // Step 1: read from the first shard how many directions there are, and what integrated them.
   const Json first = read_sums(folders.front() / slab_name(0)).key;
   BakeJob job = given;
   BakeSettings& merged = job.settings;
@@ -136,9 +137,9 @@ BakeResult merge_shards(const std::vector<fs::path>& folders, const BakeJob& giv
   RayMemory memory(bounce_memory_share(merged));
   Integration integration(job);
 
-  // Step 2: slab after slab, add.
+  // Step 2: add the shards' sums, slab after slab.
   const int count = static_cast<int>(folders.size());
-  TransferVectors transfer(job.receivers.texels.size(), coefficient_count(merged.bands));
+  TransferVectors transfer(job.receivers.slots.size(), coefficient_count(merged.bands));
   integration.put_unoccluded(transfer);
   for (std::size_t slab = 0; slab < integration.slabs(); ++slab) {
     std::map<std::string, fs::path> seen;

@@ -9,7 +9,9 @@
 #include "bake/planes/vertex_planes.h"
 #include "bake/scene/vertex_receivers.h"
 #include "bake/verify.h"
+#include "base/command_line.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "detail/asset_hints.h"
 #include "detail/detail_maps.h"
 #include "import/import_mesh.h"
@@ -25,13 +27,13 @@ namespace {
 
 constexpr int default_size_texels = 512;
 
-/// The size that kiln-atlas packed for, from the record beside the atlas.
+/// Returns the size that kiln-atlas packed for, from the record beside the atlas.
 Extent packed_size(const fs::path& atlas) {
   const AssetHints hints = read_asset_hints(folder_of(atlas));
   return hints.width > 0 ? Extent(hints.width, hints.height) : Extent(default_size_texels);
 }
 
-/// Fills scene.occluders, with albedos where settings need them. Gives the meshes.
+/// Fills scene.occluders, with albedos where settings need them. Returns the meshes.
 std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSettings& settings, BakeScene& scene) {
   std::vector<TriangleMesh> meshes;
   std::vector<fs::path> files = paths.occluders;
@@ -66,7 +68,7 @@ std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSetti
     add_albedo(files[k].string(), load_albedo(imported[k], settings.material));
   for (ImportedMesh& mesh : imported) meshes.push_back(std::move(mesh.mesh));
 
-  // What stands around.
+  // Add the surroundings.
   scene.neighbours = settings.surroundings.neighbours;
   BoundingBox own;
   for (const TriangleMesh& mesh : meshes) own.merge(bounding_box(mesh));
@@ -95,7 +97,7 @@ void set_aside_buried(const BakePaths& paths, const BakeSettings& settings, Bake
          "as it is"});
 }
 
-/// Whether the transfer has it: then it must not be multiplied again, as if the surface were white.
+/// Tells whether the transfer includes the albedo: then it must not be multiplied again, as if the surface were white.
 bool has_albedo_within(const BakeSettings& settings) { return settings.bake_albedo || settings.subsurface.wanted(); }
 
 BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings) {
@@ -117,8 +119,8 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
                                      : receivers_on_vertices(scene.vertex_mesh);
   scene.receivers = std::move(vertices.receivers);
   if (on_high) scene.high_area = surface_area(occluders.front());
-  for (std::size_t r = 0; r < scene.receivers.texels.size(); ++r)
-    scene.vertex_mesh.normals[scene.receivers.texels[r]] = scene.receivers.normals[r];
+  for (std::size_t r = 0; r < scene.receivers.slots.size(); ++r)
+    scene.vertex_mesh.normals[scene.receivers.slots[r]] = scene.receivers.normals[r];
   set_aside_buried(paths, settings, scene);
   if (settings.bake_albedo) take_albedos(scene.receivers, scene.occluders);
   scene.vertex_metrics = {{"receiver_distance_largest", vertices.largest_distance},
@@ -144,7 +146,7 @@ Json describe_adaptive(const AdaptiveReport& report, int directions) {
           {"share_saved", all > 0 ? static_cast<double>(report.interpolated) / all : 0}};
 }
 
-/// What ranges.json is to say of the reflectance: that of the settings, else what the normals stage found.
+/// Returns the albedo for ranges.json: that of the settings, else what the normals stage found.
 PrtAlbedo shipped_albedo(const DetailMaps& detail, const MaterialSettings& material) {
   const auto given = material.albedo;
   if (given) return PrtAlbedo::of_constant({(*given)[0], (*given)[1], (*given)[2]});
@@ -165,7 +167,7 @@ Json describe_subsurface(const SubsurfaceReport& report) {
           {"seconds", report.seconds}};
 }
 
-/// Gives what came of storing and of the seams, for bake.json.
+/// Writes the planes of an atlas. Returns the metrics of storing and of the seams, for bake.json.
 Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeResult& result,
                     const BakeSettings& settings) {
   PrtDescription asset;
@@ -204,7 +206,7 @@ void BakeScene::add_warnings(const std::vector<std::string>& further) {
 }
 
 std::vector<std::string> direction_warnings(const BakeSettings& settings) {
-  const bool by_error = settings.max_error.wanted;  // of progressive directions as many as it takes
+  const bool by_error = settings.max_error.wanted;  // then directions are progressive, as many as it takes
   const int most = by_error ? settings.max_directions : settings.directions;
   const std::int64_t needed =
       directions_for_bands(by_error ? Sampling::progressive : settings.sampling, settings.bands);
@@ -220,7 +222,7 @@ BakeJob make_job(const BakeScene& scene, const BakeSettings& settings, const Com
 }
 
 BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) {
-  subsurface_profiles(settings.subsurface);  // says what does not go together before anything is baked
+  subsurface_profiles(settings.subsurface);  // throws before anything is baked, if settings do not go together
   if (settings.subsurface.wanted() && settings.bake_albedo)
     throw WrongUsage("subsurface: found --bake-albedo; expected one of them, the material has its own albedo");
   if (settings.bits != 8 && settings.bits != 16)
@@ -246,7 +248,7 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
                                                   : packed_size(paths.atlas);
     scene.receivers = receivers_on_low(atlas, size.width, size.height, detail ? &*detail : nullptr);
   }
-  if (scene.receivers.texels.empty())
+  if (scene.receivers.slots.empty())
     throw BadInput(paths.atlas.string(), "covers no texel", "an atlas packed for this size", "bake at a larger size");
 
   const std::vector<TriangleMesh> occluders = load_occluders(paths, settings, scene);
@@ -261,12 +263,12 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
 }
 
 Json describe_bake(const BakeScene& scene, const BakeResult& result) {
-  const double texel_directions = static_cast<double>(scene.receivers.texels.size()) * result.directions;
+  const double texel_directions = static_cast<double>(scene.receivers.slots.size()) * result.directions;
   const double integration_seconds = result.seconds - (result.subsurface ? result.subsurface->seconds : 0);
   Json metrics = {{"backend", backend_name(result.backend)},
                   {"renderer", result.renderer},
                   {"software_renderer", result.software_renderer},
-                  {"texels", scene.receivers.texels.size() + scene.buried.buried},
+                  {"texels", scene.receivers.slots.size() + scene.buried.buried},
                   {"buried_texels", scene.buried.buried},
                   {"moved_texels", scene.buried.moved},
                   {"directions", result.directions},
@@ -294,14 +296,14 @@ Json describe_bake(const BakeScene& scene, const BakeResult& result) {
                           {"kept_bytes", bounces.kept_bytes}};
     if (bounces.floor > 0) metrics["bounces"]["floor"] = bounces.floor;
   }
-  // Shares of all pairs of a texel and a direction.
+  // Count shares of all pairs of a texel and a direction.
   const auto all = static_cast<double>(result.work.pairs);
   const auto share = [&](std::uint64_t pairs) { return all > 0 ? static_cast<double>(pairs) / all : 0; };
-  metrics["skipped"] = {{"unoccluded_texels",
-                         static_cast<double>(result.unoccluded) / static_cast<double>(scene.receivers.texels.size())},
-                        {"behind_tiles", share(result.work.behind_tiles)},
-                        {"lit_tiles", share(result.work.lit_tiles)},
-                        {"shadowed_tiles", share(result.work.shadowed_tiles)}};
+  metrics["skipped"] = {
+      {"unoccluded_texels", static_cast<double>(result.unoccluded) / static_cast<double>(scene.receivers.slots.size())},
+      {"behind_tiles", share(result.work.behind_tiles)},
+      {"lit_tiles", share(result.work.lit_tiles)},
+      {"shadowed_tiles", share(result.work.shadowed_tiles)}};
   metrics["single_rays"] = share(result.work.single_rays);
   metrics["ambiguous"] = share(result.work.ambiguous);
   metrics["refined"] = share(result.work.refined);
@@ -334,7 +336,7 @@ Json describe_verification(const BakeVerification& verification) {
 Json save_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeResult& result,
                const BakeSettings& settings, const CommandLine& command) {
   std::vector<TransferVectors> stored;
-  Json places;  // what they are and how many
+  Json places;  // metrics of the texels or vertices
   if (settings.per_vertex) {
     const std::vector<std::uint32_t> sources =
         write_vertex_planes(outputs, result.channels, scene.receivers, scene.vertex_mesh, settings.bits, scene.albedo);
@@ -343,7 +345,7 @@ Json save_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scen
     places.update(scene.vertex_metrics);
   } else {
     places = write_textured(outputs, paths, scene, result, settings);
-    stored = read_transfer(outputs.staging(), scene.receivers.texels);
+    stored = read_transfer(outputs.staging(), scene.receivers.slots);
     places.update({{"width", scene.receivers.width}, {"height", scene.receivers.height}});
   }
 

@@ -7,9 +7,11 @@
 #include "asset/prt_asset.h"
 #include "bake/bake.h"
 #include "bake/scene/buried_receivers.h"
-#include "base/command_line.h"
+#include "base/json.h"
 
 namespace kiln {
+
+class CommandLine;
 
 /// Files of a bake.
 struct BakePaths {
@@ -22,7 +24,7 @@ struct BakePaths {
 /// Loaded inputs of a bake.
 struct BakeScene {
   TriangleMesh atlas;  ///< empty in a bake per vertex
-  TexelReceivers receivers;
+  ReceiverSet receivers;
   Occluders occluders;
   std::vector<std::filesystem::path>
       further_files;                    ///< other files that were read: neighbours, and files of meshes' albedo

@@ -6,7 +6,7 @@
 
 #include "bake/bake_settings.h"
 #include "bake/scene/occluders.h"
-#include "bake/scene/texel_receivers.h"
+#include "bake/scene/receiver_set.h"
 #include "base/progress.h"
 
 namespace kiln {
@@ -29,7 +29,7 @@ struct Checkpoints {
 
 /// A bake: what receives light, what shadows it, and how. The receivers and occluders outlive the job.
 struct BakeJob {
-  const TexelReceivers& receivers;
+  const ReceiverSet& receivers;
   const Occluders& occluders;
   BakeSettings settings = {};
   int seed = 0;

@@ -6,6 +6,7 @@
 
 #include "bake/subsurface/subsurface.h"
 #include "base/asset_layout.h"
+#include "base/command_line.h"
 #include "base/errors.h"
 
 namespace kiln {

@@ -9,7 +9,7 @@ namespace kiln {
 
 namespace {
 
-/// Light that bounces, and what it bounces off.
+/// Adds the options of light that bounces, and of what it bounces off.
 void add_bounce_options(OptionSet& options, BakeSettings& settings) {
   add_bounces_option(
       options, settings.bounces,
@@ -34,7 +34,7 @@ void add_bounce_options(OptionSet& options, BakeSettings& settings) {
       .affects(Affects::storing);
 }
 
-/// How the EGL engine decides visibility; shadow_settings.h has what each means.
+/// Adds the options of how the EGL engine decides visibility, which shadow_settings.h explains.
 void add_shadow_options(OptionSet& options, BakeSettings& settings) {
   ShadowMapSettings& shadows = settings.shadows;
   options
@@ -103,7 +103,7 @@ std::string backend_name(BakeBackend backend) {
 
 namespace {
 
-/// Directions, engine, receivers, and how coefficients are stored.
+/// Adds the options of directions, engine, receivers, and storing.
 void add_main_options(OptionSet& options, BakeSettings& settings) {
   options.integer("bands", settings.bands, 1, 24, "Bands of spherical harmonics; n bands have n*n coefficients")
       .affects(Affects::sums)

@@ -19,7 +19,7 @@ constexpr const char* metric_names =
     "ambiguous refined quantisation_error width height seams.edges seams.seam_mismatch_mean_before "
     "seams.seam_mismatch_max_before seams.seam_mismatch_mean seams.seam_mismatch_max seams.change";
 
-/// The last four are left out where the reference shares what it measures.
+/// Metrics of --verify-directions; the last four are left out where the reference shares what it measures.
 constexpr const char* names_of_verification =
     "verification.backend_texels verification.backend_difference verification.backend_difference_uncertainty "
     "verification.reference_directions verification.reference_texels verification.integration_error "
@@ -39,7 +39,7 @@ constexpr const char* names_of_adaptive =
     "adaptive.rounds adaptive.baked_texels adaptive.interpolated_texels adaptive.texel_directions_saved "
     "adaptive.share_saved";
 
-/// A metric that is there where a setting is not what switches it off.
+/// Tells whether a condition holds for the settings of the bake, defaults included.
 template <class Is>
 bool holds(const AssetSettings& settings, const Is& is) {
   const auto given = settings.find("bake");
@@ -87,7 +87,7 @@ StageRun run(const AssetPlan& plan) {
   run.add_settings(options(), plan.settings_of("bake"));
   for (int i = 0; i < settings.bands * settings.bands; ++i) run.outputs.push_back(prt / plane_file(0, i));
   for (const char* name : {atlas_mesh_name, normal_map_name, ranges_name}) run.outputs.push_back(prt / name);
-  // A bake that interpolates texels does not go by blocks of directions, and has no checkpoints.
+  // Checkpoints are of blocks of directions, by which a bake that interpolates texels does not go.
   if (settings.adaptive == 0) run.checkpoint = layout::checkpoint_folder(prt);
   return run;
 }

@@ -2,6 +2,7 @@
 #include "bake/bake_files.h"
 #include "bake/bake_run.h"
 #include "base/command_line.h"
+#include "base/json.h"
 
 int main(int argc, char** argv) {
   return kiln::run_program("kiln-bake", [&] {

@@ -29,12 +29,12 @@ std::vector<TransferVectors> thin_out(const std::vector<TransferVectors>& channe
 }
 
 /// Returns every `step`-th receiver, without those that are filled.
-TexelReceivers thin_out(const TexelReceivers& receivers, std::size_t step) {
-  TexelReceivers thinned;
+ReceiverSet thin_out(const ReceiverSet& receivers, std::size_t step) {
+  ReceiverSet thinned;
   thinned.width = receivers.width;
   thinned.height = receivers.height;
-  for (std::size_t r = 0; r < receivers.texels.size(); r += step) {
-    thinned.texels.push_back(receivers.texels[r]);
+  for (std::size_t r = 0; r < receivers.slots.size(); r += step) {
+    thinned.slots.push_back(receivers.slots[r]);
     thinned.positions.push_back(receivers.positions[r]);
     thinned.normals.push_back(receivers.normals[r]);
     if (!receivers.albedos.empty()) thinned.albedos.push_back(receivers.albedos[r]);
@@ -87,12 +87,12 @@ BakeVerification verify(const BakeResult& result, const std::vector<TransferVect
   BakeVerification verification;
   const bool is_scattered = !result.arriving.empty();
   const std::vector<TransferVectors>& baked = is_scattered ? result.arriving : result.channels;
-  const std::size_t all = job.receivers.texels.size();
+  const std::size_t all = job.receivers.slots.size();
   const BakeSettings settings = settled(job.settings, result);
 
   // Step 1: another backend, over the very same directions.
   const std::size_t backend_step = step_to(all, compared_texels);
-  const TexelReceivers compared_receivers = thin_out(job.receivers, backend_step);
+  const ReceiverSet compared_receivers = thin_out(job.receivers, backend_step);
   BakeJob other{compared_receivers, job.occluders, settings, job.seed, job.threads};
   other.settings.backend = other_backend(result, job.settings);
   other.progress = part_of(job.progress, 0, backend_share);
@@ -106,13 +106,13 @@ BakeVerification verify(const BakeResult& result, const std::vector<TransferVect
 
   // Step 2: many rays, from some of the texels.
   const std::size_t step = step_to(all, static_cast<std::size_t>(settings.verify_texels));
-  const TexelReceivers some = thin_out(job.receivers, step);
+  const ReceiverSet some = thin_out(job.receivers, step);
   const BakeJob sampled{some, job.occluders, settings, job.seed, job.threads, {}, job.progress};
   const std::vector<TransferVectors> reference =
       reference_transfer(sampled, sample_directions(Sampling::fibonacci, settings.verify_directions, job.seed + 1u),
                          result.bounces.has_value());
   verification.reference_directions = settings.verify_directions;
-  verification.reference_texels = some.texels.size();
+  verification.reference_texels = some.slots.size();
   verification.integration_error = sampled_relative_l2(thin_out(baked, step), reference, all);
   if (is_scattered) return verification;
   verification.error = sampled_relative_l2(thin_out(stored, step), reference, all);

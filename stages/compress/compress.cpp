@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/stopwatch.h"
 #include "compress/compress_files.h"
 

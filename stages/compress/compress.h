@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "asset/prt_asset.h"
-#include "base/options.h"
+#include "base/json_fwd.h"
 #include "base/progress.h"
 #include "compress/compress_settings.h"
 

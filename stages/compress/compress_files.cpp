@@ -9,6 +9,7 @@
 
 #include "asset/write_asset.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/outputs.h"
 
 namespace kiln {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/command_line.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "compress/compress.h"
 #include "compress/compress_files.h"
 

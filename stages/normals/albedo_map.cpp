@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "base/json.h"
+#include "detail/seam_solver.h"
 #include "image/gutter.h"
 #include "image/srgb.h"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/options.h"
+#include "base/json_fwd.h"
 #include "detail/seam_choice.h"
 #include "detail/seams.h"
 #include "image/image.h"

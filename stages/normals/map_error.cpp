@@ -9,7 +9,7 @@
 #include <tbb/parallel_for.h>
 #include <vector>
 
-#include "detail/seams.h"
+#include "detail/footprint.h"
 #include "mesh/tangent_space.h"
 #include "normals/surface_match.h"
 #include "raycast/ray_scene.h"

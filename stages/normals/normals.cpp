@@ -11,7 +11,9 @@
 #include <tbb/parallel_for.h>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/stopwatch.h"
+#include "detail/seam_solver.h"
 #include "image/gutter.h"
 #include "image/srgb.h"
 #include "mesh/uv_raster.h"

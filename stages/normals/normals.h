@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "base/options.h"
+#include "base/json_fwd.h"
 #include "base/progress.h"
 #include "detail/asset_hints.h"
 #include "detail/detail_maps.h"

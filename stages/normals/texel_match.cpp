@@ -212,101 +212,137 @@ class AlbedoSamples {
   Image<float> lowest_, highest_;
 };
 
-}  // namespace
+/// Returns the length of a texel's side on a triangle of the atlas, object units.
+float texel_size_on(const TriangleMesh& atlas, const Triangle& t, int width, int height) {
+  const Eigen::Vector2f ab = atlas.uvs[t[1]] - atlas.uvs[t[0]], ac = atlas.uvs[t[2]] - atlas.uvs[t[0]];
+  const float uv_area =
+      std::abs(ab.x() * ac.y() - ab.y() * ac.x()) * static_cast<float>(width) * static_cast<float>(height);
+  const float area =
+      (atlas.positions[t[1]] - atlas.positions[t[0]]).cross(atlas.positions[t[2]] - atlas.positions[t[0]]).norm();
+  return uv_area > 0 ? std::sqrt(area / uv_area) : 0;
+}
 
-TexelMatches match_texels(const HighSurface& high, const TriangleMesh& atlas, const UvRaster& raster,
-                          const MatchLimits& limits, int samples, bool fit_one, const ProgressFunction& progress) {
-  const int width = raster.width, height = raster.height;
-  TexelMatches matches;
-  matches.position = Image<float>(width, height, 3);
-  matches.normal_object = Image<float>(width, height, 3);
-  if (!high.albedo.is_constant()) matches.albedo = Image<float>(width, height, 3);
-  matches.way = Image<std::uint8_t>(width, height, 1);
-  matches.known = raster;
-  std::vector<std::uint32_t> triangles;  // found by centres
-  triangles.resize(raster.texels.size(), SurfacePoint::none);
-
-  // Step 1: match centres, in groups of rows so that progress can be reported.
-  const double centres_part = samples > 1 ? 0.5 : 1;
-  std::vector<RowSums> rows(static_cast<std::size_t>(height));
+/// Matches all texels at their centres, in groups of rows so that progress can be reported. Sets the distances of
+/// `matches`, and `triangles` to the high triangle of each covered texel.
+void match_all_centres(const HighSurface& high, const TriangleMesh& atlas, const UvRaster& raster,
+                       const MatchLimits& limits, TexelMatches& matches, std::vector<std::uint32_t>& triangles,
+                       const ProgressFunction& progress) {
+  std::vector<RowSums> rows(static_cast<std::size_t>(raster.height));
   constexpr int group_rows = 32;
-  for (int begin = 0; begin < height; begin += group_rows) {
-    const int end = std::min(begin + group_rows, height);
+  for (int begin = 0; begin < raster.height; begin += group_rows) {
+    const int end = std::min(begin + group_rows, raster.height);
     tbb::parallel_for(begin, end, [&](int j) {
       rows[static_cast<std::size_t>(j)] = match_centres(j, high, atlas, raster, limits, matches, triangles);
     });
-    progress(centres_part * end / height);
+    progress(static_cast<double>(end) / raster.height);
   }
   for (const RowSums& row : rows) {
     matches.mean_distance += row.distance;
     matches.largest_distance = std::max(matches.largest_distance, row.largest_distance);
   }
   matches.mean_distance /= static_cast<double>(std::max<std::int64_t>(1, raster.covered_texels));
+}
 
-  keep_to_own_parts(high, atlas, raster,
-                    usual_distances * static_cast<float>(matches.mean_distance) + limits.surface_tolerance, matches,
-                    triangles);
-  match_ring(high, atlas, raster, limits, matches);
-  if (samples <= 1) {
-    if (fit_one) sharpen(matches.normal_object, raster, matches.known);
-    return matches;
+/// Matches several samples of each texel, band after band, and fits texels to them.
+class SampleMatcher {
+ public:
+  /// `triangles` has the high triangle of each covered texel's centre. All but `samples` outlive this.
+  SampleMatcher(const HighSurface& high, const TriangleMesh& atlas, const UvRaster& raster, const MatchLimits& limits,
+                int samples, const std::vector<std::uint32_t>& triangles)
+      : high_(high),
+        atlas_(atlas),
+        raster_(raster),
+        limits_(limits),
+        triangles_(triangles),
+        samples_(samples),
+        side_(static_cast<int>(std::lround(std::sqrt(samples)))),
+        walk_(high.mesh),
+        fit_(raster.width, raster.height, side_) {
+    if (!high.albedo.is_constant()) albedo_.emplace(raster.width, raster.height, side_);
   }
 
-  // Step 2: match samples.
-  const int side = static_cast<int>(std::lround(std::sqrt(samples)));
-  const SurfaceWalk walk(high.mesh);
-  const std::vector<Band> bands = bands_of(atlas, width, height, samples);
-  BilinearFit fit(width, height, side);
-  std::optional<AlbedoSamples> albedo;
-  if (!high.albedo.is_constant()) albedo.emplace(width, height, side);
-  const auto sample_band = [&](const Band& band, BilinearFit::Rows& rows_fit, BilinearFit::Rows* albedo_rows) {
-    const UvRaster fine = rasterise_band(atlas, band, width, height, side);
-    TexelSamples texel(high.mesh, high.scene, walk, atlas, limits, samples);
-    for (int j = band.begin; j < band.end; ++j)
-      for (int i = 0; i < width; ++i) {
-        const std::size_t index =
-            static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i);
-        float reach = 0;
-        if (const TexelSource& centre = raster.texels[index]; centre.covered()) {
-          // A sample's point is about as far away as the centre's.
-          const Triangle& t = atlas.triangles[centre.triangle];
-          const Eigen::Vector3f low_point = interpolate(atlas, atlas.positions, centre);
-          const Eigen::Vector2f ab = atlas.uvs[t[1]] - atlas.uvs[t[0]], ac = atlas.uvs[t[2]] - atlas.uvs[t[0]];
-          const float uv_area =
-              std::abs(ab.x() * ac.y() - ab.y() * ac.x()) * static_cast<float>(width) * static_cast<float>(height);
-          const float area = (atlas.positions[t[1]] - atlas.positions[t[0]])
-                                 .cross(atlas.positions[t[2]] - atlas.positions[t[0]])
-                                 .norm();
-          const float texel_size = uv_area > 0 ? std::sqrt(area / uv_area) : 0;
-          reach = (Pixel(matches.position.pixel(i, j).data()) - low_point).norm() + largest_step_texels * texel_size;
-        }
-        texel.start(triangles[index], reach);
-        for (int y = 0; y < side; ++y)
-          for (int x = 0; x < side; ++x)
-            if (const TexelSource& source = fine.at(i * side + x, (j - band.begin) * side + y); source.covered())
-              texel.add(y * side + x, source);
-        const TexelPoints& normals = texel.finish();
-        rows_fit.add(i, j, normals);
-        if (albedo_rows != nullptr) albedo->add(i, j, high.albedo, texel, normals, *albedo_rows);
+  /// Changes the normals and albedos of `matches`, whose centres are matched.
+  void run(TexelMatches& matches, const ProgressFunction& progress) {
+    const std::vector<Band> bands = bands_of(atlas_, raster_.width, raster_.height, samples_);
+    constexpr std::size_t group = 8;
+    for (std::size_t begin = 0; begin < bands.size(); begin += group) {
+      const std::size_t end = std::min(begin + group, bands.size());
+      std::vector<BilinearFit::Rows> sums, albedo_sums;
+      for (std::size_t k = begin; k < end; ++k) {
+        sums.emplace_back(fit_, bands[k].begin, bands[k].end);
+        if (albedo_) albedo_sums.emplace_back(albedo_->fit(), bands[k].begin, bands[k].end);
       }
-  };
-  constexpr std::size_t group = 8;
-  for (std::size_t begin = 0; begin < bands.size(); begin += group) {
-    const std::size_t end = std::min(begin + group, bands.size());
-    std::vector<BilinearFit::Rows> sums, albedo_sums;
-    for (std::size_t k = begin; k < end; ++k) {
-      sums.emplace_back(fit, bands[k].begin, bands[k].end);
-      if (albedo) albedo_sums.emplace_back(albedo->fit(), bands[k].begin, bands[k].end);
+      tbb::parallel_for(begin, end, [&](std::size_t k) {
+        sample_band(bands[k], matches.position, sums[k - begin], albedo_ ? &albedo_sums[k - begin] : nullptr);
+      });
+      for (const BilinearFit::Rows& part : sums) fit_.join(part);
+      for (const BilinearFit::Rows& part : albedo_sums) albedo_->fit().join(part);
+      progress(static_cast<double>(end) / static_cast<double>(bands.size()));
     }
-    tbb::parallel_for(begin, end, [&](std::size_t k) {
-      sample_band(bands[k], sums[k - begin], albedo ? &albedo_sums[k - begin] : nullptr);
-    });
-    for (const BilinearFit::Rows& part : sums) fit.join(part);
-    for (const BilinearFit::Rows& part : albedo_sums) albedo->fit().join(part);
-    progress(centres_part + (1 - centres_part) * static_cast<double>(end) / static_cast<double>(bands.size()));
+    fit_.solve(matches.normal_object, keep_centre);
+    if (albedo_) albedo_->solve(matches.albedo);
   }
-  fit.solve(matches.normal_object, keep_centre);
-  if (albedo) albedo->solve(matches.albedo);
+
+ private:
+  /// Returns how far a texel's samples may be from their high points: about as far as its centre, 0 if that is not
+  /// covered.
+  float reach(const TexelSource& centre, const Eigen::Vector3f& high_point) const {
+    if (!centre.covered()) return 0;
+    const Eigen::Vector3f low_point = interpolate(atlas_, atlas_.positions, centre);
+    const float texel_size = texel_size_on(atlas_, atlas_.triangles[centre.triangle], raster_.width, raster_.height);
+    return (high_point - low_point).norm() + largest_step_texels * texel_size;
+  }
+
+  void sample_band(const Band& band, Image<float>& positions, BilinearFit::Rows& rows, BilinearFit::Rows* albedo_rows) {
+    const UvRaster fine = rasterise_band(atlas_, band, raster_.width, raster_.height, side_);
+    TexelSamples texel(high_.mesh, high_.scene, walk_, atlas_, limits_, samples_);
+    for (int j = band.begin; j < band.end; ++j)
+      for (int i = 0; i < raster_.width; ++i) {
+        const std::size_t index =
+            static_cast<std::size_t>(j) * static_cast<std::size_t>(raster_.width) + static_cast<std::size_t>(i);
+        texel.start(triangles_[index], reach(raster_.texels[index], Pixel(positions.pixel(i, j).data())));
+        for (int y = 0; y < side_; ++y)
+          for (int x = 0; x < side_; ++x)
+            if (const TexelSource& source = fine.at(i * side_ + x, (j - band.begin) * side_ + y); source.covered())
+              texel.add(y * side_ + x, source);
+        const TexelPoints& normals = texel.finish();
+        rows.add(i, j, normals);
+        if (albedo_rows != nullptr) albedo_->add(i, j, high_.albedo, texel, normals, *albedo_rows);
+      }
+  }
+
+  const HighSurface& high_;
+  const TriangleMesh& atlas_;
+  const UvRaster& raster_;
+  const MatchLimits& limits_;
+  const std::vector<std::uint32_t>& triangles_;
+  int samples_, side_;
+  SurfaceWalk walk_;
+  BilinearFit fit_;
+  std::optional<AlbedoSamples> albedo_;
+};
+
+}  // namespace
+
+TexelMatches match_texels(const HighSurface& high, const TriangleMesh& atlas, const UvRaster& raster,
+                          const MatchLimits& limits, int samples, bool fit_one, const ProgressFunction& progress) {
+  TexelMatches matches;
+  matches.position = Image<float>(raster.width, raster.height, 3);
+  matches.normal_object = Image<float>(raster.width, raster.height, 3);
+  if (!high.albedo.is_constant()) matches.albedo = Image<float>(raster.width, raster.height, 3);
+  matches.way = Image<std::uint8_t>(raster.width, raster.height, 1);
+  matches.known = raster;
+
+  const double centres_part = samples > 1 ? 0.5 : 1;
+  std::vector<std::uint32_t> triangles(raster.texels.size(), SurfacePoint::none);
+  match_all_centres(high, atlas, raster, limits, matches, triangles, part_of(progress, 0, centres_part));
+  const float near_distance = usual_distances * static_cast<float>(matches.mean_distance) + limits.surface_tolerance;
+  keep_to_own_parts(high, atlas, raster, near_distance, matches, triangles);
+  match_ring(high, atlas, raster, limits, matches);
+  if (samples > 1)
+    SampleMatcher(high, atlas, raster, limits, samples, triangles).run(matches, part_of(progress, centres_part, 1));
+  else if (fit_one)
+    sharpen(matches.normal_object, raster, matches.known);
   return matches;
 }
 

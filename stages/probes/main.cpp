@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/command_line.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/stopwatch.h"
 #include "probes/probe_files.h"
 #include "probes/probe_points.h"

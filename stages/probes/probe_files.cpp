@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "base/command_line.h"
 #include "base/errors.h"
 #include "import/import_mesh.h"
 #include "material/load_albedo.h"

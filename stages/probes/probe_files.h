@@ -4,11 +4,12 @@
 #include <filesystem>
 #include <vector>
 
-#include "base/command_line.h"
 #include "material/scene_mesh.h"
 #include "probes/probes_settings.h"
 
 namespace kiln {
+
+class CommandLine;
 
 /// Loads meshes as one scene, with their albedo where light is to bounce, and adds warnings and the further files that
 /// were read to `command`. Throws BadInput, also for meshes that need a frame of their own (MeshFrame), and WrongUsage

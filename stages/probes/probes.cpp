@@ -9,7 +9,8 @@
 #include <numbers>
 #include <tbb/parallel_for.h>
 
-#include "probes/winding.h"
+#include "base/json.h"
+#include "mesh/winding.h"
 #include "raycast/ray_scene.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
@@ -160,7 +161,7 @@ ProbesResult probe_matrices(const TriangleMesh& mesh, const SurfaceLight& light,
   for (std::size_t first = 0; first < count; first += group_points) {
     tbb::parallel_for(first, std::min(count, first + group_points), [&](std::size_t k) {
       const Eigen::Vector3f& point = probes.positions[k];
-      if (box.contains(point) && winding_number(mesh, point) > inside_winding)
+      if (box.contains(point) && winding_number(mesh, point.cast<double>()) > inside_winding)
         probes.valid[k] = 0;
       else
         open[k] = looker.look(point, probes.channels, probes.matrices.data() + k * probes.entries());

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "asset/probe_set.h"
-#include "base/options.h"
+#include "base/json_fwd.h"
 #include "base/progress.h"
 #include "mesh/triangle_mesh.h"
 #include "probes/probes_settings.h"

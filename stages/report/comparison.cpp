@@ -5,6 +5,7 @@
 
 #include "base/asset_layout.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/process.h"
 #include "base/stopwatch.h"
 #include "image/image_file.h"
@@ -61,11 +62,8 @@ TriangleMesh surroundings_of(const AssetFolder& asset, const TriangleMesh& high)
     if (settings.contains(option.name)) option.set(settings.at(option.name).get<std::string>());
   surroundings.neighbours = bake.value("neighbours", surroundings.neighbours);
   TriangleMesh all;
-  for (const PlacedMesh& placed : load_surroundings(surroundings, bounding_box(high), {}, false, high.frame)) {
-    const auto count = static_cast<std::uint32_t>(all.positions.size());
-    all.positions.insert(all.positions.end(), placed.mesh.positions.begin(), placed.mesh.positions.end());
-    for (const Triangle& t : placed.mesh.triangles) all.triangles.push_back({count + t[0], count + t[1], count + t[2]});
-  }
+  for (const PlacedMesh& placed : load_surroundings(surroundings, bounding_box(high), {}, false, high.frame))
+    append(all, placed.mesh);
   return all;
 }
 

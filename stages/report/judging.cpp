@@ -3,6 +3,7 @@
 
 #include "base/errors.h"
 #include "base/file_names.h"
+#include "base/json.h"
 #include "report/verdicts.h"
 
 namespace kiln {

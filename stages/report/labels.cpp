@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <string_view>
 
+#include "base/json.h"
 #include "sh/light_spec.h"
 
 namespace kiln {
@@ -121,14 +122,13 @@ Unit unit_of(const std::string& key) {
   return Unit::plain;
 }
 
-/// Formats digits in groups of three, with narrow no-break spaces.
+}  // namespace
+
 std::string grouped(long long value) {
   std::string text = std::to_string(std::abs(value));
   for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) text.insert(at, "\u202f");
   return (value < 0 ? "−" : "") + text;
 }
-
-}  // namespace
 
 std::string rounded(double value, int digits) {
   if (!std::isfinite(value)) return "not finite";

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "base/options.h"
+#include "base/json_fwd.h"
 
 namespace kiln {
 
@@ -26,6 +26,9 @@ std::string metric_value(const std::string& key, const Json& value);
 
 /// Formats a number with `digits` significant digits, and with a minus sign.
 std::string rounded(double value, int digits);
+
+/// Formats a whole number with its digits in groups of three, between narrow no-break spaces, and with a minus sign.
+std::string grouped(long long value);
 
 /// Escapes the characters that HTML reserves.
 std::string escaped(const std::string& text);

@@ -3,6 +3,7 @@
 
 #include "base/command_line.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "report/report_files.h"
 
 int main(int argc, char** argv) {

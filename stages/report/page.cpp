@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/asset_layout.h"
+#include "base/json.h"
 #include "detail/texel_way.h"
 #include "report/labels.h"
 #include "report/page_style.h"

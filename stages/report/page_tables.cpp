@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "base/json.h"
 #include "report/labels.h"
 
 namespace kiln {

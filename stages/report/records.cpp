@@ -5,6 +5,7 @@
 
 #include "base/errors.h"
 #include "base/file_names.h"
+#include "base/json.h"
 #include "base/outputs.h"
 
 namespace kiln {

@@ -94,14 +94,6 @@ void add_samples(Image<float>& picture, const VisiblePoints& points, std::size_t
   }
 }
 
-TriangleMesh joined(const TriangleMesh& first, const TriangleMesh& second) {
-  TriangleMesh both{first.positions, first.triangles, {}, {}};
-  const auto count = static_cast<std::uint32_t>(first.positions.size());
-  both.positions.insert(both.positions.end(), second.positions.begin(), second.positions.end());
-  for (const Triangle& t : second.triangles) both.triangles.push_back({count + t[0], count + t[1], count + t[2]});
-  return both;
-}
-
 }  // namespace
 
 std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
@@ -114,7 +106,8 @@ std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const Ref
   std::size_t count = 0, done = 0;
   for (const VisiblePoints& points : places) count += points.positions.size();
 
-  const TriangleMesh occluders = joined(mesh, view.surroundings);
+  TriangleMesh occluders{mesh.positions, mesh.triangles, {}, {}};
+  append(occluders, view.surroundings);
   const RayScene scene(occluders);  // Embree's, not the beams that make bakes, so that the two do not share a fault
   const float ray_offset = rounding_offset(occluders.positions);  // as in kiln-bake
   const std::size_t groups = std::min(places.size(), directions.size());

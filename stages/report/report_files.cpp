@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/file_names.h"
+#include "base/json.h"
 #include "image/image_file.h"
 #include "report/page.h"
 

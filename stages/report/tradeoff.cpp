@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "report/labels.h"
 
 namespace kiln {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "base/json.h"
 #include "report/labels.h"
 
 namespace kiln {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "base/options.h"
+#include "base/json_fwd.h"
 
 namespace kiln {
 

@@ -64,7 +64,8 @@ class CostPolicy {
   virtual void update(const Profile& edge, VertexHandle kept) const = 0;
 };
 
-/// CGAL's Lindstrom and Turk, which keeps borders by itself; other features cost what the own engine has them cost.
+/// Placement and cost of [Lindstrom 1998] by CGAL, which keeps borders by itself; other features cost what they cost in
+/// Kiln's own engine.
 class LindstromTurkPolicy final : public CostPolicy {
  public:
   explicit LindstromTurkPolicy(const FeatureGraph& features) : features_(features) {}

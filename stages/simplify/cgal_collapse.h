@@ -12,8 +12,8 @@ namespace kiln {
 struct CgalSettings {
   CollapseCost cost = CollapseCost::lindstrom_turk;
   double max_normal_change = 90;  ///< degrees that one collapse may turn a triangle by, above 0 and at most 90
-  double envelope =
-      0;  ///< largest distance of the result from the input, a fraction of its box's diagonal; 0: no limit
+  /// Largest distance of the result from the input, a fraction of its box's diagonal; 0: no limit.
+  double envelope = 0;
 };
 
 /// Collapses edges of an oriented manifold by CGAL's Surface_mesh_simplification on an OpenMesh mesh, cheapest first,
@@ -21,12 +21,8 @@ struct CgalSettings {
 /// not used; the crease angle, feature edges and weights are. Refused are collapses that break the topology, turn a
 /// triangle too far (CGAL's Bounded_normal_change_filter, and max_normal_change), make one too thin for the file, join
 /// or shorten feature lines (borders among them), or leave the envelope (CGAL's Polyhedral_envelope). What is within
-/// the envelope stays there when positions are rounded to floats, and to the 16 bits of the file.
-///
-/// Lindstrom and Turk, "Fast and memory efficient polygonal simplification" (1998); Garland and Heckbert, "Surface
-/// simplification using quadric error metrics" (1997); Trettner and Kobbelt, "Fast and robust QEF minimization using
-/// probabilistic quadrics" (2020); Wang, Schneider, Hu, Attene and Panozzo, "Exact and efficient polyhedral envelope
-/// containment check" (2020).
+/// the envelope stays there when positions are rounded to floats, and to the 16 bits of the file. Costs are those of
+/// [Lindstrom 1998], [Garland 1997] and [Trettner 2020]; the envelope's prisms are tested by [Wang 2020].
 CollapseSequence collapse_by_cgal(TriangleMesh mesh, const CollapseSettings& settings, const CgalSettings& cgal,
                                   const ProgressFunction& progress = no_progress);
 

@@ -12,8 +12,7 @@
 namespace kiln {
 
 /// CGAL's polyhedral envelope of a mesh: a prism about each triangle that has area. Each contains all points within
-/// distance / sqrt(3) of its triangle, and none farther than distance. Wang, Schneider, Hu, Attene and Panozzo, "Exact
-/// and efficient polyhedral envelope containment check" (2020).
+/// distance / sqrt(3) of its triangle, and none farther than distance. Triangles are tested by [Wang 2020].
 class CgalEnvelope {
  public:
   /// Takes a mesh, the frame that triangles are asked about in, and a distance in that frame. The mesh must outlive

@@ -62,7 +62,7 @@ double squared_distance_to_segment(const Vector& p, const Vector& a, const Vecto
   return (p - a - at * along).squaredNorm();
 }
 
-/// State of one run of Lindstrom and Turk's collapses. An edge is known by its ends a and b; collapse.h has the
+/// State of one run of collapses by [Lindstrom 1998]. An edge is known by its ends a and b; collapse.h has the
 /// picture.
 class Collapser {
  public:

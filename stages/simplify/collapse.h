@@ -71,8 +71,8 @@ struct CollapseSettings {
 /// Collapses edges of an oriented manifold, cheapest first, until at most settings.faces triangles are left or no
 /// collapse is left that keeps the topology, folds nothing over, stays near the input and leaves no triangle too thin
 /// for the file. Feature edges (borders, creases and those given) are collapsed along their lines only; where these
-/// branch or end, the vertex stays. Lindstrom and Turk, "Fast and memory efficient polygonal simplification" (1998).
-/// Costs are computed when they are needed: an edge's is renewed when it is next in the queue.
+/// branch or end, the vertex stays. Places and costs are those of [Lindstrom 1998]. Costs are computed when they are
+/// needed: an edge's is renewed when it is next in the queue.
 CollapseSequence collapse_edges(TriangleMesh mesh, const CollapseSettings& settings,
                                 const ProgressFunction& progress = no_progress);
 

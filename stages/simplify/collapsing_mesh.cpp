@@ -67,7 +67,7 @@ void CollapsingMesh::feature_neighbours(std::uint32_t vertex, std::vector<std::u
 
 CollapsingMesh::Edge CollapsingMesh::edge(std::uint32_t a, std::uint32_t b) const {
   Edge edge;
-  // Link condition (Dey, Edelsbrunner, Guha and Nekhayev 1999): the vertices next to both ends are those of the
+  // Link condition [Dey 1999]: the vertices next to both ends are those of the
   // triangles on the edge.
   mark_now_ += 2;
   const std::uint32_t near_a = mark_now_, near_both = mark_now_ + 1;

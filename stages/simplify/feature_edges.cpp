@@ -13,14 +13,13 @@ namespace kiln {
 namespace {
 
 Eigen::Vector3d unit_normal(const TriangleMesh& mesh, std::uint32_t triangle) {
-  const auto at = [&](int k) { return mesh.positions[mesh.triangles[triangle][k]].cast<double>().eval(); };
-  return (at(1) - at(0)).cross(at(2) - at(0)).normalized();
+  return area_normal(mesh, mesh.triangles[triangle]).normalized();
 }
 
 /// Tells whether a mesh has a border. Around an inner vertex each neighbour follows one triangle and precedes another,
 /// so that the sums of both are the same; at a border they are not, but for one chance in 2^64.
 bool has_border(const TriangleMesh& mesh) {
-  const auto scattered = [](std::uint64_t value) {  // Steele, Lea and Flood 2014 (SplitMix)
+  const auto scattered = [](std::uint64_t value) {  // SplitMix64 [Steele 2014]
     value = (value + 1) * 0x9e3779b97f4a7c15u;
     value = (value ^ value >> 30) * 0xbf58476d1ce4e5b9u;
     value = (value ^ value >> 27) * 0x94d049bb133111ebu;

@@ -33,8 +33,7 @@ TriangleMesh in_frame(const TriangleMesh& mesh, const UnitFrame& frame) {
   return result;
 }
 
-/// Returns a number in [0, 1) for each i: the fractional parts of multiples of roots (Roberts, "The unreasonable
-/// effectiveness of quasirandom sequences", 2018).
+/// Returns a number in [0, 1) for each i: the fractional parts of multiples of roots [Roberts 2018].
 double quasi_random(std::size_t i, double step) {
   const double x = 0.5 + static_cast<double>(i + 1) * step;
   return x - std::floor(x);
@@ -104,10 +103,7 @@ int sample_count(const TriangleMesh& low, const TriangleMesh& high, const FitSet
 /// Returns the triangles' normals, as long as twice their areas.
 std::vector<Vector> triangle_normals(const TriangleMesh& mesh) {
   std::vector<Vector> normals;
-  for (const Triangle& t : mesh.triangles) {
-    const Vector a = mesh.positions[t[0]].cast<double>();
-    normals.push_back((mesh.positions[t[1]].cast<double>() - a).cross(mesh.positions[t[2]].cast<double>() - a));
-  }
+  for (const Triangle& triangle : mesh.triangles) normals.push_back(area_normal(mesh, triangle));
   return normals;
 }
 

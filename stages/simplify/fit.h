@@ -20,9 +20,8 @@ struct FitSettings {
 /// of either surface is projected to the other, and the positions that bring the pairs together along their directions
 /// are solved for. Samples count the more the farther they are, so that the largest distance falls too. No triangle
 /// turns over or gets thinner than a collapse may make it. `is_fixed` has an entry for each vertex of `low`: 1 where it
-/// stays; edges between such vertices stay, too. The result is never farther in root mean square. Hoppe, DeRose,
-/// Duchamp, McDonald and Stuetzle, "Mesh optimization" (1993), with the projections' planes in place of their points
-/// (Chen and Medioni 1992).
+/// stays; edges between such vertices stay, too. The result is never farther in root mean square. After [Hoppe 1993],
+/// with the projections' planes in place of their points [Chen 1992].
 TriangleMesh fit_to_surface(const TriangleMesh& low, const TriangleMesh& high, std::span<const std::uint8_t> is_fixed,
                             const FitSettings& settings = {}, const ProgressFunction& progress = no_progress);
 

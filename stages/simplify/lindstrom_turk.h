@@ -31,14 +31,13 @@ struct EdgeSurroundings {
 
 /// Finds where the edge's vertex goes. That place keeps the volume, and the area beside a line of feature edges; with
 /// the freedom left, it minimises the squares of the volumes and areas between before and after. In flat places it is
-/// the middle of the vertices around the edge, which `link` is called for only there. Nothing where no place is
-/// defined. Lindstrom and Turk, "Fast and memory efficient polygonal simplification" (1998), sections 4.1 to 4.5, with
-/// their angle of 1 degree between constraints.
+/// the middle of the vertices around the edge, which `link` is called for only there. Returns nothing where no place is
+/// defined. From [Lindstrom 1998], sections 4.1 to 4.5, with the angle of 1 degree between constraints given there.
 template <class Link>
 std::optional<Eigen::Vector3d> lindstrom_turk_placement(const EdgeSurroundings& edge, const Link& link);
 
-/// Computes the cost of moving the edge's vertex to `v`, volumes and feature edges weighted equally (section 4.6), in
-/// lengths to the power of 6.
+/// Computes the cost of moving the edge's vertex to `v`, volumes and feature edges weighted equally ([Lindstrom 1998],
+/// section 4.6), in lengths to the power of 6.
 double lindstrom_turk_cost(const EdgeSurroundings& edge, const Eigen::Vector3d& v);
 
 /// Linear equations for a point, three at most.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/json.h"
 #include "mesh/draco_file.h"
 #include "mesh/hard_edges.h"
 #include "mesh/mesh_components.h"

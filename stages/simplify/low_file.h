@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "base/options.h"
+#include "base/json_fwd.h"
 #include "mesh/mesh_repair.h"
 #include "mesh/nearest_surface.h"
 #include "mesh/triangle_mesh.h"

@@ -16,16 +16,12 @@ namespace kiln {
 namespace {
 
 /// Stages of a collapse, as multiples of the triangles wanted. `standard` collapses by quick quadrics down to
-/// quick_times of them, then by Lindstrom and Turk. From compared_times of them on, triangles are compared with the
+/// quick_times of them, then by collapse_edges. From compared_times of them on, triangles are compared with the
 /// input's surface.
 constexpr int quick_times = 3, compared_times = 3;
 
 int times(int factor, int faces) {
   return static_cast<int>(std::min<long long>(static_cast<long long>(factor) * faces, std::numeric_limits<int>::max()));
-}
-
-ProgressFunction part(const ProgressFunction& progress, double begin, double end) {
-  return [&progress, begin, end](double fraction) { progress(begin + (end - begin) * fraction); };
 }
 
 /// Reduction of one input, with what is known of it.
@@ -48,13 +44,13 @@ class Reducer {
     // Find where standard's steps are to begin, by a draft.
     int faces = 4;
     if (quality() == SimplifyQuality::standard && settings_.engine == SimplifyEngine::kiln) {
-      const CollapseSequence sequence = collapse(SimplifyQuality::draft, 4, true, part(progress, 0, 0.1));
-      faces = sequence.faces_after(count_within(sequence, part(progress, 0.1, 0.3)));
+      const CollapseSequence sequence = collapse(SimplifyQuality::draft, 4, true, part_of(progress, 0, 0.1));
+      faces = sequence.faces_after(count_within(sequence, part_of(progress, 0.1, 0.3)));
     }
     const bool fits = quality() == SimplifyQuality::best;
-    const CollapseSequence sequence = collapse(quality(), faces, true, part(progress, 0.3, fits ? 0.4 : 0.7));
-    const std::size_t count = count_within(sequence, part(progress, fits ? 0.4 : 0.7, fits ? 0.5 : 1));
-    return fits ? fitted_within(sequence, count, part(progress, 0.5, 1)) : unfitted(sequence, count);
+    const CollapseSequence sequence = collapse(quality(), faces, true, part_of(progress, 0.3, fits ? 0.4 : 0.7));
+    const std::size_t count = count_within(sequence, part_of(progress, fits ? 0.4 : 0.7, fits ? 0.5 : 1));
+    return fits ? fitted_within(sequence, count, part_of(progress, 0.5, 1)) : unfitted(sequence, count);
   }
 
  private:
@@ -80,11 +76,12 @@ class Reducer {
   /// distance is no larger than the draft's: unfitted, standard, fitted from either, or the draft itself. So best is
   /// never worse than draft.
   Reduced best_to_faces(const ProgressFunction& progress) const {
-    const CollapseSequence sequence = collapse(SimplifyQuality::best, settings_.faces, false, part(progress, 0, 0.1));
+    const CollapseSequence sequence =
+        collapse(SimplifyQuality::best, settings_.faces, false, part_of(progress, 0, 0.1));
     const std::size_t count = careful_count(sequence);
-    Reduced result = fitted(sequence, count, part(progress, 0.1, 0.8));
+    Reduced result = fitted(sequence, count, part_of(progress, 0.1, 0.8));
     const CollapseSequence draft_sequence =
-        collapse(SimplifyQuality::draft, settings_.faces, false, part(progress, 0.8, 0.85));
+        collapse(SimplifyQuality::draft, settings_.faces, false, part_of(progress, 0.8, 0.85));
     const std::size_t draft_count = careful_count(draft_sequence);
     Reduced draft = unfitted(draft_sequence, draft_count);
     const std::size_t most_faces = std::max(static_cast<std::size_t>(settings_.faces), result.mesh.triangles.size());
@@ -101,12 +98,12 @@ class Reducer {
       result = std::move(candidate);
     };
     const CollapseSequence standard_sequence =
-        collapse(SimplifyQuality::standard, settings_.faces, false, part(progress, 0.85, 0.87));
+        collapse(SimplifyQuality::standard, settings_.faces, false, part_of(progress, 0.85, 0.87));
     const std::size_t standard_count = careful_count(standard_sequence);
     consider(unfitted(sequence, count));
     consider(unfitted(standard_sequence, standard_count));
-    consider(fitted(standard_sequence, standard_count, part(progress, 0.87, 0.93)));
-    consider(fitted(draft_sequence, draft_count, part(progress, 0.93, 1)));
+    consider(fitted(standard_sequence, standard_count, part_of(progress, 0.87, 0.93)));
+    consider(fitted(draft_sequence, draft_count, part_of(progress, 0.93, 1)));
     consider(std::move(draft));
     return result;
   }
@@ -184,7 +181,7 @@ class Reducer {
       const double faces = sequence.faces_after(count);
       if (!(faces < good)) break;
       Reduced candidate =
-          fitted(sequence, count, part(progress, static_cast<double>(i) / most_fits, (i + 1.0) / most_fits));
+          fitted(sequence, count, part_of(progress, static_cast<double>(i) / most_fits, (i + 1.0) / most_fits));
       const double found = distance_(candidate.mesh).hausdorff;
       if (found <= settings_.max_error) {
         good = faces;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/stopwatch.h"
 #include "mesh/hard_edges.h"
 #include "mesh/nearest_surface.h"

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "base/options.h"
+#include "base/json_fwd.h"
 #include "base/progress.h"
 #include "mesh/mesh_distance.h"
 #include "mesh/mesh_repair.h"

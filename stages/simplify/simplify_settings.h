@@ -13,8 +13,8 @@ namespace kiln {
 /// Price of the result: how long Kiln's own engine may take.
 enum class SimplifyQuality {
   draft,     ///< collapses by quadrics, in rounds
-  standard,  ///< collapses by quadrics down to a few times the result, then by Lindstrom and Turk's costs
-  best       ///< collapses by Lindstrom and Turk's costs, then vertices and edges are fitted to the input
+  standard,  ///< collapses by quadrics down to a few times the result, then by costs of volume [Lindstrom 1998]
+  best       ///< collapses by costs of volume, then vertices and edges are fitted to the input
 };
 
 /// Weights of collapses, besides the change of shape.
@@ -31,11 +31,11 @@ enum class SimplifyEngine {
 
 /// Cost that CGAL's engine goes by, cheapest first.
 enum class CollapseCost {
-  lindstrom_turk,
-  plane,                  ///< Garland and Heckbert's quadrics of planes
-  triangle,               ///< Garland and Heckbert's quadrics of triangles, weighted by their squared areas
-  probabilistic_plane,    ///< Trettner and Kobbelt's quadrics of planes that are known up to noise
-  probabilistic_triangle  ///< Trettner and Kobbelt's quadrics of triangles that are known up to noise
+  lindstrom_turk,         ///< changes of volume and of border areas [Lindstrom 1998]
+  plane,                  ///< quadrics of planes [Garland 1997]
+  triangle,               ///< quadrics of triangles, weighted by their squared areas [Garland 1997]
+  probabilistic_plane,    ///< quadrics of planes that are known up to noise [Trettner 2020]
+  probabilistic_triangle  ///< quadrics of triangles that are known up to noise [Trettner 2020]
 };
 
 /// Settings of the stage.

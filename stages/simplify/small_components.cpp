@@ -26,11 +26,8 @@ std::vector<Component> measure(const TriangleMesh& mesh, const Components& compo
   const std::vector<BoundingBox> boxes = component_boxes(mesh, components);
   for (std::size_t i = 0; i < all.size(); ++i) all[i].size = boxes[i].diagonal();
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const Triangle& t = mesh.triangles[i];
     Component& component = all[components.of_triangle[i]];
-    const Eigen::Vector3d a = mesh.positions[t[0]].cast<double>();
-    component.area +=
-        0.5 * (mesh.positions[t[1]].cast<double>() - a).cross(mesh.positions[t[2]].cast<double>() - a).norm();
+    component.area += 0.5 * area_normal(mesh, mesh.triangles[i]).norm();
     ++component.triangles;
   }
   return all;

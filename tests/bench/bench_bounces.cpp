@@ -89,7 +89,7 @@ int main(int argc, char** argv) {
 
   kiln::BakeScene scene = kiln::load_bench_scene(asset, high);
   scene.occluders.albedos = {kiln::SurfaceAlbedo::constant({0.8f, 0.6f, 0.4f})};
-  std::printf("%zu texels, %d directions, %d coefficients, 3 channels; CPU seconds\n\n", scene.receivers.texels.size(),
+  std::printf("%zu texels, %d directions, %d coefficients, 3 channels; CPU seconds\n\n", scene.receivers.slots.size(),
               settings.directions, kiln::coefficient_count(settings.bands));
   std::printf(
       "| backend | direct | the points' direct | gather at texels | bounce 1 / direct | first gather at points | next "

@@ -72,8 +72,8 @@ BakeSettings parse(const std::string& text) {
 class Truth {
  public:
   Truth(const BakeScene& scene, int directions, std::size_t receivers, int threads)
-      : step_(std::max<std::size_t>(1, scene.receivers.texels.size() / receivers)) {
-    for (std::size_t r = 0; r < scene.receivers.texels.size(); r += step_) {
+      : step_(std::max<std::size_t>(1, scene.receivers.slots.size() / receivers)) {
+    for (std::size_t r = 0; r < scene.receivers.slots.size(); r += step_) {
       positions_.push_back(scene.receivers.positions[r]);
       normals_.push_back(scene.receivers.normals[r]);
     }
@@ -111,11 +111,11 @@ void run(const BakeScene& scene, const std::vector<Series>& list, const Truth& t
       BakeResult result;
       const Cost cost = cost_of([&] { result = bake({scene.receivers, scene.occluders, settings, seed, threads}); });
       const TransferVectors some = truth.sampled(result.channels.front());
-      const double pairs = static_cast<double>(scene.receivers.texels.size()) * result.directions;
+      const double pairs = static_cast<double>(scene.receivers.slots.size()) * result.directions;
       const double interpolated = result.adaptive ? static_cast<double>(result.adaptive->interpolated) : 0;
       std::printf("%s,%d,%.3f,%.3f,%.6f,%.6f,%.2f,%.3f\n", series.setting.c_str(), result.directions, cost.wall,
                   cost.cpu, relative_l2(some, truth.transfer()), expected_relighting_error(some, truth.transfer()),
-                  pairs / cost.wall / 1e6, 1 - interpolated / static_cast<double>(scene.receivers.texels.size()));
+                  pairs / cost.wall / 1e6, 1 - interpolated / static_cast<double>(scene.receivers.slots.size()));
       std::fflush(stdout);
     }
 }
@@ -152,7 +152,7 @@ int main(int argc, char** argv) {
     const BakeScene scene = load_bench_scene(asset, mesh_file);
     const Truth truth(scene, reference, static_cast<std::size_t>(sample), threads);
     std::fprintf(stderr, "%zu triangles, %zu receivers, reference of %d directions from %zu of them\n",
-                 scene.occluders.mesh.triangles.size(), scene.receivers.texels.size(), reference,
+                 scene.occluders.mesh.triangles.size(), scene.receivers.slots.size(), reference,
                  truth.transfer().receivers);
     run(scene, list, truth, threads);
   } catch (const std::exception& error) {

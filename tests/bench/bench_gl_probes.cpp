@@ -213,7 +213,7 @@ void run(const Options& options) {
   order_coherently(directions, block_directions);
   std::printf("%zu triangles%s, %zu receivers, %zu directions, %d coefficients, %s\n\n",
               scene.occluders.mesh.triangles.size(), scene.occluders.closed ? ", closed" : "",
-              scene.receivers.texels.size(), directions.size(), coefficients, EglContext().renderer().c_str());
+              scene.receivers.slots.size(), directions.size(), coefficients, EglContext().renderer().c_str());
   std::printf("Milliseconds per direction, wall (CPU):\n");
   std::printf("| depth map | depth probe | shading probe | engine | engine / probes | difference |\n");
   std::printf("|---|---|---|---|---|---|\n");

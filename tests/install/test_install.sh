@@ -58,6 +58,23 @@ examples/gl_viewer prt/ --picture ball.ppm
 tail -c +16 ball.ppm | od -An -v -tu1 -w3 | awk '{ if ($1 > 160) ++lit; if ($1 != 89) ++seen } END { print lit, seen
   exit !(lit > 17000 && seen > 55000 && seen < 68700) }' || fault "the picture's lit and seen pixels"
 
+# The C++ in pages of the documentation compiles and does what they say. A new block needs a program in snippets/.
+mkdir -p snippets out/bunny
+ln -s "$scratch/prt" out/bunny/prt
+blocks=0
+while IFS= read -r page; do
+  name=$(basename "$page" .md)
+  [ "$name" = README ] && name=$(basename "$(dirname "$page")")
+  awk -v name="snippets/$name" '/^```cpp$/ { file = name "_" ++blocks ".inc"; next } /^```/ { file = "" } file { print > file }' "$page"
+  blocks=$((blocks + $(grep -c '^```cpp$' "$page")))
+done < <(grep -rl '^```cpp$' "$source_folder" --include=*.md --exclude-dir=build --exclude-dir=out)
+[ "$blocks" -ge 2 ] && [ "$(find snippets -name '*.inc' | wc -l)" = "$blocks" ] || fault "found $blocks blocks of C++ in the documentation"
+cmake -S "$source_folder/tests/install/snippets" -B build_snippets -DSNIPPETS="$scratch/snippets" -DCMAKE_PREFIX_PATH="$scratch/prefix" > cmake.log
+cmake --build build_snippets > build.log || { cat build.log; fault "C++ in the documentation does not build"; }
+for snippet in snippets/*.inc; do
+  "build_snippets/$(basename "$snippet" .inc)" || fault "C++ in the documentation: $(basename "$snippet" .inc)"
+done
+
 # Libraries export the runtime only, and contain nothing under the GPL.
 for library in "$build_folder"/lib/libkiln-runtime*.so; do
   nm -DC --defined-only "$library" | grep " T " | grep -v "kiln::runtime" && fault "$library shows more than its headers"

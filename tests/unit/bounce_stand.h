@@ -55,11 +55,11 @@ struct BounceStand {
 
   /// Bakes the receivers, direct light and bounces.
   BakeResult bake(int seed = 1) const {
-    TexelReceivers texels{static_cast<int>(positions.size()), 1, {}, positions, normals};
-    for (std::uint32_t r = 0; r < positions.size(); ++r) texels.texels.push_back(r);
+    ReceiverSet set{static_cast<int>(positions.size()), 1, {}, positions, normals};
+    for (std::uint32_t r = 0; r < positions.size(); ++r) set.slots.push_back(r);
     BakeSettings own = settings;
     own.backend = backend;
-    return kiln::bake({texels, occluders, own, seed, 2});
+    return kiln::bake({set, occluders, own, seed, 2});
   }
 };
 

@@ -168,7 +168,7 @@ inline TriangleMesh wavy_sheet(int cells, int waves = 3, float amplitude = 0.05f
 }
 
 /// Makes a patch of a cylinder of radius 1 about the y axis, `height` high, covering `angle` radians, facing outwards.
-/// No normals, no uvs.
+/// Mesh without normals and uvs.
 inline TriangleMesh cylinder_patch(int cells, float height, float angle) {
   TriangleMesh mesh = plane(cells);
   mesh.normals.clear();

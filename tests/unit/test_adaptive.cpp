@@ -16,23 +16,21 @@ namespace {
 constexpr int bands = 3;
 constexpr int coefficients = bands * bands;
 
-/// A plane's texels, most of an atlas of 200 x 200.
-TexelReceivers plane_texels() { return receivers_on_low(shapes::plane(4, 2), 200, 200, nullptr); }
+/// Returns a plane's texels, most of an atlas of 200 x 200.
+ReceiverSet plane_texels() { return receivers_on_low(shapes::plane(4, 2), 200, 200, nullptr); }
 
-TransferVectors nothing(const TexelReceivers& receivers) {
-  return TransferVectors(receivers.texels.size(), coefficients);
-}
+TransferVectors nothing(const ReceiverSet& receivers) { return TransferVectors(receivers.slots.size(), coefficients); }
 
-std::vector<std::uint8_t> all_unknown(const TexelReceivers& receivers) {
-  return std::vector<std::uint8_t>(receivers.texels.size(), 0);
+std::vector<std::uint8_t> all_unknown(const ReceiverSet& receivers) {
+  return std::vector<std::uint8_t>(receivers.slots.size(), 0);
 }
 
 /// Makes open transfer minus the share `taken(position)` of it.
 template <class Taken>
-TransferVectors shadowed(const TexelReceivers& receivers, const Taken& taken) {
+TransferVectors shadowed(const ReceiverSet& receivers, const Taken& taken) {
   const ShBasis basis(bands);
   TransferVectors transfer = nothing(receivers);
-  for (std::size_t r = 0; r < receivers.texels.size(); ++r) {
+  for (std::size_t r = 0; r < receivers.slots.size(); ++r) {
     const std::vector<float> open = unoccluded_transfer(basis, receivers.normals[r]);
     for (int c = 0; c < coefficients; ++c)
       transfer.plane(c)[r] = open[c] - 0.5f * (c == 0 ? 0.282f : 0.1f) * taken(receivers.positions[r]);
@@ -58,22 +56,22 @@ struct Oracle {
 };
 
 TEST(Adaptive, SmoothShadowsTakeFewTexels) {
-  const TexelReceivers receivers = plane_texels();
+  const ReceiverSet receivers = plane_texels();
   const TransferVectors truth = shadowed(
       receivers, [](const Eigen::Vector3f& p) { return 0.5f + 0.5f * std::sin(3 * p.x()) * std::cos(2 * p.z()); });
   Oracle oracle{truth};
   TransferVectors transfer = nothing(receivers);
   const AdaptiveReport report = adaptive_transfer(receivers, all_unknown(receivers), oracle.function(), 0.01, transfer);
-  EXPECT_LT(oracle.asked, receivers.texels.size() / 2);
+  EXPECT_LT(oracle.asked, receivers.slots.size() / 2);
   EXPECT_EQ(oracle.asked, report.baked);
-  EXPECT_EQ(report.baked + report.interpolated, receivers.texels.size());
+  EXPECT_EQ(report.baked + report.interpolated, receivers.slots.size());
   EXPECT_LE(report.error, 0.01);
   EXPECT_LE(relative_l2(transfer, truth), 0.01);
 }
 
 TEST(Adaptive, TheErrorThatHeldOutTexelsTellIsTheError) {
   // An edge of a shadow, a few texels wide and slanted, so that errors are few and large: hard to see from a sample.
-  const TexelReceivers receivers = plane_texels();
+  const ReceiverSet receivers = plane_texels();
   const TransferVectors truth = shadowed(receivers, [](const Eigen::Vector3f& p) {
     return 1 / (1 + std::exp(-40 * (p.x() + 0.37f * p.z() + 0.2f * std::sin(5 * p.z()))));
   });
@@ -87,12 +85,12 @@ TEST(Adaptive, TheErrorThatHeldOutTexelsTellIsTheError) {
     ASSERT_GT(report.held_out, 500u);
     // 2,000 samples of which a few percent hold all error: some 15 % of a root mean square, and three of these.
     EXPECT_NEAR(error, report.error, 0.45 * report.error) << target;
-    EXPECT_LT(report.baked, receivers.texels.size() * 3 / 4) << target;
+    EXPECT_LT(report.baked, receivers.slots.size() * 3 / 4) << target;
   }
 }
 
 TEST(Adaptive, NoiseIsBakedWhole) {
-  const TexelReceivers receivers = plane_texels();
+  const ReceiverSet receivers = plane_texels();
   std::uint32_t state = 1;
   const TransferVectors truth = shadowed(receivers, [&](const Eigen::Vector3f&) {
     state = state * 1664525u + 1013904223u;
@@ -108,25 +106,25 @@ TEST(Adaptive, NoiseIsBakedWhole) {
 
 TEST(Adaptive, DetailOfNormalsStaysWithoutShadows) {
   // Open ground under a rough normal map: nothing is taken by shadows anywhere, so interpolation is exact.
-  TexelReceivers receivers = plane_texels();
-  for (std::size_t r = 0; r < receivers.texels.size(); ++r)
-    receivers.normals[r] = Eigen::Vector3f(0.2f * std::sin(0.9f * static_cast<float>(receivers.texels[r] % 200)), 1,
-                                           0.2f * std::cos(1.3f * static_cast<float>(receivers.texels[r] / 200)))
+  ReceiverSet receivers = plane_texels();
+  for (std::size_t r = 0; r < receivers.slots.size(); ++r)
+    receivers.normals[r] = Eigen::Vector3f(0.2f * std::sin(0.9f * static_cast<float>(receivers.slots[r] % 200)), 1,
+                                           0.2f * std::cos(1.3f * static_cast<float>(receivers.slots[r] / 200)))
                                .normalized();
   const TransferVectors truth = shadowed(receivers, [](const Eigen::Vector3f&) { return 0.f; });
   Oracle oracle{truth};
   TransferVectors transfer = nothing(receivers);
   adaptive_transfer(receivers, all_unknown(receivers), oracle.function(), 0.001, transfer);
   EXPECT_LT(relative_l2(transfer, truth), 1e-6);
-  EXPECT_LT(oracle.asked, receivers.texels.size() / 4);
+  EXPECT_LT(oracle.asked, receivers.slots.size() / 4);
 }
 
 TEST(Adaptive, KnownTexelsAreNotAskedFor) {
-  const TexelReceivers receivers = plane_texels();
+  const ReceiverSet receivers = plane_texels();
   const TransferVectors truth = shadowed(receivers, [](const Eigen::Vector3f&) { return 0.3f; });
   TransferVectors transfer = truth;
   Oracle oracle{truth};
-  const AdaptiveReport report = adaptive_transfer(receivers, std::vector<std::uint8_t>(receivers.texels.size(), 1),
+  const AdaptiveReport report = adaptive_transfer(receivers, std::vector<std::uint8_t>(receivers.slots.size(), 1),
                                                   oracle.function(), 0.01, transfer);
   EXPECT_EQ(oracle.asked, 0u);
   EXPECT_EQ(report.interpolated, 0u);
@@ -135,7 +133,7 @@ TEST(Adaptive, KnownTexelsAreNotAskedFor) {
 
 /// Bakes a ball over a floor with a real engine.
 struct Scene {
-  TexelReceivers receivers = plane_texels();
+  ReceiverSet receivers = plane_texels();
   Occluders occluders;
   BakeSettings settings;
 
@@ -159,7 +157,7 @@ TEST(Adaptive, EveryEngineBakesWithinTheTarget) {
     scene.settings.adaptive = 0.02;
     const BakeResult some = bake({scene.receivers, scene.occluders, scene.settings, 1, 0});
     ASSERT_TRUE(some.adaptive);
-    EXPECT_GT(some.adaptive->interpolated, scene.receivers.texels.size() / 10) << backend_name(backend);
+    EXPECT_GT(some.adaptive->interpolated, scene.receivers.slots.size() / 10) << backend_name(backend);
     // The target holds for the held-out sample; over all texels within the sample's own error.
     EXPECT_LT(relative_l2(some.channels, whole.channels), 0.02 * 1.3) << backend_name(backend);
   }

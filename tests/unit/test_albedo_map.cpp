@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "detail/detail_maps.h"
 #include "image/image_file.h"
 #include "image/srgb.h"

@@ -6,6 +6,7 @@
 #include "asset/prt_asset.h"
 #include "bake/planes/coefficient_planes.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/outputs.h"
 #include "compress/compress_files.h"
 #include "image/image_file.h"
@@ -31,10 +32,10 @@ class AssetAlbedo : public testing::Test {
     save_draco(outputs.add("atlas.drc"), mesh);
     if (!albedo.file.empty()) write_png(outputs.add(albedo.file), picture());
     const TriangleMesh atlas = load_atlas(outputs.staging() / "atlas.drc");
-    const TexelReceivers receivers = receivers_on_low(atlas, size, size, nullptr);
-    TransferVectors transfer(receivers.texels.size(), 4);
+    const ReceiverSet receivers = receivers_on_low(atlas, size, size, nullptr);
+    TransferVectors transfer(receivers.slots.size(), 4);
     for (int i = 0; i < 4; ++i)
-      for (std::size_t r = 0; r < receivers.texels.size(); ++r)
+      for (std::size_t r = 0; r < receivers.slots.size(); ++r)
         transfer.plane(i)[r] = 0.1f * static_cast<float>(i) + 0.001f * static_cast<float>(r % 17);
     write_planes(outputs, {transfer}, receivers, {.mesh_file = "atlas.drc", .albedo = albedo}, Seams(atlas, size, size),
                  SeamChoice::keep);

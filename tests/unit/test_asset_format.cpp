@@ -96,7 +96,7 @@ TEST(PlaneRange, StepsAndValuesAreOfOneFormula) {
   for (const int bits : {8, 16}) {
     EXPECT_EQ(range.store(-1, bits), 0u) << "clamped";
     EXPECT_EQ(range.store(1, bits), (1u << bits) - 1);
-    // A step is the difference of neighbours, up to rounding of doubles of about 1.
+    // Neighbours differ by a step, up to rounding of doubles of about 1.
     EXPECT_NEAR(range.recover(18, bits) - range.recover(17, bits), range.step(bits), 1e-15);
     const PlaneRange of_steps = PlaneRange::of_steps(range.lowest, range.step(bits), bits);
     EXPECT_NEAR(of_steps.highest, range.highest, 1e-15);

@@ -61,7 +61,7 @@ std::map<std::string, TriangleMesh> test_meshes() {
 
 /// Checks the rules of every atlas: each triangle once, nothing flipped, no overlap, the gutter kept.
 void expect_sound(const TriangleMesh& mesh, const AtlasResult& result, const AtlasSettings& settings) {
-  // Each triangle at its old place, with its old corners.
+  // Triangles keep their places and corners.
   ASSERT_EQ(result.mesh.triangles.size(), mesh.triangles.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     for (int k = 0; k < 3; ++k)

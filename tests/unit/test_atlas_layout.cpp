@@ -15,6 +15,7 @@
 #include "atlas/drawing.h"
 #include "atlas/keep_uv.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "import/uv_mesh.h"
 #include "mesh/uv_raster.h"
 #include "scratch.h"
@@ -273,7 +274,7 @@ TEST_F(AtlasLayout, NamesWhatIsWrongWithUvs) {
   const auto defects = [&](const std::string& faces) {
     return find_uv_defects(load_uv_mesh(file("mesh.obj", two_squares + faces)), settings);
   };
-  // Both squares on the first one's place.
+  // Both squares take the first one's place.
   const UvDefects overlap = defects("f 1/1 2/2 3/3 4/4\nf 2/1 5/2 6/3 3/4\n");
   EXPECT_NEAR(static_cast<double>(overlap.overlapping), std::pow(0.3 * 128, 2), 80);  // one row more or less
   EXPECT_EQ(overlap.mirrored_triangles, 0);

@@ -239,7 +239,7 @@ TEST(RangeCompression, RoundTripsWithinHalfAStep) {
     for (int k = 0; k <= 5000; ++k) {
       const float value =
           static_cast<float>(range.lowest + (static_cast<double>(range.highest) - range.lowest) * k / 5000);
-      // Half a step, and the rounding of the recovered value to float32.
+      // The error is half a step, and the rounding of the recovered value to float32.
       EXPECT_LE(std::abs(range.recover(range.store(value, bits), bits) - value), 0.5 * step + 3e-8);
     }
     EXPECT_EQ(range.store(range.lowest, bits), 0u);

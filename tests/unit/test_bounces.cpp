@@ -130,7 +130,7 @@ TEST_P(Bounces, BacksReflectNothing) {
 }
 
 TEST_P(Bounces, WhiteBowlInAFurnaceShinesAsTheFurnaceDoes) {
-  // A thick bowl of albedo 1 under a uniform sky: what its inside loses in shadow it gets back from itself, so that
+  // A thick bowl of albedo 1 under a uniform sky gets back from itself what its inside loses in shadow, so that
   // every point sends out 1 in the end. Energy is neither made nor lost.
   std::vector<Eigen::Vector2f> profile;
   constexpr int rows = 16;
@@ -395,7 +395,7 @@ TEST(SurfaceCache, CreasesStaySharp) {
   EXPECT_EQ(cache.size(), 24u);
   for (std::size_t p = 0; p < cache.size(); ++p) {
     EXPECT_NEAR(cache.point_normals[p].cwiseAbs().maxCoeff(), 1, 1e-6);
-    // On the triangle's own side, inside the border.
+    // The point is on the triangle's own side, inside the border.
     const Eigen::Vector3f out = (cache.point_positions[p] - Eigen::Vector3f::Constant(0.5f));
     EXPECT_NEAR(out.dot(cache.point_normals[p]), 0.5, 1e-6);
   }

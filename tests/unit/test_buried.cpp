@@ -9,8 +9,8 @@
 #include "bake/planes/coefficient_planes.h"
 #include "bake/scene/buried_receivers.h"
 #include "bake/scene/occluders.h"
-#include "bake/scene/texel_receivers.h"
-#include "detail/seams.h"
+#include "bake/scene/receiver_set.h"
+#include "detail/footprint.h"
 #include "image/gutter.h"
 #include "raycast/buried_test.h"
 #include "raycast/ray_transfer.h"
@@ -91,13 +91,13 @@ TEST(Buried, FurnitureInARoomIsNot) {
   const TriangleMesh room = turned(scaled(shapes::cube(2), {4, 4, 4})), box = shapes::cube(2);
   const TriangleMesh mesh = shapes::joined(box, room, {0, 0, 0});
   EXPECT_EQ(count_buried(mesh, points_on(mesh, 0, mesh.triangles.size(), 3000)), 0u);
-  // But a box in a box in that room is.
+  // A box in a box in that room is buried.
   const TriangleMesh nested = shapes::joined(scaled(box, {0.5f, 0.5f, 0.5f}), mesh, {0, 0, 0});
   EXPECT_EQ(count_buried(nested, points_on(nested, 0, box.triangles.size(), 1000)), 1000u);
 }
 
 TEST(Buried, APartThatRunsIntoItselfIsWhereItDoes) {
-  // A torus whose tube is thicker than its ring: its inner side is inside itself.
+  // The inner side of a torus whose tube is thicker than its ring is inside itself.
   const TriangleMesh spindle = shapes::torus(48, 0.5f, 0.8f);
   const Points points = points_on(spindle, 0, spindle.triangles.size(), 20000);
   const std::vector<std::uint8_t> marks = buried(spindle, points);
@@ -129,7 +129,7 @@ TEST(Buried, UnderASkirtIsDarkNotBuriedAndInAHeadIsBuried) {
   EXPECT_LT(count_buried(skirt, points_on(skirt, 0, small.triangles.size(), 1000)),
             200u);  // its top alone sees nothing
   const TriangleMesh head = shapes::joined(small, open_sphere(-0.98f), {0, -0.3f, 0});
-  // Its bottom sees light through the neck.
+  // The bottom sees light through the neck.
   EXPECT_GE(count_buried(head, points_on(head, 0, small.triangles.size(), 1000)), 830u);
 }
 
@@ -173,10 +173,10 @@ struct Stage {
   }
 
   /// Finds the most negative error of lookups, at visible points of the floor, in a plane baked for `receivers`.
-  float darkest_difference(const TexelReceivers& receivers) const {
+  float darkest_difference(const ReceiverSet& receivers) const {
     Image<float> plane(receivers.width, receivers.height, 1);
     const std::vector<float> values = openness(receivers.view());
-    for (std::size_t r = 0; r < values.size(); ++r) plane.values()[receivers.texels[r]] = values[r];
+    for (std::size_t r = 0; r < values.size(); ++r) plane.values()[receivers.slots[r]] = values[r];
     receivers.fills.apply(plane.values());
     std::vector<std::uint8_t> filled = receivers.covered();
     for (const FillPlan::Texel& fill : receivers.fills.texels) filled[fill.texel] = 1;
@@ -199,15 +199,15 @@ struct Stage {
 
 TEST(Buried, NothingBlackBleedsOntoTheFloorBesideABlock) {
   const Stage stage;
-  TexelReceivers receivers = receivers_on_low(stage.mesh, 64, 64, nullptr);
-  const std::size_t covered = receivers.texels.size();
+  ReceiverSet receivers = receivers_on_low(stage.mesh, 64, 64, nullptr);
+  const std::size_t covered = receivers.slots.size();
   // Without the treatment, texels beneath the block are black, and lookups beside it see half of that.
   EXPECT_LT(stage.darkest_difference(receivers), -0.1f);
 
   const BuriedReport report = set_aside_buried(receivers, stage.mesh, stage.occluders, stage.ray_offset);
   EXPECT_FALSE(report.everything);
   EXPECT_GT(report.moved, 20u);
-  EXPECT_EQ(receivers.texels.size() + report.buried, covered);
+  EXPECT_EQ(receivers.slots.size() + report.buried, covered);
   EXPECT_EQ(receivers.fills.texels.size(), report.buried);
   // The block's footprint in texels of (1 / 0.8 / 64)^2, less those on its outline.
   const double footprint = 0.4 * 0.2 * 0.8 * 0.8 * 64 * 64;
@@ -220,10 +220,10 @@ TEST(Buried, NothingBlackBleedsOntoTheFloorBesideABlock) {
 
 TEST(Buried, FillsAreMeansOfNeighboursInTheirChartAlone) {
   const Stage stage;
-  TexelReceivers receivers = receivers_on_low(stage.mesh, 64, 64, nullptr);
+  ReceiverSet receivers = receivers_on_low(stage.mesh, 64, 64, nullptr);
   set_aside_buried(receivers, stage.mesh, stage.occluders, stage.ray_offset);
   std::vector<float> plane(64 * 64, -1000.f);  // whatever is not filled would show
-  for (const std::uint32_t texel : receivers.texels) plane[texel] = static_cast<float>(texel % 64);
+  for (const std::uint32_t texel : receivers.slots) plane[texel] = static_cast<float>(texel % 64);
   receivers.fills.apply(plane);
   for (const FillPlan::Texel& fill : receivers.fills.texels) {
     EXPECT_GE(plane[fill.texel], 0);
@@ -237,29 +237,29 @@ TEST(Buried, WhatIsInsideAsAWholeIsKept) {
   mesh.normals.assign(mesh.positions.size(), Eigen::Vector3f::UnitY());
   mesh.uvs = floor.uvs;
   mesh.uvs.resize(mesh.positions.size(), Eigen::Vector2f(0.01f, 0.01f));
-  TexelReceivers receivers = receivers_on_low(mesh, 32, 32, nullptr);
-  const std::size_t covered = receivers.texels.size();
+  ReceiverSet receivers = receivers_on_low(mesh, 32, 32, nullptr);
+  const std::size_t covered = receivers.slots.size();
   const BuriedReport report =
       set_aside_buried(receivers, mesh, join_occluders({mesh}), rounding_offset(mesh.positions));
   EXPECT_TRUE(report.everything);
-  EXPECT_EQ(receivers.texels.size(), covered);
+  EXPECT_EQ(receivers.slots.size(), covered);
 }
 
 TEST(Buried, VerticesAreFilledAlongEdges) {
   const Stage stage;
-  TexelReceivers receivers{static_cast<int>(stage.mesh.positions.size()), 1, {}, {}, {}};
+  ReceiverSet receivers{static_cast<int>(stage.mesh.positions.size()), 1, {}, {}, {}};
   const std::size_t floor_vertices = 81;
   for (std::uint32_t v = 0; v < floor_vertices; ++v) {
-    receivers.texels.push_back(v);
+    receivers.slots.push_back(v);
     receivers.positions.push_back(stage.mesh.positions[v]);
     receivers.normals.push_back(Eigen::Vector3f::UnitY());
   }
   const BuriedReport report = set_aside_buried_vertices(receivers, stage.mesh, stage.occluders, stage.ray_offset);
   EXPECT_GT(report.buried, 0u);
-  EXPECT_EQ(receivers.texels.size(), floor_vertices - report.buried);
+  EXPECT_EQ(receivers.slots.size(), floor_vertices - report.buried);
   ASSERT_EQ(receivers.fills.texels.size(), report.buried);
   std::vector<float> plane(stage.mesh.positions.size(), 0.f);
-  for (std::uint32_t v : receivers.texels) plane[v] = 1;
+  for (std::uint32_t v : receivers.slots) plane[v] = 1;
   receivers.fills.apply(plane);
   for (std::size_t v = 0; v < floor_vertices; ++v) EXPECT_FLOAT_EQ(plane[v], 1);
 }

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "base/json.h"
 #include "mesh/camera.h"
 #include "mesh/camera_record.h"
 

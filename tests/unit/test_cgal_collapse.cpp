@@ -136,8 +136,8 @@ TEST_F(CgalEnvelope, HoldsForASphere) {
 }
 
 TEST_F(CgalEnvelope, IsUsedUp) {
-  // Half of the envelope or more: CGAL's prisms are sqrt(3) times thinner than what they may be. The flat end of a mesh
-  // that no collapse may leave would be far below.
+  // Distances reach half of the envelope or more: CGAL's prisms are sqrt(3) times thinner than what they may be. The
+  // flat end of a mesh that no collapse may leave would be far below.
   const SimplifyResult result = check(shapes::icosphere(4), 0.005);
   EXPECT_GT(result.distance.hausdorff_from_second, 0.5 * 0.005);
 }
@@ -202,7 +202,7 @@ TEST(CgalCollapse, KeepsBordersAndTheirCorners) {
     EXPECT_GE(result.mesh.triangles.size(), 499u);
     EXPECT_EQ(topology_of(result.mesh), topology_of(sheet));
     // Waves of 0.05 on a sheet of 1, so 0.035 of a diagonal of 1.4: a border that lost them would be that far away.
-    // Half of it is for the worst cost's least happy edge; 0.0118 is Lindstrom and Turk's.
+    // Half of that is allowed, for the worst of the costs; lindstrom-turk comes to 0.0118.
     EXPECT_LT(result.distance.hausdorff, 0.0175);
   }
 }

@@ -145,7 +145,7 @@ assets:
   EXPECT_TRUE(contains(report.inputs, "out/smaller/small/compress.json"));
   EXPECT_EQ(value_after(report.command, "--compressed"), "out/smaller/small/");
   EXPECT_EQ(value_after(run_of(rules, "small", "compress").command, "--clusters"), "");
-  // An asset that does without is not held to a budget for all.
+  // An asset that is not compressed is not held to that budget.
   EXPECT_FALSE(passes(rules, "plain", "compress"));
   EXPECT_EQ(value_after(run_of(rules, "plain", "report").command, "--compressed"), "");
   EXPECT_EQ(pipeline.assets[0].budgets, std::vector<std::string>{"compress.error<=0.01"});

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include "base/file_names.h"
+#include "base/json.h"
 #include "base/outputs.h"
 #include "kiln/index_page.h"
 #include "kiln/nearest.h"
@@ -99,7 +100,7 @@ TEST_F(Stage, AnInputThatChangedDuringTheRunIsSeenNextTime) {
 }
 
 TEST_F(Stage, AStampSavesReading) {
-  // A stamp with a hash that is no file's, and all else as it is.
+  // The stamp has a hash that is no file's, and is else as it was.
   FileHashes hashes(scratch_.folder());
   set_year("a.obj", 1999);
   FileStamp stamp = *hashes.stamp("a.obj");

@@ -17,21 +17,15 @@
 #include "image/compare.h"
 #include "image/gutter.h"
 #include "image/image_file.h"
+#include "scratch.h"
 
 namespace kiln {
 namespace {
 
 class ImageFile : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              (std::string("kiln_image_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path folder_;
+  Scratch scratch_;
+  const std::filesystem::path folder_ = scratch_.folder();
 };
 
 template <class T>

@@ -257,7 +257,7 @@ TEST_F(MeshFile, DracoKeepsPositionsNormalsAndUvs) {
     std::size_t nearest = 0;
     for (std::size_t j = 1; j < shape.uvs.size(); ++j)
       if ((shape.uvs[j] - loaded.uvs[i]).norm() < (shape.uvs[nearest] - loaded.uvs[i]).norm()) nearest = j;
-    // A twentieth more for the rounding of floats.
+    // Add a twentieth for the rounding of floats.
     EXPECT_LE((shape.uvs[nearest] - loaded.uvs[i]).cwiseAbs().maxCoeff(), 1.05f * uv_half_step);
     EXPECT_LE((shape.positions[nearest] - loaded.positions[i]).cwiseAbs().maxCoeff(), 1.05f * position_half_step);
     // 12 bits over the octahedron's 2: steps of 1/2,048 and, where it is stretched most, sqrt(3) times that, in each of
@@ -362,7 +362,7 @@ TEST_F(MeshFile, MeshesFarAwayAreMovedAndLoseNothing) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Eigen::Vector3d truth = ball.positions[ball.triangles[t][k]].cast<double>() + far;
       const Eigen::Vector3f& found = moved.mesh.positions[moved.mesh.triangles[t][k]];
-      // Half a step of a float that is no larger than 4, and of a double of that size.
+      // The error is half a step of a float no larger than 4, and of a double of that size.
       EXPECT_LT((moved.mesh.frame.to_file(found.cast<double>()) - truth).cwiseAbs().maxCoeff(), 3e-7);
     }
   // The frame goes through a Draco file, and a mesh is read into the frame of another.

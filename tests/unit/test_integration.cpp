@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 struct Content {
   TriangleMesh mesh = shapes::torus(36);
   Occluders occluders = join_occluders({mesh});
-  TexelReceivers receivers;
+  ReceiverSet receivers;
   BakeSettings settings;
 
   Content() {
@@ -33,7 +33,7 @@ struct Content {
       const Eigen::Vector3f& p = mesh.positions[v];
       const Eigen::Vector3f ring = Eigen::Vector3f(p.x(), 0, p.z()).normalized();  // of radius 1
       receivers.normals.push_back((p - ring).normalized());
-      receivers.texels.push_back(v);
+      receivers.slots.push_back(v);
     }
     receivers.width = static_cast<int>(mesh.positions.size());
     receivers.height = 1;
@@ -55,7 +55,7 @@ class Cuts : public testing::TestWithParam<BakeBackend> {
 TEST_P(Cuts, SlabsGiveTheSameBits) {
   const BakeJob job{content.receivers, content.occluders, content.settings, 7, 2};
   Integration integration(job, 500);
-  TransferVectors transfer(content.receivers.texels.size(), 9);
+  TransferVectors transfer(content.receivers.slots.size(), 9);
   integration.put_unoccluded(transfer);
   ASSERT_GT(integration.slabs(), 1u);
   for (std::size_t slab = 0; slab < integration.slabs(); ++slab)
@@ -110,7 +110,7 @@ TEST_P(Cuts, NothingToTestIsStillABake) {
     open.receivers.normals[r] = {0, 1, 0};
   }
   const BakeResult result = bake({open.receivers, open.occluders, open.settings, 7, 2});
-  EXPECT_EQ(result.unoccluded, open.receivers.texels.size());
+  EXPECT_EQ(result.unoccluded, open.receivers.slots.size());
   EXPECT_NEAR(result.channels.front().plane(0)[5], 0.28209479, 1e-7);
   const fs::path shard = folder / "open";
   OutputSet outputs(shard);
@@ -142,7 +142,7 @@ TEST_P(Cuts, AnInterruptedBakeGoesOnToTheSameBits) {
     }
   }
   EXPECT_EQ(interruptions, 2);
-  EXPECT_LT(result.work.pairs, content.receivers.texels.size() * 300);  // the rest alone
+  EXPECT_LT(result.work.pairs, content.receivers.slots.size() * 300);  // the rest alone
   EXPECT_EQ(result.channels.front().values, whole().channels.front().values);
 
   BakeSettings other = content.settings;
@@ -216,7 +216,7 @@ TEST_P(Cuts, ACheckpointHoldsForOtherStoring) {
   other.seams = SeamChoice::keep;
   other.bits = 16;
   const BakeResult resumed = bake({content.receivers, content.occluders, other, 7, 2, again});
-  EXPECT_LT(resumed.work.pairs, content.receivers.texels.size() * 300);  // the rest alone
+  EXPECT_LT(resumed.work.pairs, content.receivers.slots.size() * 300);  // the rest alone
   EXPECT_EQ(resumed.channels.front().values, whole().channels.front().values);
 }
 
@@ -306,7 +306,7 @@ TEST(ErrorDriven, StopsAtAnErrorThatRaysConfirm) {
   content.occluders = join_occluders({content.mesh});
   content.receivers = {};
   for (std::size_t v = 0; v < content.mesh.positions.size(); v += 20) {
-    content.receivers.texels.push_back(static_cast<std::uint32_t>(content.receivers.texels.size()));
+    content.receivers.slots.push_back(static_cast<std::uint32_t>(content.receivers.slots.size()));
     content.receivers.positions.push_back(content.mesh.positions[v]);
     content.receivers.normals.push_back(content.mesh.normals[v]);
   }

@@ -64,7 +64,7 @@ TEST(KnownRays, BlockedAreThoseThatASearchFinds) {
   EXPECT_TRUE(kept.holds(stand.blocks()));
   EXPECT_FALSE(kept.holds(stand.blocks() + 1));
   EXPECT_EQ(plenty - memory.left(), stand.blocks() * stand.block_bytes());
-  // Against beams once more, bit for bit; against rays of Embree, but for those that pass an edge.
+  // Results equal those of beams bit for bit, and those of Embree but for rays that pass an edge.
   BeamTracer tracer(stand.beams);
   std::size_t rays = 0, hidden = 0, otherwise = 0;
   for (std::size_t p = 0; p < stand.receivers.packets.size(); ++p) {
@@ -130,7 +130,7 @@ TEST(KnownRays, FirstHitsAreFoundOnce) {
   EXPECT_EQ(stand.gathered(nothing, nullptr, {nullptr, &hits, 0}), searched);  // nothing is cast
   EXPECT_EQ(memory.left(), left);
 
-  // With room for some of them the others are found again; with none, all.
+  // Rays that memory had no room for are found again.
   RayMemory half((plenty - left) / 2), none(0);
   FirstHits some(half, stand.receivers.packets.size()), no_hits(none, stand.receivers.packets.size());
   EXPECT_FALSE(no_hits.keeps());

@@ -41,7 +41,7 @@ TEST(LightWindows, BallsFallWithTheSquareOfTheDistance) {
                     1e-5 * expected)
             << static_cast<int>(window) << ", " << bands;
       }
-      // From inside it comes from everywhere: 16 times 0.5.
+      // Light comes from everywhere inside: 16 times 0.5.
       EXPECT_NEAR(radiance(windowed_light(ball, bands, window, {0, 0, 3.5}), -Eigen::Vector3f::UnitY()), 8, 1e-4);
     }
 }

@@ -133,7 +133,7 @@ TEST(LocalLight, GpuAndCpuAgree) {
       view.look.albedo = std::array{1.f, 0.6f, 0.3f};
       const Image<float> gpu = render_scene({{&renderer, {}, Technique::textured_prt}}, lights, view);
 
-      // On the CPU: texels under the light of each sample, blended by contributions that are linear over a triangle.
+      // The CPU lights texels by each sample, blended by contributions that are linear over a triangle.
       const IncidentSamples& samples = renderer.samples();
       const AssetLight light = light_asset(lights, 3, {}, samples.points);
       std::vector<Image<float>> lit;
@@ -218,7 +218,7 @@ TEST(LocalLight, PlacedAssetsAreLitAsTheSceneHasIt) {
 }
 
 TEST(LocalLight, ProbesStandBetweenTheLightAndTheAsset) {
-  // Two probes: past the one light comes as it is, past the other half of it; a turned asset sees it turned.
+  // One probe lets light through as it is, the other half of it; a turned asset sees it turned.
   const int bands = 3;
   ProbeSet probes;
   probes.bands = bands;

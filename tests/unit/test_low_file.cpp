@@ -33,7 +33,7 @@ TEST_F(LowColors, AreThoseOfTheNearestPointOfTheInput) {
   file.keep_colors(high);
   const TriangleMesh written = file.write(low);
   ASSERT_EQ(written.colors.size(), low.positions.size());
-  // Half a step of 8 bits, and of 16 bits for the place.
+  // Errors are half a step of 8 bits, and of 16 bits for the place.
   for (std::size_t i = 0; i < written.colors.size(); ++i)
     EXPECT_LT((written.colors[i] - color_at(written.positions[i])).cwiseAbs().maxCoeff(), 0.501f / 255);
   EXPECT_EQ(load_mesh(path("low.drc")).colors, written.colors);

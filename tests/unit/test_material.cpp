@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "image/image_file.h"
 #include "image/srgb.h"
 #include "import/import_mesh.h"
@@ -318,7 +319,7 @@ TEST_F(Material, MaterialsAndUvsFollowTrianglesThroughRepair) {
     EXPECT_COLOR(loaded.albedo.at(t, u, v), PaintedCube::truth(p, normal), rounding);
   });
 
-  // One texture for all in place of the materials.
+  // One texture replaces all materials.
   const LoadedAlbedo ramp = load_albedo(imported, {.texture = path("ramp.exr").string()});
   EXPECT_EQ(ramp.albedo.source(), SurfaceAlbedo::Source::texture);
   const std::uint32_t t = 3;

@@ -63,7 +63,7 @@ TEST_F(MixedTransferTest, ReceiversGoWhereTheyAreCheaper) {
   const auto apart_by_rays = static_cast<std::ptrdiff_t>(split.rays.size()) - near_by_rays;
   EXPECT_LT(near_by_rays, 0.1 * near);
   EXPECT_GT(apart_by_rays, 0.9 * apart);
-  // Each receiver is in one of the two.
+  // Each receiver is in one of the two lists.
   std::vector<std::uint32_t> all = split.rays;
   all.insert(all.end(), split.beams.order.begin(), split.beams.order.end());
   std::sort(all.begin(), all.end());

@@ -10,6 +10,7 @@
 #include <tbb/global_control.h>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/outputs.h"
 #include "detail/asset_hints.h"
 #include "detail/detail_maps.h"
@@ -169,7 +170,7 @@ TEST(Normals, CageComesFromTheHintOrFromMeasuring) {
   EXPECT_EQ(measured.cage_source, "measured");
   EXPECT_NEAR(measured.cage_distance, 0.1, 1e-6);
   EXPECT_EQ(measured.found_by_ray_outwards, 1);
-  // A mesh that is its own simplification: a cage that is small, but one.
+  // A mesh that is its own simplification gets a small cage, but one.
   const NormalsResult same = make_normals(low, low, {.size = 16});
   EXPECT_GT(same.cage_distance, 0);
   EXPECT_EQ(same.found_by_nearest_point, 0);
@@ -186,7 +187,7 @@ TEST(Normals, BilinearLookupsInsideChartsSeeOnlyTheSphere) {
     std::uniform_real_distribution<float> uniform;
     int interior = 0, ring = 0;
     for (int k = 0; k < 20'000; ++k) {
-      // A point of the low mesh, corners and edges of charts included.
+      // The source is a point of the low mesh, corners and edges of charts included.
       const Triangle& t = low.triangles[random() % low.triangles.size()];
       float u = uniform(random), v = uniform(random);
       if (u + v > 1) u = 1 - u, v = 1 - v;
@@ -348,7 +349,7 @@ TEST(Normals, AThinEarKeepsItsSides) {
     int sides = 0;
     for_each_covered(result, [&](int i, int j) {
       const Eigen::Vector3f low_normal = interpolate(low, low.normals, raster.at(i, j)).normalized();
-      // On the faces, not the rim.
+      // Texels on the faces, not the rim, count.
       if (std::abs(low_normal.z()) < 0.9f) return;
       ++sides;
       EXPECT_GT(decoded_at(result.normal, i, j).z() * low_normal.z(), 0);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/options.h"
 
 namespace kiln {

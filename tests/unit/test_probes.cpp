@@ -8,10 +8,11 @@
 
 #include "asset/probe_set.h"
 #include "base/errors.h"
+#include "base/json.h"
+#include "mesh/winding.h"
 #include "probes/probe_points.h"
 #include "probes/probes.h"
 #include "probes/surface_light.h"
-#include "probes/winding.h"
 #include "scratch.h"
 #include "sh/basis.h"
 #include "shapes.h"
@@ -142,11 +143,11 @@ TEST(Probes, PointsInsideSolidsAreNotValid) {
     if (p.norm() > 0.95f && p.norm() < 1.01f) continue;  // the polyhedron is not quite the ball
     EXPECT_EQ(result.probes.valid[k] == 0, in_ball || in_cube) << p.transpose();
   }
-  // With a hole: the winding number of a point in the middle is what of the sphere is left.
+  // The winding number in the middle of a sphere with a hole is the share of the sphere that is left.
   TriangleMesh open = shapes::icosphere(2);
   std::erase_if(open.triangles, [&](const Triangle& t) { return open.positions[t[0]].y() > 0.8f; });
-  EXPECT_GT(winding_number(open, Eigen::Vector3f::Zero()), 0.8);
-  EXPECT_LT(winding_number(open, Eigen::Vector3f::Zero()), 0.99);
+  EXPECT_GT(winding_number(open, Eigen::Vector3d::Zero()), 0.8);
+  EXPECT_LT(winding_number(open, Eigen::Vector3d::Zero()), 0.99);
 }
 
 /// A scene of one mesh of constant albedo, its light, and the probes in it.
@@ -268,7 +269,7 @@ TEST(ProbeSet, TrilinearIsExactForLinearFunctions) {
   const ProbeSet probes = scalar_probes(grid, linear);
   for (const Eigen::Vector3f& p : {Eigen::Vector3f(0.3f, 0.7f, 4.1f), {-1, 0, 2}, {2, 1, 5}, {1, 0.5f, 3}})
     EXPECT_NEAR(light_of(probes, p), linear(p), 1e-5);
-  // Beyond the grid it is that of the border.
+  // Beyond the grid the value is that of the border.
   EXPECT_NEAR(light_of(probes, {9, 0.5f, -3}), linear({2, 0.5f, 2}), 1e-5);
   // An axis of one point does not vary.
   const ProbeSet flat = scalar_probes({{2, 1, 1}, {0, 0, 0}, {1, 4, 4}}, linear);
@@ -306,7 +307,7 @@ TEST(ProbeSet, AppliesMatricesByRowsAndChannels) {
   probes.matrices.assign(48, 0.f);
   probes.matrices[0 * 16 + 1 * 4 + 2] = 2;  // red: L'_1 = 2 L_2
   probes.matrices[2 * 16 + 3 * 4 + 0] = 5;  // blue: L'_3 = 5 L_0
-  // One channel far away, three here; bands beyond the probes' are dropped, those that lack are none.
+  // One channel far away, three here; bands beyond the probes' are dropped, missing ones are zero.
   const LightCoefficients light = light_at(probes, {0, 0, 0}, {3, {{1, 2, 3, 4, 5, 6, 7, 8, 9}}});
   ASSERT_EQ(light.channels.size(), 3u);
   EXPECT_EQ(light.bands, 2);

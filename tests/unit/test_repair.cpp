@@ -111,7 +111,7 @@ TEST(Repair, FlatTrianglesGoWithoutACrack) {
   TriangleMesh cube = shapes::cube(1);
   const auto [a, b, c] = cube.triangles[0];
   const auto middle = static_cast<std::uint32_t>(cube.positions.size());
-  // Its longest edge is the diagonal.
+  // The longest edge of the flat triangle is the diagonal.
   Triangle t = {a, b, c};
   while ((cube.positions[t[1]] - cube.positions[t[0]]).norm() < 1.2f) std::rotate(t.begin(), t.begin() + 1, t.end());
   cube.positions.push_back(0.5f * (cube.positions[t[0]] + cube.positions[t[1]]));
@@ -136,7 +136,7 @@ TEST(Repair, TurnsTheFewNotTheMany) {
   EXPECT_GT(volume(sphere), 7 * octant) << "outwards";
   EXPECT_TRUE(is_closed(sphere));
 
-  // An open sheet has no outside: the greater part of it says.
+  // An open sheet has no outside: its greater part decides.
   TriangleMesh sheet = shapes::wavy_sheet(6);
   for (std::size_t i = 0; i < sheet.triangles.size(); ++i)
     if (i > 20) turn(sheet.triangles[i]);

@@ -46,7 +46,7 @@ TEST(Scatter, AllEnergyIsWithinALargeDisc) {
 }
 
 TEST(Scatter, SmallDiscsKeepTheirRelativeAccuracy) {
-  // A disc so small that R is even over it.
+  // The disc is so small that R is even over it.
   const ScatterProfile marble = ScatterProfile::dipole(2.19, 0.0021, 1.5);
   const double radius = 1e-9;
   EXPECT_NEAR(marble.within(radius) / (std::numbers::pi * radius * radius * marble.density(0)), 1, 1e-9);

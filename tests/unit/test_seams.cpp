@@ -6,7 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include "detail/detail_maps.h"
-#include "detail/seams.h"
+#include "detail/seam_solver.h"
 #include "image/gutter.h"
 #include "normals/normals.h"
 #include "shapes.h"
@@ -81,7 +81,7 @@ TEST(Seams, AreTheEdgesWhereUvsPart) {
           side.footprint.weights[0] + side.footprint.weights[1] + side.footprint.weights[2] + side.footprint.weights[3],
           1, 1e-6);
   }
-  // One chart has none, and neither have borders.
+  // One chart has no seams, and neither have borders.
   EXPECT_TRUE(Seams(shapes::plane(4), 64, 64).edges().empty());
   EXPECT_THROW(Seams(shapes::icosphere(1), 64, 64), std::invalid_argument);
 }
@@ -154,7 +154,7 @@ TEST_F(TurnedCharts, WhatIsEqualStays) {
   Image<float> flat(192, 128, 1, 0.75f);
   solver.equalise(flat);
   for (const float value : flat.values()) EXPECT_NEAR(value, 0.75f, 1e-6);
-  // A second time there is little left to change.
+  // Equalising a second time changes little.
   const Image<float> before = sampled(smooth);
   Image<float> once = before;
   solver.equalise(once);
@@ -232,7 +232,7 @@ TEST_F(TurnedCharts, NormalMapsOfBothSpaces) {
     EXPECT_GT(equal.seam_change_degrees_rms, 0);
     // The receivers stay where they are.
     EXPECT_EQ(equal.position.values(), kept.position.values());
-    // And the map is about as near to the high mesh.
+    // The map stays about as near to the high mesh.
     EXPECT_LT(equal.map_error.mean_degrees, 1.05 * kept.map_error.mean_degrees);
   }
 }

@@ -260,9 +260,9 @@ TEST(Directions, AsManyAsBandsNeedKeepTheirFunctionsApart) {
   for (const Sampling sampling : {Sampling::fibonacci, Sampling::progressive, Sampling::stratified})
     for (const int bands : {2, 4, 5, 8, 10}) {
       const auto count = static_cast<int>(directions_for_bands(sampling, bands));
-      // A tenth, and a third more for the luck of one seed.
+      // Allow a tenth, and a third more for the luck of one seed.
       EXPECT_LT(gram_error(sampling, count, bands), 0.13) << static_cast<int>(sampling) << ", " << bands;
-      // A quarter of them do not; of progressive ones some powers of two do, which are whole lattices.
+      // A quarter of as many are too few, but for powers of two of progressive ones, which are whole lattices.
       if (sampling != Sampling::progressive) {
         EXPECT_GT(gram_error(sampling, count / 4, bands), 0.13) << static_cast<int>(sampling) << ", " << bands;
       }

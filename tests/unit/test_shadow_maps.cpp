@@ -14,6 +14,7 @@
 #include "bake/rays/embree_shadow_rays.h"
 #include "bake/scene/occluders.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 #include "sh/ray_offset.h"
@@ -221,7 +222,7 @@ TEST(ShadowMaps, SumsAreTrueForAnyNumberOfDirections) {
   settings.size_texels = 16;
   const ShBasis basis(4);
   for (const int count : {1, 1000, 1000000}) {
-    // Only the sphere's upper part, where no receiver can look down at the plane.
+    // Take only the sphere's upper part, where no receiver can look down at the plane.
     stand.directions = sample_directions(Sampling::fibonacci, count + 1, 1);
     std::erase_if(stand.directions, [](const Eigen::Vector3f& direction) { return direction.y() < 0.2f; });
     if (count == 1) stand.directions = {Eigen::Vector3f(0.3f, 0.8f, 0.5f).normalized()};
@@ -326,7 +327,7 @@ TEST(ShadowChoice, TakesTheSmallestMapUnderTheFloor) {
   settings.bands = 4;
   settings.directions = 64;
   settings.shadows.refine = true;
-  const TexelReceivers receivers{static_cast<int>(stand.positions.size()), 1, {}, stand.positions, stand.normals};
+  const ReceiverSet receivers{static_cast<int>(stand.positions.size()), 1, {}, stand.positions, stand.normals};
   const ShadowSizeChoice choice = choose_shadow_size(receivers.view(), {receivers, occluders, settings, 1});
   EXPECT_TRUE(choice.reached);
   EXPECT_EQ(choice.size_texels, 256);  // RefiningGivesWhatRaysGive: 0.4 % at most

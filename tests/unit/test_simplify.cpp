@@ -237,7 +237,7 @@ TEST(SimplifyCreases, OfACubeStayExact) {
       EXPECT_TRUE(result.closed);
       EXPECT_EQ(count_missing(result.mesh, corners, 0), 0);
       EXPECT_LT(result.distance.hausdorff, 1e-7);
-      // Its edges are 12 long in all; they are found in the result again by their angle.
+      // The edges are 12 long in all; they are found in the result again by their angle.
       double length = 0;
       for (const auto& [a, b] : find_feature_edges(result.mesh, 30))
         length += (result.mesh.positions[a] - result.mesh.positions[b]).norm();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/outputs.h"
 #include "hard_shapes.h"
 #include "import/import_mesh.h"
@@ -154,7 +155,7 @@ TEST_F(FarParts, DoNotKeepABallFromSimplification) {
       EXPECT_TRUE(result.closed);
       EXPECT_EQ(result.degenerate_triangles, 0);
       EXPECT_EQ(result.flipped_triangles, 0);
-      // In units: a ball of 100 triangles is about 0.05 off; a step of 24 bits is 0.006 of the farther mesh.
+      // Distances in units: a ball of 100 triangles is about 0.05 off; a step of 24 bits is 0.006 of the farther mesh.
       EXPECT_LT(result.hausdorff_distance, 0.12);
       EXPECT_GT(file.position_bits(), 16);
       EXPECT_EQ(file.too_few_steps() > 0, away > 50'000);

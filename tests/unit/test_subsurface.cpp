@@ -37,7 +37,7 @@ void add_grid(SurfaceSamples& samples, int cells, float spacing, float height, f
 
 /// Takes the vertices of a mesh; positions in mm.
 SurfaceSamples vertices_of(const TriangleMesh& mesh, double area) {
-  const TexelReceivers receivers = receivers_on_vertices(mesh).receivers;
+  const ReceiverSet receivers = receivers_on_vertices(mesh).receivers;
   SurfaceSamples samples{receivers.positions, receivers.normals, vertex_areas(mesh, receivers)};
   const double sum = std::accumulate(samples.areas.begin(), samples.areas.end(), 0.0);
   for (float& a : samples.areas) a *= static_cast<float>(area / sum);
@@ -228,7 +228,7 @@ TEST(Subsurface, EnergyIsConserved) {
   EXPECT_GT(sheet.capped_area, 0.8);
   EXPECT_LE(sheet.energy[0], 1.0001);
   EXPECT_GT(sheet.energy[0], 0.95);
-  // Half a sheet lit: what one side sends out of both.
+  // One side of the sheet is lit; both send out.
   TransferVectors light(samples.size(), 1);
   std::fill(light.values.begin(), light.values.begin() + cells * cells, 1.f);
   EXPECT_LE(scatter_transfer(samples, {light}, {{spectralon}}).energy[0], 1.0001);
@@ -330,12 +330,12 @@ TEST(Subsurface, AnyNumberOfThreadsGivesTheSameBits) {
 TEST(Subsurface, TexelsHaveTheAtlasAreaWholly) {
   // 37 texels for a chart that ends within texels: what hangs over goes to covered neighbours.
   const TriangleMesh mesh = shapes::plane(5, 3);
-  const TexelReceivers receivers = receivers_on_low(mesh, 37, 37, nullptr);
+  const ReceiverSet receivers = receivers_on_low(mesh, 37, 37, nullptr);
   const std::vector<float> areas = texel_areas(mesh, receivers);
   EXPECT_NEAR(std::accumulate(areas.begin(), areas.end(), 0.0), 9, 1e-5);
-  // A texel amid the chart: (3 / (0.8 * 37))^2.
+  // The area of a texel amid the chart is (3 / (0.8 * 37))^2.
   for (std::size_t r = 0; r < areas.size(); ++r) {
-    const std::uint32_t i = receivers.texels[r] % 37, j = receivers.texels[r] / 37;
+    const std::uint32_t i = receivers.slots[r] % 37, j = receivers.slots[r] / 37;
     if (i == 18 && j == 18) {
       EXPECT_NEAR(areas[r], std::pow(3 / (0.8 * 37), 2), 1e-6);
     }
@@ -345,7 +345,7 @@ TEST(Subsurface, TexelsHaveTheAtlasAreaWholly) {
 
 TEST(Subsurface, TexelsProjectedAtAnAngleStandForMore) {
   const TriangleMesh mesh = shapes::plane(5, 3);
-  TexelReceivers receivers = receivers_on_low(mesh, 40, 40, nullptr);
+  ReceiverSet receivers = receivers_on_low(mesh, 40, 40, nullptr);
   const Eigen::Vector3f tilted = Eigen::Vector3f(std::sqrt(0.75f), 0.5f, 0);
   std::fill(receivers.normals.begin(), receivers.normals.end(), tilted);
   const std::vector<float> areas = texel_areas(mesh, receivers);
@@ -377,8 +377,8 @@ TEST(Subsurface, NamedMaterialsHaveTheirProfiles) {
 TEST(Subsurface, TexelsScatterInMillimetres) {
   // A square of two units as a chart of 80 texels a side, of which the high mesh has 1.2 times the area.
   const TriangleMesh mesh = shapes::plane(4, 2);
-  const TexelReceivers receivers = receivers_on_low(mesh, 100, 100, nullptr);
-  std::vector<TransferVectors> even = {TransferVectors(receivers.texels.size(), 1)};
+  const ReceiverSet receivers = receivers_on_low(mesh, 100, 100, nullptr);
+  std::vector<TransferVectors> even = {TransferVectors(receivers.slots.size(), 1)};
   std::fill(even[0].values.begin(), even[0].values.end(), 0.5f);
   SubsurfaceSettings settings = {.material = "custom", .scattering = {{8, 4, 2}}, .absorption = {{0.4, 0.2, 0.1}}};
   settings.mm_per_unit = 50;  // 100 mm, mean free paths under a millimetre
@@ -390,7 +390,7 @@ TEST(Subsurface, TexelsScatterInMillimetres) {
   // The same albedo in all three, so the same reflectance; texels that a fifth too much area stands on matter little,
   // because what is near is scaled to a plane's.
   const auto middle = static_cast<std::size_t>(
-      std::find(receivers.texels.begin(), receivers.texels.end(), 50u * 100 + 50) - receivers.texels.begin());
+      std::find(receivers.slots.begin(), receivers.slots.end(), 50u * 100 + 50) - receivers.slots.begin());
   for (std::size_t c = 0; c < 3; ++c) {
     EXPECT_NEAR(report.reflectance[c], report.reflectance[0], 1e-12);
     EXPECT_NEAR(channels[c].plane(0)[middle], 0.5 * report.reflectance[c], 0.1 * report.reflectance[c]);

@@ -40,7 +40,7 @@ class SurroundingsTest : public testing::Test {
   static double constant_term(const Surroundings& surroundings, const Eigen::Vector3f& normal) {
     std::vector<TriangleMesh> meshes;
     for (PlacedMesh& placed : load(surroundings)) meshes.push_back(std::move(placed.mesh));
-    TexelReceivers receivers{1, 1, {0}, {Eigen::Vector3f::Zero()}, {normal}};
+    ReceiverSet receivers{1, 1, {0}, {Eigen::Vector3f::Zero()}, {normal}};
     BakeSettings settings;
     settings.bands = 1;
     settings.directions = 20000;

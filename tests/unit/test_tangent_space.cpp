@@ -63,7 +63,7 @@ TEST(TangentSpace, ThereAndBackAgain) {
   std::normal_distribution<float> normal;
   const auto vector = [&] { return Eigen::Vector3f(normal(random), normal(random), normal(random)).normalized(); };
   for (int k = 0; k < 1000; ++k) {
-    // As after interpolation: neither of length one nor at right angles.
+    // Vectors are as after interpolation: neither of length one nor at right angles.
     const Eigen::Vector3f low_normal = vector() * 0.9f;
     const Eigen::Vector3f across = low_normal.cross(vector()).normalized();
     const TangentFrame frame{0.8f * across + 0.2f * low_normal, k % 2 == 0 ? 1.0f : -1.0f};

@@ -17,7 +17,7 @@ constexpr float lift = 1e-3f;
 
 TEST(Unoccluded, WholeSphereIsFree) {
   const TriangleMesh mesh = shapes::icosphere(4);
-  // At the corners themselves, with the sphere's normals: all else lies below.
+  // Receivers stand at the corners, with the sphere's normals: all else lies below.
   const std::vector<std::uint8_t> free = unoccluded_receivers(mesh.positions, {mesh.positions, mesh.positions}, lift);
   EXPECT_EQ(std::accumulate(free.begin(), free.end(), std::size_t{0}), mesh.positions.size());
   // Inside, nothing is.

@@ -14,6 +14,7 @@
 #include "bake/planes/vertex_planes.h"
 #include "bake/scene/vertex_receivers.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/options.h"
 #include "base/outputs.h"
 #include "mesh/draco_file.h"
@@ -36,9 +37,9 @@ class VertexBake : public testing::Test {
 };
 
 /// Computes the transfer of receivers that nothing occludes, times `albedo`.
-TransferVectors furnace_transfer(const TexelReceivers& receivers, int bands, float albedo) {
+TransferVectors furnace_transfer(const ReceiverSet& receivers, int bands, float albedo) {
   const ShBasis basis(bands);
-  TransferVectors transfer(receivers.texels.size(), basis.size());
+  TransferVectors transfer(receivers.slots.size(), basis.size());
   for (std::size_t r = 0; r < transfer.receivers; ++r) {
     const std::vector<float> truth = unoccluded_transfer(basis, receivers.normals[r]);
     for (int i = 0; i < basis.size(); ++i) transfer.plane(i)[r] = albedo * truth[i];
@@ -55,7 +56,7 @@ void expect_within_half_a_step(const TransferVectors& stored, const TransferVect
     double worst = 0;
     for (std::size_t r = 0; r < exact.receivers; ++r)
       worst = std::max(worst, std::abs(static_cast<double>(stored.plane(i)[r]) - exact.plane(i)[r]));
-    // And the rounding of a value below 1 to float32.
+    // Add the rounding of a value below 1 to float32.
     EXPECT_LE(worst, half_step + 3e-8) << "coefficient " << i;
   }
 }
@@ -79,7 +80,7 @@ TEST_F(VertexBake, DracoKeepsIntegersExactly) {
   std::vector<int> seen(sources.size(), 0);
   for (std::size_t k = 0; k < sources.size(); ++k) {
     ++seen.at(sources[k]);
-    // Half of a step of 16 bits over the box of side 6, and a twentieth more for the rounding of floats.
+    // The error is half a step of 16 bits over the box of side 6, and a twentieth more for the rounding of floats.
     EXPECT_LE((loaded.mesh.positions[k] - mesh.positions[sources[k]]).cwiseAbs().maxCoeff(), 1.05f * 0.5f * 6 / 65535);
     EXPECT_LE((loaded.mesh.uvs[k] - mesh.uvs[sources[k]]).cwiseAbs().maxCoeff(), 1.05f * 0.5f / 65535);
   }
@@ -108,7 +109,7 @@ TEST_F(VertexBake, FilesWithoutNamedIntegersAreRefused) {
 
 TEST_F(VertexBake, FurnaceGoesThroughTheFileWithinHalfAStep) {
   const TriangleMesh mesh = shapes::icosphere(3);
-  const TexelReceivers receivers = receivers_on_vertices(mesh).receivers;
+  const ReceiverSet receivers = receivers_on_vertices(mesh).receivers;
   for (const int bits : {8, 16}) {
     // Three bands leave a last attribute of one component; two channels.
     const std::vector<TransferVectors> channels = {furnace_transfer(receivers, 3, 1),
@@ -120,8 +121,9 @@ TEST_F(VertexBake, FurnaceGoesThroughTheFileWithinHalfAStep) {
     for (std::size_t c = 0; c < 2; ++c) expect_within_half_a_step(stored[c], channels[c], bits);
     outputs.commit();
 
-    // As a consumer reads it: by ranges.json and the mesh alone. The mesh's own normals say what the truth is; those
-    // are good to half a step of 12 bits, 1e-3 or less, which moves no coefficient of three bands by more than 1e-3.
+    // Read it as a consumer does: by ranges.json and the mesh alone. The mesh's own normals say what the truth is;
+    // those are good to half a step of 12 bits, 1e-3 or less, which moves no coefficient of three bands by more than
+    // 1e-3.
     const Json ranges = Json::parse(read_text(path("ranges.json")));
     EXPECT_EQ(ranges["vertices"], mesh.positions.size());
     const AttributedMesh asset = load_attributed_draco(path(ranges["mesh"]));
@@ -146,7 +148,7 @@ TEST_F(VertexBake, FurnaceGoesThroughTheFileWithinHalfAStep) {
 TEST_F(VertexBake, BakeOfASphereIsTheFurnace) {
   // A convex polyhedron hides nothing of the hemisphere above its vertices.
   const TriangleMesh mesh = shapes::icosphere(3);
-  const TexelReceivers receivers = receivers_on_vertices(mesh).receivers;
+  const ReceiverSet receivers = receivers_on_vertices(mesh).receivers;
   BakeSettings settings;
   settings.backend = BakeBackend::embree;
   const Occluders occluders = join_occluders({mesh});
@@ -167,7 +169,7 @@ TEST_F(VertexBake, TouchingSheetsAreSplitInTheFileAndReadBack) {
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
   mesh.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 4, 5}, {0, 6, 4}, {0, 5, 6}, {4, 6, 5}};
   compute_vertex_normals(mesh);
-  const TexelReceivers receivers = receivers_on_vertices(mesh).receivers;
+  const ReceiverSet receivers = receivers_on_vertices(mesh).receivers;
   const TransferVectors transfer = furnace_transfer(receivers, 5, 1);
   OutputSet outputs(folder());
   const std::vector<std::uint32_t> sources = write_vertex_planes(outputs, {transfer}, receivers, mesh, 16);
@@ -198,7 +200,7 @@ TEST_F(VertexBake, UnusedVerticesAreLeftOut) {
 
 TEST_F(VertexBake, ReceiversLieAlongACurve) {
   TriangleMesh mesh = shapes::icosphere(4);
-  // In random order, as a file may have them.
+  // Put the triangles in random order, as a file may have them.
   std::vector<std::uint32_t> shuffled(mesh.positions.size());
   for (std::uint32_t k = 0; k < shuffled.size(); ++k) shuffled[k] = k;
   std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(3));
@@ -207,20 +209,20 @@ TEST_F(VertexBake, ReceiversLieAlongACurve) {
     mixed.positions[k] = mesh.positions[shuffled[k]];
     mixed.normals[k] = mesh.normals[shuffled[k]];
   }
-  const TexelReceivers receivers = receivers_on_vertices(mixed).receivers;
+  const ReceiverSet receivers = receivers_on_vertices(mixed).receivers;
 
-  ASSERT_EQ(receivers.texels.size(), mesh.positions.size());
+  ASSERT_EQ(receivers.slots.size(), mesh.positions.size());
   std::vector<int> seen(mesh.positions.size(), 0);
   double length = 0;
-  for (std::size_t r = 0; r < receivers.texels.size(); ++r) {
-    ++seen.at(receivers.texels[r]);
-    EXPECT_EQ(receivers.positions[r], mixed.positions[receivers.texels[r]]);
-    EXPECT_EQ(receivers.normals[r], mixed.normals[receivers.texels[r]]);
+  for (std::size_t r = 0; r < receivers.slots.size(); ++r) {
+    ++seen.at(receivers.slots[r]);
+    EXPECT_EQ(receivers.positions[r], mixed.positions[receivers.slots[r]]);
+    EXPECT_EQ(receivers.normals[r], mixed.normals[receivers.slots[r]]);
     if (r > 0) length += (receivers.positions[r] - receivers.positions[r - 1]).norm();
   }
   EXPECT_EQ(seen, std::vector<int>(mesh.positions.size(), 1));
   // An edge is 0.07 long, two random points are 4/3 apart: a curve that jumps now and then is nearer to the former.
-  EXPECT_LT(length / static_cast<double>(receivers.texels.size()), 0.2);
+  EXPECT_LT(length / static_cast<double>(receivers.slots.size()), 0.2);
 }
 
 TEST_F(VertexBake, VerticesStandOnTheHighMesh) {
@@ -228,8 +230,8 @@ TEST_F(VertexBake, VerticesStandOnTheHighMesh) {
   const VertexReceivers found = receivers_on_high_of_vertices(low, high);
   EXPECT_EQ(found.facing_away, 0u);
   EXPECT_NEAR(found.largest_distance, 0.03, 1e-3);
-  for (std::size_t r = 0; r < found.receivers.texels.size(); ++r) {
-    const Eigen::Vector3f truth = low.positions[found.receivers.texels[r]].normalized();
+  for (std::size_t r = 0; r < found.receivers.slots.size(); ++r) {
+    const Eigen::Vector3f truth = low.positions[found.receivers.slots[r]].normalized();
     // Facets of edges of 0.04 stay within 2e-4 of the sphere; the closest facet's normal is half an edge away at most.
     EXPECT_NEAR(found.receivers.positions[r].norm(), 1, 3e-4);
     EXPECT_GT(found.receivers.positions[r].normalized().dot(truth), 0.999f);
@@ -245,7 +247,7 @@ TEST_F(VertexBake, VerticesOfAThinPlateStayOnTheirSide) {
   TriangleMesh low = shapes::plane(4, 0.7f, -0.002f);
   const VertexReceivers found = receivers_on_high_of_vertices(low, high);
   EXPECT_EQ(found.facing_away, 0u);
-  for (std::size_t r = 0; r < found.receivers.texels.size(); ++r) {
+  for (std::size_t r = 0; r < found.receivers.slots.size(); ++r) {
     EXPECT_NEAR(found.receivers.positions[r].y(), 0.005, 1e-6);
     EXPECT_GT(found.receivers.normals[r].y(), 0.99f);
   }
@@ -258,7 +260,7 @@ TEST_F(VertexBake, VerticesOfAThinPlateStayOnTheirSide) {
 
 TEST_F(VertexBake, RuntimesReadTheFolderOrSayWhatIsWrong) {
   const TriangleMesh mesh = shapes::icosphere(1);
-  const TexelReceivers receivers = receivers_on_vertices(mesh).receivers;
+  const ReceiverSet receivers = receivers_on_vertices(mesh).receivers;
   const auto write = [&] {
     OutputSet outputs(folder());
     write_vertex_planes(outputs, {furnace_transfer(receivers, 3, 1)}, receivers, mesh, 16,
@@ -270,7 +272,7 @@ TEST_F(VertexBake, RuntimesReadTheFolderOrSayWhatIsWrong) {
   ASSERT_TRUE(asset.is_per_vertex());
   EXPECT_EQ(asset.albedo.constant, Eigen::Vector3f(0.5f, 0.25f, 1));
   ASSERT_EQ(asset.vertex_transfer.size(), asset.mesh.positions.size() * 9);
-  // Half a step of 16 bits, and the mesh's own normals, good to half a step of 12 bits.
+  // Errors: half a step of 16 bits, and that of the mesh's normals, half a step of 12 bits.
   const ShBasis basis(3);
   for (std::size_t v = 0; v < asset.mesh.positions.size(); ++v) {
     const std::vector<float> truth = unoccluded_transfer(basis, asset.mesh.normals[v]);

@@ -64,7 +64,7 @@ TEST(Orbit, PanningMovesThePointLookedAtWithThePointer) {
   const Eigen::Vector4f target = camera_of(orbit, shape, 320, 200).target.cast<float>().homogeneous();
   pan_orbit(orbit, shape, 24, -15, 320, 200);
   const Eigen::Vector4f clip = camera_of(orbit, shape, 320, 200).clip_from_object() * target;
-  // From the middle of the picture, in pixels; clip space is 2 wide and high.
+  // Measure from the middle of the picture, in pixels; clip space is 2 wide and high.
   EXPECT_NEAR(clip.x() / clip.w() * 160, 24, 0.01);
   EXPECT_NEAR(clip.y() / clip.w() * 100, 15, 0.01);
 }

@@ -6,6 +6,7 @@
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "base/file_names.h"
+#include "base/json.h"
 #include "base/stopwatch.h"
 
 namespace {

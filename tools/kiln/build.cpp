@@ -10,6 +10,7 @@
 
 #include "base/asset_layout.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/outputs.h"
 #include "base/process.h"
 #include "base/progress.h"

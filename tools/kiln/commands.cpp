@@ -9,6 +9,7 @@
 
 #include "base/errors.h"
 #include "base/file_names.h"
+#include "base/json.h"
 #include "base/process.h"
 #include "base/progress.h"
 #include "kiln/build.h"

@@ -5,7 +5,9 @@
 #include <cctype>
 #include <fmt/format.h>
 
+#include "base/json.h"
 #include "kiln/summary.h"
+#include "report/labels.h"
 
 namespace kiln {
 
@@ -44,13 +46,6 @@ const Json* metric(const Json& metrics, const char* stage, const char* name) {
   if (record == metrics.end() || !record->is_object()) return nullptr;
   const auto value = record->find(name);
   return value == record->end() || !value->is_number() ? nullptr : &*value;
-}
-
-/// Formats a number with its digits in groups of three.
-std::string grouped(long long value) {
-  std::string text = std::to_string(value);
-  for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3) text.insert(at, "\u202f");
-  return text;
 }
 
 std::string row(const char* label, const std::string& value) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/json.h"
 #include "import/import_settings.h"
 #include "kiln/stages.h"
 

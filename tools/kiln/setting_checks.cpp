@@ -7,6 +7,7 @@
 
 #include "bake/bake_settings.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "compress/compress_settings.h"
 #include "kiln/metrics.h"
 #include "kiln/nearest.h"

@@ -8,6 +8,7 @@
 
 #include "base/errors.h"
 #include "base/file_names.h"
+#include "base/json.h"
 #include "base/outputs.h"
 #include "kiln/text_file.h"
 

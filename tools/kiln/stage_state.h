@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "base/options.h"
 #include "kiln/stages.h"
 
 namespace kiln {

@@ -3,6 +3,8 @@
 
 #include <stdexcept>
 
+#include "base/json.h"
+
 namespace kiln {
 
 std::vector<std::string> stage_names() {

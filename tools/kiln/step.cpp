@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/outputs.h"
 #include "base/process.h"
 #include "base/progress.h"

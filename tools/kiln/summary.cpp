@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/file_names.h"
+#include "base/json.h"
 
 namespace kiln {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "base/options.h"
+#include "base/json.h"
 #include "kiln/pipeline.h"
 
 namespace kiln {

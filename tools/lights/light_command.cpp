@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "lights/light_command.h"
 
+#include "base/command_line.h"
 #include "base/errors.h"
 #include "lights/light_file.h"
 

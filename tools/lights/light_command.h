@@ -3,10 +3,11 @@
 
 #include <filesystem>
 
-#include "base/command_line.h"
 #include "lights/light_settings.h"
 
 namespace kiln {
+
+class CommandLine;
 
 /// Adds the options for lights to a command line; their values go to `settings`, whose defaults they show, and
 /// `light_file`.

@@ -2,6 +2,7 @@
 #include "lights/light_file.h"
 
 #include "asset/fields.h"
+#include "base/json.h"
 
 namespace kiln {
 

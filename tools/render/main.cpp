@@ -3,6 +3,7 @@
 
 #include "base/command_line.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/stopwatch.h"
 #include "lights/light_command.h"
 #include "render/render.h"

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "gpu/egl_context.h"
 #include "image/image_file.h"
 #include "lights/light_command.h"

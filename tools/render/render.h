@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "asset/prt_asset.h"
-#include "base/options.h"
+#include "base/json_fwd.h"
 #include "base/outputs.h"
 #include "base/progress.h"
 #include "lights/light_settings.h"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "base/options.h"
+#include "base/json_fwd.h"
 #include "gpu/egl_context.h"
 #include "image/image.h"
 #include "runtime/draw/scene_renderer.h"

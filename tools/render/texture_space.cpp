@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "runtime/decode/plane_weights.h"
 
 namespace kiln {

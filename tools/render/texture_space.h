@@ -2,7 +2,7 @@
 #pragma once
 
 #include "asset/prt_asset.h"
-#include "base/options.h"
+#include "base/json_fwd.h"
 #include "image/image.h"
 #include "render/render_settings.h"
 #include "runtime/light/scene_lights.h"

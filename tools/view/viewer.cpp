@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/outputs.h"
 #include "base/progress.h"
 #include "gpu/program.h"

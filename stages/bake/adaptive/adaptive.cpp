@@ -17,18 +17,18 @@ constexpr int coarsest_side = 8;
 constexpr std::size_t most_held_out = 2048;
 constexpr int most_rounds = 8;
 constexpr double first_bound_over_target = 4;
-constexpr float least_likeness = 0.707f;      // between a texel's normal and a corner's
-constexpr float largest_misplacement = 0.5f;  // of a texel from where its square has it, over the square's longest side
+constexpr float least_likeness = 0.707f;      // least cosine between the normals of a texel and a corner
+constexpr float largest_misplacement = 0.5f;  // distance of a texel from its place in the square, over the longest side
 constexpr std::uint32_t no_receiver = ~0u;
 
-/// `side` texels from a corner (i, j) to the next.
+/// Square of texels: its lower left corner (i, j), and the distance to the next corner, `side` texels.
 struct Square {
   int i = 0, j = 0, side = 0;
 };
 
 class AdaptiveBake {
  public:
-  AdaptiveBake(const TexelReceivers& receivers, std::vector<std::uint8_t> known, const BakeSome& bake_some,
+  AdaptiveBake(const ReceiverSet& receivers, std::vector<std::uint8_t> known, const BakeSome& bake_some,
                TransferVectors& transfer, const ProgressFunction& progress)
       : receivers_(receivers),
         known_(std::move(known)),
@@ -36,12 +36,12 @@ class AdaptiveBake {
         transfer_(transfer),
         progress_(progress),
         receiver_at_(static_cast<std::size_t>(receivers.width) * receivers.height, no_receiver),
-        square_of_(receivers.texels.size()),
+        square_of_(receivers.slots.size()),
         basis_(band_of(transfer.coefficients - 1) + 1),
         width_(static_cast<std::size_t>(transfer.coefficients)),
-        taken_(receivers.texels.size() * width_) {
-    for (std::uint32_t r = 0; r < receivers.texels.size(); ++r) {
-      receiver_at_[receivers.texels[r]] = r;
+        taken_(receivers.slots.size() * width_) {
+    for (std::uint32_t r = 0; r < receivers.slots.size(); ++r) {
+      receiver_at_[receivers.slots[r]] = r;
       if (known_[r] != 0) note(r);
     }
   }
@@ -51,10 +51,10 @@ class AdaptiveBake {
     report.target = target;
     report.bound = first_bound_over_target * target;
     for (report.rounds = 1;; ++report.rounds) {
-      // Step 1: squares, from coarse to fine.
+      // Step 1: bake the corners of squares, from coarse to fine.
       refine(report.bound);
 
-      // Step 2: what some of the others would have been.
+      // Step 2: bake some of the interpolated texels, too, to measure the error.
       const std::vector<std::uint32_t> left = unknown();
       report.interpolated = left.size();
       if (left.empty()) {
@@ -65,7 +65,7 @@ class AdaptiveBake {
       check(left, report);
       if (report.error <= target) break;
 
-      // Step 3: stricter, and at last everything.
+      // Step 3: be stricter in the next round, and bake everything in the last.
       report.bound *= std::clamp(0.8 * target / report.error, 0.2, 0.8);
       if (report.rounds == most_rounds) {
         bake(left);
@@ -75,7 +75,7 @@ class AdaptiveBake {
         break;
       }
     }
-    // Step 4: interpolate what is left.
+    // Step 4: interpolate the texels that are left.
     const std::vector<std::uint32_t> left = unknown();
     report.interpolated = left.size();
     report.baked = baked_;
@@ -101,7 +101,7 @@ class AdaptiveBake {
     return list;
   }
 
-  /// Bakes those of `wanted` that are not known.
+  /// Bakes the receivers among `wanted` that are not known.
   void bake(std::vector<std::uint32_t> wanted) {
     std::erase_if(wanted, [&](std::uint32_t r) { return r == no_receiver || known_[r] != 0; });
     std::sort(wanted.begin(), wanted.end());
@@ -117,7 +117,7 @@ class AdaptiveBake {
     progress_(static_cast<double>(baked_) / static_cast<double>(known_.size()));
   }
 
-  /// Notes what shadows take from a receiver's transfer, which is known from now on.
+  /// Stores the light that shadows take from a receiver, whose transfer is known from now on.
   void note(std::uint32_t r) {
     const std::vector<float> open = unoccluded_transfer(basis_, receivers_.normals[r]);
     for (std::size_t c = 0; c < width_; ++c) taken_[r * width_ + c] = open[c] - transfer_.plane(static_cast<int>(c))[r];
@@ -126,7 +126,7 @@ class AdaptiveBake {
 
   const float* taken(std::uint32_t r) const { return taken_.data() + r * width_; }
 
-  /// Whether all texels of the square are covered and stand where its corners say.
+  /// Tells whether all texels of the square are covered and stand where its corners say.
   bool is_one_piece(const Square& square, const std::array<std::uint32_t, 4>& at) const {
     if (std::find(at.begin(), at.end(), no_receiver) != at.end()) return false;
     const auto& p = receivers_.positions;
@@ -145,7 +145,8 @@ class AdaptiveBake {
     return true;
   }
 
-  /// Whether what shadows take at no two corners differs by more than `bound` (a length).
+  /// Tells whether the light that shadows take differs by at most `bound` (a length of vectors) between any two
+  /// corners.
   bool agree(const std::array<std::uint32_t, 4>& at, double bound) const {
     for (int k = 0; k < 4; ++k)
       for (int other = 0; other < k; ++other) {
@@ -211,7 +212,7 @@ class AdaptiveBake {
     }
   }
 
-  /// The rms length of the known vectors.
+  /// Returns the root mean square of the known vectors' lengths.
   double known_length() const {
     double squared = 0;
     std::size_t count = 0;
@@ -222,11 +223,11 @@ class AdaptiveBake {
     return count > 0 ? std::sqrt(squared / static_cast<double>(count)) : 0;
   }
 
-  /// The transfer that a receiver's square gives it.
+  /// Returns the transfer that a receiver's square gives it.
   std::vector<float> interpolate(std::uint32_t r) const {
     const Square& square = square_of_[r];
     const std::array<std::uint32_t, 4> at = corners(square);
-    const auto texel = static_cast<int>(receivers_.texels[r]);
+    const auto texel = static_cast<int>(receivers_.slots[r]);
     const float s = static_cast<float>(texel % receivers_.width - square.i) / static_cast<float>(square.side),
                 t = static_cast<float>(texel / receivers_.width - square.j) / static_cast<float>(square.side);
     const std::array<float, 4> bilinear = {(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t};
@@ -262,7 +263,7 @@ class AdaptiveBake {
         squared_length += truth * truth;
       }
     report.error_of_interpolated = squared_length > 0 ? std::sqrt(squared_error / squared_length) : 0;
-    // Over all: those that are known have no error.
+    // Average over all texels: known ones have no error.
     const double interpolated_share = static_cast<double>(left.size()) / static_cast<double>(known_.size());
     const double mean_error = squared_error / static_cast<double>(sample.size()) * interpolated_share;
     const double length = known_length();
@@ -279,7 +280,7 @@ class AdaptiveBake {
     std::fill(known_.begin(), known_.end(), 1);
   }
 
-  const TexelReceivers& receivers_;
+  const ReceiverSet& receivers_;
   std::vector<std::uint8_t> known_;
   const BakeSome& bake_some_;
   TransferVectors& transfer_;
@@ -288,13 +289,13 @@ class AdaptiveBake {
   std::vector<Square> square_of_;           // by receiver
   ShBasis basis_;
   std::size_t width_;
-  std::vector<float> taken_;  // by known receiver, width_ numbers each: what shadows take
+  std::vector<float> taken_;  // light that shadows take, by known receiver: width_ numbers each
   std::size_t baked_ = 0;
 };
 
 }  // namespace
 
-AdaptiveReport adaptive_transfer(const TexelReceivers& receivers, std::vector<std::uint8_t> known,
+AdaptiveReport adaptive_transfer(const ReceiverSet& receivers, std::vector<std::uint8_t> known,
                                  const BakeSome& bake_some, double target, TransferVectors& transfer,
                                  const ProgressFunction& progress) {
   return AdaptiveBake(receivers, std::move(known), bake_some, transfer, progress).run(target);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bake/bake_reports.h"
-#include "bake/scene/texel_receivers.h"
+#include "bake/scene/receiver_set.h"
 #include "base/progress.h"
 #include "sh/transfer.h"
 
@@ -29,7 +29,7 @@ using BakeSome = std::function<TransferVectors(std::span<const std::uint32_t> re
 ///
 /// `known` is 1 where `transfer` already has a receiver's vector; all have one afterwards. The same bits for any number
 /// of threads that `bake_some` gives the same bits for.
-AdaptiveReport adaptive_transfer(const TexelReceivers& receivers, std::vector<std::uint8_t> known,
+AdaptiveReport adaptive_transfer(const ReceiverSet& receivers, std::vector<std::uint8_t> known,
                                  const BakeSome& bake_some, double target, TransferVectors& transfer,
                                  const ProgressFunction& progress = no_progress);
 

@@ -10,8 +10,8 @@ namespace kiln {
 
 namespace {
 
-constexpr double lit_share = 0.3;      // of the progress of the surface's light
-constexpr double surface_share = 0.5;  // of the progress in all
+constexpr double lit_share = 0.3;      // share of the surface's progress that direct light takes
+constexpr double surface_share = 0.5;  // share of all progress that the surface takes
 
 /// Surface whose light has bounced, and the engine that gathers it.
 struct LitSurface {
@@ -19,8 +19,8 @@ struct LitSurface {
   std::unique_ptr<GatherEngine> engine;
 };
 
-/// Lights the surface of the job's occluders and lets light bounce off it. Nothing of the cut surface but what the
-/// engine holds stays in memory.
+/// Lights the surface of the job's occluders and lets light bounce off it. Of the cut surface only what
+/// the engine holds stays in memory.
 LitSurface light_surface(const BakeJob& job, BakeBackend backend, std::unique_ptr<TransferEngine> direct,
                          std::span<const Eigen::Vector3f> directions, const BounceSample& sample, BounceReport& report,
                          const ProgressFunction& progress) {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Transfer bounces as radiance does, because it is linear in the light (Sloan, Kautz and Snyder, "Precomputed radiance
-// transfer for real-time rendering in dynamic, low-frequency lighting environments", 2002, section 5). Gathered at
-// points of the surface bounce after bounce, and at the receivers once: a final gather, as of radiosity (Lischinski,
-// Tampieri and Greenberg, "Combining hierarchical radiosity and discontinuity meshing", 1993).
+// Transfer bounces as radiance does, because it is linear in the light ([Sloan 2002], section 5). It is
+// gathered at points of the surface bounce after bounce, and at the receivers once: a final gather, as for radiosity
+// [Lischinski 1993].
 #include "bake/bounce/bounces.h"
 
 #include <algorithm>
@@ -32,7 +31,7 @@ void for_each_slab(const Receivers& receivers, const ProgressFunction& progress,
   }
 }
 
-/// The receivers of a slab that starts at `first`, in packets.
+/// Returns the receivers of a slab that starts at `first`, in packets.
 TracedReceivers slab_of(std::size_t first, const Receivers& part) {
   TracedReceivers slab;
   slab.order = packet_order(part);
@@ -76,7 +75,7 @@ void add_gathered(GatherEngine& engine, const Receivers& receivers, std::span<Tr
     }
 }
 
-/// Channel after channel of what all receivers gather.
+/// Returns what all receivers gather, channel after channel.
 std::vector<TransferVectors> gathered(GatherEngine& engine, int channels, int coefficients, const Receivers& receivers,
                                       std::span<TracedReceivers> traced, std::span<const Eigen::Vector3f> directions,
                                       const ProgressFunction& progress) {
@@ -92,7 +91,7 @@ std::vector<float> reflected(const SurfaceCache& cache, const std::vector<Transf
   });
 }
 
-/// Lets first hits be kept from the next pass on.
+/// Makes the engine keep first hits from the next pass on.
 void keep_hits(std::span<TracedReceivers> traced, RayMemory* memory) {
   if (memory == nullptr) return;
   for (TracedReceivers& slab : traced) slab.hits = FirstHits(*memory, slab.packets());
@@ -176,7 +175,7 @@ SentLight bounce_light(const SurfaceCache& cache, const TransferVectors& direct,
   for (int bounce = 1; bounce <= most; ++bounce) {
     const Stopwatch stopwatch;
     engine.set_radiance(bounced, light.width());
-    // Step 1: what this bounce adds.
+    // Step 1: add this bounce's light.
     const std::vector<TransferVectors> added = gathered(engine, light.channels, light.coefficients, sample.receivers(),
                                                         traced_sample, directions, no_progress);
     const double norm = std::sqrt(squared_norm(added));
@@ -188,7 +187,7 @@ SentLight bounce_light(const SurfaceCache& cache, const TransferVectors& direct,
     add(sample_total, added);
     report.energy.push_back(direct_norm > 0 ? norm / direct_norm : 0);
     light.add(bounced);
-    // Step 2: what the next one finds. Of a fixed count the last is the receivers' own.
+    // Step 2: gather the next bounce. The last of a fixed count is gathered by the receivers.
     if (bounce < most)
       bounced =
           reflected(cache,

@@ -16,13 +16,13 @@ namespace kiln {
 
 namespace {
 
-constexpr float depth_rounding = 0x1p-24f;  // of a depth in float32
+constexpr float depth_rounding = 0x1p-24f;  // error of a depth in float32
 
 using GpuHit = std::array<std::uint32_t, 4>;  // triangle, and the weights of its points
 
 struct Group : ReceiverGroup {
   using ReceiverGroup::ReceiverGroup;
-  GlBuffer hits;  // of the block
+  GlBuffer hits;  // hits of the block
 };
 
 }  // namespace

@@ -16,7 +16,6 @@ constexpr std::size_t most_heads_bytes = 32u << 20;
 constexpr std::size_t most_entries_bytes = 96u << 20;  // llvmpipe has storage blocks of 128 MiB at most
 constexpr std::size_t entry_bytes = 12;
 constexpr std::size_t first_capacity = 1u << 20;
-constexpr GLsizei most_bundle_triangles = 16'000'000;  // of all directions: a few tens of milliseconds on hardware
 constexpr GLuint end_of_list = ~0u;
 
 GlBuffer make_entries(std::size_t capacity) { return make_refilled_buffer(capacity * entry_bytes); }

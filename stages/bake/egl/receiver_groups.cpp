@@ -5,7 +5,7 @@ namespace kiln {
 
 namespace {
 
-/// A receiver and a total as the shaders have them (std430).
+/// Receiver and total as the shaders have them (std430).
 struct GpuReceiver {
   Eigen::Vector4f position, normal;
 };

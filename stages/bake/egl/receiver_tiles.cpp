@@ -7,7 +7,7 @@
 namespace kiln {
 
 std::vector<NormalCone> normal_cones(std::span<const Eigen::Vector3f> normals) {
-  constexpr float rounding = 1e-5f;  // of unit vectors and dot products in float32, with room
+  constexpr float rounding = 1e-5f;  // error of unit vectors and dot products in float32, with room
   std::vector<NormalCone> cones;
   for (std::size_t first = 0; first < normals.size(); first += tile_receivers) {
     const auto tile = normals.subspan(first, std::min(tile_receivers, normals.size() - first));

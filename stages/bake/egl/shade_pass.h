@@ -37,9 +37,9 @@ class ShadePass {
  private:
   struct Group : ReceiverGroup {
     using ReceiverGroup::ReceiverGroup;
-    GlBuffer weights;  // of the block
-    GlBuffer corners;  // with settings.triangle_ids
-    GlBuffer bounds;   // with settings.regions
+    GlBuffer weights;  // weights of the block
+    GlBuffer corners;  // only with settings.triangle_ids
+    GlBuffer bounds;   // only with settings.regions
   };
 
   void add_group(std::size_t first, std::size_t count);
@@ -55,7 +55,7 @@ class ShadePass {
   int chunks_;
   std::vector<Group> groups_;
   std::vector<GlBuffer> rows_;  // one per chunk
-  GlBuffer tile_counts_;        // pairs of the block: behind, lit, shadowed
+  GlBuffer tile_counts_;        // pairs of the block in skipped tiles: behind, lit, shadowed
   GlProgram weigh_program_;
   GlProgram sum_program_;
 };

@@ -10,8 +10,8 @@ namespace kiln {
 
 namespace {
 
-/// The corners of the convex hull in counter-clockwise order (Andrew, "Another efficient algorithm for convex hulls in
-/// two dimensions", 1979); of a degenerate set as many as there are.
+/// Returns the corners of the convex hull in counter-clockwise order [Andrew 1979]; one or two if all points lie on a
+/// point or a line.
 std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
   const auto before = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
@@ -36,7 +36,7 @@ std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
 
 struct Rectangle {
   Eigen::Vector2d axis = Eigen::Vector2d::UnitX();
-  Eigen::Vector2d lowest = Eigen::Vector2d::Zero();  // along the axis, and across it
+  Eigen::Vector2d lowest = Eigen::Vector2d::Zero();  // least coordinates along the axis and across it
   Eigen::Vector2d highest = Eigen::Vector2d::Zero();
 
   double area() const { return (highest - lowest).prod(); }
@@ -81,7 +81,7 @@ ShadowFrame fit_shadow_frame(std::span<const Eigen::Vector3f> hull, const Eigen:
     farthest = std::min(farthest, p.dot(towards_light));
   }
 
-  // Step 2: the least rectangle, not thinner than a hair (a flat object seen edge on), with its margin.
+  // Step 2: find the least rectangle, not thinner than a hair (a flat object seen edge on), with its margin.
   const Rectangle rectangle = least_rectangle(convex_hull(std::move(projected)));
   const double hair = 1e-6 * std::max({(rectangle.highest - rectangle.lowest).maxCoeff(), nearest - farthest, 1e-30});
   const Eigen::Vector2d centre = 0.5 * (rectangle.lowest + rectangle.highest);
@@ -90,7 +90,7 @@ ShadowFrame fit_shadow_frame(std::span<const Eigen::Vector3f> hull, const Eigen:
   const double depth_margin = 1e-3 * std::max(nearest - farthest, hair);
   const double depth_extent = nearest - farthest + 2 * depth_margin;
 
-  // Step 3: rows that map a point to the map and to its depth.
+  // Step 3: make the rows that map a point to the map and to its depth.
   const Eigen::Vector3d u = rectangle.axis.x() * first + rectangle.axis.y() * second;
   const Eigen::Vector3d v = -rectangle.axis.y() * first + rectangle.axis.x() * second;
   const auto row = [](const Eigen::Vector3d& axis, double offset, double scale) {

@@ -12,8 +12,6 @@ namespace kiln {
 
 namespace {
 
-constexpr GLsizei most_draw_triangles = 16'000'000;  // of all layers: a few tens of milliseconds on hardware
-
 constexpr GLuint no_triangle = ~0u;
 
 GLenum depth_format(ShadowDepth depth) {
@@ -87,12 +85,12 @@ void ShadowMaps::add_pass(GLenum culled, int layers) {
 }
 
 void ShadowMaps::draw(std::span<const Eigen::Vector3f> directions) {
-  // Step 1: the frames.
+  // Step 1: fit and upload the frames.
   const std::vector<View> views = fit_views(hull_, directions, size_);
   refill_buffer<View>(views_, views);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, views_.name());
 
-  // Step 2: the maps.
+  // Step 2: draw the maps.
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LESS);
@@ -128,7 +126,7 @@ void ShadowMaps::draw_layers(const Pass& pass, int first, int count) const {
   if (settings_.triangle_ids && &pass == &passes_[0])
     glClearNamedFramebufferuiv(pass.framebuffer.name(), GL_COLOR, 0, &no_triangle);
   glUniform1i(uniform_location(program_, "first_layer"), first);
-  // Short submissions: drivers reset a device that does not come back for seconds.
+  // Keep submissions short: drivers reset a device that does not come back for seconds.
   const GLsizei step = 3 * std::max<GLsizei>(1, most_draw_triangles / count);
   for (GLsizei begin = 0; begin < indices_; begin += step) {
     glDrawElementsInstanced(GL_TRIANGLES, std::min(step, indices_ - begin), GL_UNSIGNED_INT,
@@ -160,7 +158,7 @@ void ShadowMaps::bind() const {
 float ShadowMaps::depth_rounding() const {
   switch (settings_.depth) {
     case ShadowDepth::fixed_24:
-      return 0x1p-24f;  // half a step, and the float32 it was computed in
+      return 0x1p-24f;  // half a step and the rounding of float32
     case ShadowDepth::fixed_16:
       return 0x1p-17f + 0x1p-24f;
     case ShadowDepth::float_32:

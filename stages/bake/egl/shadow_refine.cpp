@@ -11,7 +11,7 @@ namespace kiln {
 bool resolve_ambiguous(const BlockWeights& block, const Receivers& receivers,
                        std::span<const Eigen::Vector3f> directions, bool refine, const ShadowRays& rays,
                        TransferWork& work) {
-  // Step 1: what is marked.
+  // Step 1: collect the marked pairs.
   std::vector<ShadowRayQuery> queries;
   std::uint64_t marked = 0;
   for (std::size_t d = 0; d < directions.size(); ++d) {
@@ -32,7 +32,7 @@ bool resolve_ambiguous(const BlockWeights& block, const Receivers& receivers,
   work.ambiguous += marked;
   if (marked == 0 || !refine) return marked != 0;
 
-  // Step 2: rays.
+  // Step 2: decide them by rays.
   rays.occluded(receivers, queries);
   for (std::size_t d = 0; d < directions.size(); ++d) {
     float* row = block.weights.data() + d * block.count;

@@ -59,7 +59,7 @@ DirectionChoice choose_directions(TransferEngine& engine, const Receivers& sampl
     history.push_back(engine.sums());
     job.progress(static_cast<double>(k + 1) / static_cast<double>(counts.size()));
     if (counts[k] < fewest_directions) continue;
-    // The earlier prefix nearest to half of this one.
+    // Find the earlier prefix nearest to half of this one.
     const auto half = std::min_element(history.begin(), history.end() - 1, [&](const auto& a, const auto& b) {
       return std::abs(2 * a.directions - counts[k]) < std::abs(2 * b.directions - counts[k]);
     });

@@ -8,6 +8,7 @@
 #include "bake/backends.h"
 #include "bake/integrate/unoccluded.h"
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/stopwatch.h"
 #include "raycast/beam_transfer.h"
 #include "sh/basis.h"
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t pilot_receivers = 4096;
-constexpr double step_seconds = 1;  // between two chances to stop
+constexpr double step_seconds = 1;  // time between two chances to stop
 
 /// Receivers spread evenly over a list.
 struct Sample {
@@ -37,7 +38,7 @@ Sample sample_of(const Receivers& receivers, std::span<const std::uint32_t> indi
   return sample;
 }
 
-/// The shard's directions, whole blocks; only the last of all blocks may be smaller.
+/// Returns the shard's directions, whole blocks; only the last of all blocks may be smaller.
 std::vector<Eigen::Vector3f> shard_directions(std::span<const Eigen::Vector3f> all, const Shard& shard) {
   std::vector<Eigen::Vector3f> own;
   for (std::size_t block = 0; block * block_directions < all.size(); ++block) {
@@ -80,14 +81,15 @@ Integration::Integration(const BakeJob& job, std::size_t slab_receivers)
   const BakeSettings& settings = job.settings;
   const Occluders& occluders = job.occluders;
 
-  // Step 1: the receivers that something may shadow.
+  // Step 1: find the receivers that something may shadow.
   const float lift = ray_offset_of(settings, occluders.hull);
   const std::vector<std::uint8_t> unoccluded = unoccluded_receivers(occluders.hull, receivers_, lift);
   for (std::uint32_t r = 0; r < receivers_.size(); ++r)
     if (unoccluded[r] == 0) tested_.push_back(r);
 
-  // Step 2: the directions. Half of a sample's against the other half does not see an error of visibility, so rays may
-  // decide for a software renderer, which would draw all the depth maps for a few thousand receivers.
+  // Step 2: choose the directions. For a target error, rays may decide in place of a software renderer, which would
+  // draw all depth maps for a few thousand receivers: the two halves that are compared share their errors of
+  // visibility.
   int count = settings.directions;
   if (settings.max_error.wanted) {
     sampling_ = Sampling::progressive;
@@ -99,13 +101,13 @@ Integration::Integration(const BakeJob& job, std::size_t slab_receivers)
       choice_ = choose_directions(rays ? *rays : engine(), {sample.positions, sample.normals}, job);
       count = choice_->directions;
     } else {
-      count = block_directions;  // every receiver has its analytic transfer
+      count = block_directions;  // the fewest: every receiver has its analytic transfer
     }
   }
   directions_ = sample_directions(sampling_, count, static_cast<std::uint64_t>(job.seed));
   order_coherently(directions_, block_directions);
 
-  // Step 3: what tells sums of this bake from others.
+  // Step 3: hash what tells the sums of this bake from others.
   receivers_hash_ = hash_points({receivers_.positions, receivers_.normals});
   occluders_hash_ = hash_points({occluders.mesh.positions}) + hash_triangles(occluders.mesh.triangles);
 }
@@ -118,14 +120,14 @@ TransferEngine& Integration::engine() {
       const Sample sample = sample_of(receivers_, tested_);
       shadow_choice_ = choose_shadow_size({sample.positions, sample.normals}, job_);
     }
-    settings.shadow_size = shadow_choice_ ? shadow_choice_->size_texels : 256;  // nothing is shadowed
+    settings.shadow_size = shadow_choice_ ? shadow_choice_->size_texels : 256;  // any size will do: nothing is shadowed
   }
   engine_ = make_engine(backend_, job_.occluders, settings, job_.threads);
   return *engine_;
 }
 
 std::size_t Integration::slabs() const {
-  // One even where nothing is tested, so that a shard always has a file.
+  // Count one slab even where nothing is tested, so that a shard always has a file.
   return std::max<std::size_t>(1, (tested_.size() + slab_receivers_ - 1) / slab_receivers_);
 }
 
@@ -177,7 +179,7 @@ SumsFile Integration::sum(std::size_t slab, const Shard& shard, const ProgressFu
   }
   const fs::path path = checkpoints.folder / slab_name(slab);
 
-  // Step 1: what an earlier run left.
+  // Step 1: take up what an earlier run left.
   if (checkpoints.resume && !checkpoints.folder.empty() && fs::exists(path)) {
     SumsFile earlier = read_sums(path);
     if (earlier.key != file.key || earlier.first_receiver != file.first_receiver ||
@@ -188,7 +190,7 @@ SumsFile Integration::sum(std::size_t slab, const Shard& shard, const ProgressFu
   }
   if (file.complete()) return file;
 
-  // Step 2: step after step of about a second, each of whole blocks, with a checkpoint now and then.
+  // Step 2: integrate in steps of about a second, each of whole blocks, with a checkpoint now and then.
   engine().keep_blocked(memory_);
   engine().set_receivers({own.positions, own.normals}, job_.settings.bands);
   const std::int64_t blocks_before = file.blocks_done;
@@ -212,7 +214,7 @@ SumsFile Integration::sum(std::size_t slab, const Shard& shard, const ProgressFu
         progress((static_cast<double>(first) + fraction * static_cast<double>(count)) /
                  static_cast<double>(file.blocks_all));
       } catch (const Interrupted&) {
-        interrupted = true;  // after this step, whose sums are then whole
+        interrupted = true;  // stop after this step, whose sums are then whole
       }
     });
     blocks_added += count;

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "base/outputs.h"
 
 namespace kiln {
@@ -73,7 +74,7 @@ SumsFile read_sums(const fs::path& path) {
     hash = header.at("hash");
     const std::size_t receivers = header.at("receivers");
     const int coefficients = header.at("coefficients");
-    // Before anything is allocated by what the header says.
+    // Check the header before memory is allocated by its numbers.
     if (failure || coefficients < 1 || coefficients > 65 * 65 ||
         receivers > bytes / sizeof(std::int64_t) / static_cast<std::size_t>(coefficients) ||
         bytes != line.size() + 1 + receivers * static_cast<std::size_t>(coefficients) * sizeof(std::int64_t))

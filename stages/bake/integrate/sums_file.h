@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "base/options.h"
+#include "base/json.h"
 #include "sh/transfer_sums.h"
 
 namespace kiln {

@@ -23,11 +23,11 @@ std::vector<std::uint8_t> unoccluded_receivers(std::span<const Eigen::Vector3f> 
     for (std::size_t r = range.begin(); r != range.end(); ++r) {
       const Eigen::Vector3f& normal = receivers.normals[r];
       const Eigen::Vector3f origin = receivers.positions[r] + lift * normal;
-      // The dot products' roundings: three products and two sums of numbers up to `largest`.
+      // Bound the dot products' roundings: three products and two sums of numbers up to `largest`.
       const float rounding =
           8 * std::numeric_limits<float>::epsilon() * std::max(largest, origin.cwiseAbs().maxCoeff());
       const float plane = normal.dot(origin) - rounding;
-      // Runs of 64 corners, so that the inner loop has no way out and becomes vector code.
+      // Take runs of 64 corners, so that the inner loop has no way out and becomes vector code.
       constexpr std::size_t run = 64;
       bool empty = true;
       for (std::size_t begin = 0; empty && begin < x.size(); begin += run) {

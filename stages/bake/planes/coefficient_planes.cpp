@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "asset/write_asset.h"
+#include "detail/seam_solver.h"
 #include "image/gutter.h"
 #include "sh/basis.h"
 
@@ -13,27 +14,28 @@ namespace kiln {
 
 namespace {
 
-/// Looser than a normal map's, whose texels are the receivers' normals: gutters have no values of their own here.
+/// Weights of the seams' least squares. Covered texels are held less firmly than those of a normal map, which are the
+/// receivers' normals; gutters have no values of their own here.
 constexpr SeamWeights plane_weights = {.covered = 0.02};
 
-Image<float> filled_plane(std::span<const float> values, const TexelReceivers& receivers,
+Image<float> filled_plane(std::span<const float> values, const ReceiverSet& receivers,
                           const std::vector<std::uint8_t>& filled) {
   Image<float> plane(receivers.width, receivers.height, 1);
-  for (std::size_t r = 0; r < values.size(); ++r) plane.values()[receivers.texels[r]] = values[r];
+  for (std::size_t r = 0; r < values.size(); ++r) plane.values()[receivers.slots[r]] = values[r];
   receivers.fills.apply(plane.values());
   fill_gutters(plane, filled);
   return plane;
 }
 
-/// Texels whose values come of receivers: their own, or those of others of their chart.
-std::vector<std::uint8_t> filled_texels(const TexelReceivers& receivers) {
+/// Returns 1 for each texel whose value comes of receivers: its own, or others of its chart.
+std::vector<std::uint8_t> filled_texels(const ReceiverSet& receivers) {
   std::vector<std::uint8_t> filled = receivers.covered();
   for (const FillPlan::Texel& fill : receivers.fills.texels) filled[fill.texel] = 1;
   return filled;
 }
 
-/// Points along the seams whose lookups see no buried texel: what mismatch is measured at.
-std::vector<SeamPoint> seen_points(const Seams& seams, const TexelReceivers& receivers) {
+/// Returns the points at which mismatch is measured: those along the seams whose lookups see no buried texel.
+std::vector<SeamPoint> seen_points(const Seams& seams, const ReceiverSet& receivers) {
   std::vector<std::uint8_t> is_buried(static_cast<std::size_t>(receivers.width) * receivers.height, 0);
   for (const std::uint32_t texel : receivers.buried) is_buried[texel] = 1;
   std::vector<SeamPoint> points = seams.measuring_points();
@@ -46,7 +48,7 @@ std::vector<SeamPoint> seen_points(const Seams& seams, const TexelReceivers& rec
   return points;
 }
 
-/// As a runtime sees it.
+/// Returns a plane as a runtime sees it: stored and recovered.
 Image<float> shown_plane(const Image<float>& plane, const PlaneRange& range, int bits) {
   Image<float> shown(plane.width(), plane.height(), 1);
   std::transform(plane.values().begin(), plane.values().end(), shown.values().begin(),
@@ -73,8 +75,8 @@ class MismatchSums {
   std::vector<double> squares_;
 };
 
-/// Has `solver` weigh those points more where it leaves more than elsewhere, by the planes that hold most of transfer.
-void reweigh_points(SeamSolver& solver, const std::vector<TransferVectors>& channels, const TexelReceivers& receivers,
+/// Makes `solver` weigh points more where it leaves larger mismatches, by the planes that hold most of transfer.
+void reweigh_points(SeamSolver& solver, const std::vector<TransferVectors>& channels, const ReceiverSet& receivers,
                     const std::vector<std::uint8_t>& filled) {
   constexpr int rounds = 2;
   constexpr int planes = 9;
@@ -93,8 +95,7 @@ void reweigh_points(SeamSolver& solver, const std::vector<TransferVectors>& chan
 }  // namespace
 
 WrittenPlanes write_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels,
-                           const TexelReceivers& receivers, PrtDescription asset, const Seams& seams,
-                           SeamChoice choice) {
+                           const ReceiverSet& receivers, PrtDescription asset, const Seams& seams, SeamChoice choice) {
   const std::vector<std::uint8_t> filled = filled_texels(receivers);
   const std::vector<SeamPoint> points = seen_points(seams, receivers);
   MismatchSums before(points), after(points);
@@ -107,7 +108,7 @@ WrittenPlanes write_planes(OutputSet& outputs, const std::vector<TransferVectors
   for (std::size_t channel = 0; channel < channels.size(); ++channel)
     for (int i = 0; i < channels[channel].coefficients; ++i) {
       const std::span<const float> values = channels[channel].plane(i);
-      // The range of what was baked is what is possible: no equalising and no slope that a gutter continues leaves it.
+      // Keep to the range of what was baked: neither equalising nor a slope that a gutter continues may leave it.
       const PlaneRange range = range_of(values);
       Image<float> plane = filled_plane(values, receivers, filled);
       before.add(shown_plane(plane, range, asset.bits));
@@ -115,7 +116,7 @@ WrittenPlanes write_planes(OutputSet& outputs, const std::vector<TransferVectors
       const Image<float> shown = shown_plane(plane, range, asset.bits);
       after.add(shown);
       for (std::size_t r = 0; r < values.size(); ++r) {
-        const std::uint32_t texel = receivers.texels[r];
+        const std::uint32_t texel = receivers.slots[r];
         const double value = values[r], equalised = plane.values()[texel];
         squared_length += value * value;
         squared_change += (equalised - value) * (equalised - value);
@@ -131,7 +132,7 @@ WrittenPlanes write_planes(OutputSet& outputs, const std::vector<TransferVectors
   asset.origin = seams.atlas().frame.origin;
   write_description(outputs, asset);
 
-  const double length = std::sqrt(squared_length / static_cast<double>(receivers.texels.size()));
+  const double length = std::sqrt(squared_length / static_cast<double>(receivers.slots.size()));
   const auto relative = [&](double squared) { return squared_length > 0 ? std::sqrt(squared / squared_length) : 0; };
   return {before.relative_to(length), after.relative_to(length), relative(squared_change), relative(squared_error)};
 }

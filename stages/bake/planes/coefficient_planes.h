@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "asset/prt_asset.h"
-#include "bake/scene/texel_receivers.h"
+#include "bake/scene/receiver_set.h"
 #include "base/outputs.h"
 #include "detail/seam_choice.h"
 #include "detail/seams.h"
@@ -26,7 +26,6 @@ struct WrittenPlanes {
 /// `asset` says what a consumer finds in the folder besides the planes (mesh, normals, albedo) and the bits of a stored
 /// value. Planes that an earlier run with more of them left in the folder are removed.
 WrittenPlanes write_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels,
-                           const TexelReceivers& receivers, PrtDescription asset, const Seams& seams,
-                           SeamChoice choice);
+                           const ReceiverSet& receivers, PrtDescription asset, const Seams& seams, SeamChoice choice);
 
 }  // namespace kiln

@@ -10,7 +10,7 @@
 namespace kiln {
 
 std::vector<std::uint32_t> write_vertex_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels,
-                                               const TexelReceivers& receivers, const TriangleMesh& mesh, int bits,
+                                               const ReceiverSet& receivers, const TriangleMesh& mesh, int bits,
                                                const PrtAlbedo& albedo) {
   if (static_cast<std::size_t>(receivers.width) != mesh.positions.size())
     throw std::invalid_argument("write_vertex_planes: receivers of this mesh's vertices are needed");
@@ -21,21 +21,23 @@ std::vector<std::uint32_t> write_vertex_planes(OutputSet& outputs, const std::ve
   asset.albedo = albedo;
   return write_vertex_asset(outputs, asset, mesh, [&](int channel, int coefficient) {
     const std::span<const float> values = channels[static_cast<std::size_t>(channel)].plane(coefficient);
-    VertexPlane plane{std::vector<float>(mesh.positions.size(), 0.f), range_of(values)};  // dark where nothing fills
-    for (std::size_t r = 0; r < values.size(); ++r) plane.values[receivers.texels[r]] = values[r];
+    VertexPlane plane{std::vector<float>(mesh.positions.size(), 0.f),
+                      range_of(values)};  // 0 (dark) where nothing fills
+    for (std::size_t r = 0; r < values.size(); ++r) plane.values[receivers.slots[r]] = values[r];
     receivers.fills.apply(plane.values);
     return plane;
   });
 }
 
-std::vector<std::uint32_t> stored_vertices(const TexelReceivers& receivers, const std::vector<std::uint32_t>& sources) {
+std::vector<std::uint32_t> stored_vertices(const ReceiverSet& receivers, const std::vector<std::uint32_t>& sources) {
   constexpr std::uint32_t lost = ~0u;
-  std::vector<std::uint32_t> place(static_cast<std::size_t>(receivers.width), lost);  // of a vertex of the mesh
+  std::vector<std::uint32_t> place(static_cast<std::size_t>(receivers.width),
+                                   lost);  // place in the file of each vertex of the mesh
   for (std::uint32_t k = 0; k < sources.size(); ++k) place[sources[k]] = k;
   if (std::find(place.begin(), place.end(), lost) != place.end())
     throw std::invalid_argument("stored_vertices: a vertex has no proper triangle and is not in the file");
-  std::vector<std::uint32_t> stored(receivers.texels.size());
-  std::transform(receivers.texels.begin(), receivers.texels.end(), stored.begin(),
+  std::vector<std::uint32_t> stored(receivers.slots.size());
+  std::transform(receivers.slots.begin(), receivers.slots.end(), stored.begin(),
                  [&](std::uint32_t vertex) { return place[vertex]; });
   return stored;
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "asset/prt_asset.h"
-#include "bake/scene/texel_receivers.h"
+#include "bake/scene/receiver_set.h"
 #include "base/outputs.h"
 #include "mesh/triangle_mesh.h"
 #include "sh/transfer.h"
@@ -17,10 +17,10 @@ namespace kiln {
 /// receivers, one per vertex of the mesh. Planes that a textured bake left in the folder are removed. Returns
 /// the vertex of `mesh` that each vertex of the file is.
 std::vector<std::uint32_t> write_vertex_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels,
-                                               const TexelReceivers& receivers, const TriangleMesh& mesh, int bits,
+                                               const ReceiverSet& receivers, const TriangleMesh& mesh, int bits,
                                                const PrtAlbedo& albedo = {});
 
 /// Returns the vertex of the file that each receiver is; `sources` is what write_vertex_planes returned.
-std::vector<std::uint32_t> stored_vertices(const TexelReceivers& receivers, const std::vector<std::uint32_t>& sources);
+std::vector<std::uint32_t> stored_vertices(const ReceiverSet& receivers, const std::vector<std::uint32_t>& sources);
 
 }  // namespace kiln

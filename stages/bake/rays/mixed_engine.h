@@ -9,8 +9,8 @@
 
 namespace kiln {
 
-/// Shadows by beams where a pilot finds them cheaper than rays, by rays elsewhere: what a machine without a GPU does
-/// unless told otherwise.
+/// Engine that finds shadows by beams where a pilot finds them cheaper than rays, by rays elsewhere: the default of a
+/// machine without a GPU.
 class MixedEngine : public TransferEngine {
  public:
   /// Rays start `ray_offset` (object units) off the receiver along its normal. `planned`: as many directions, in

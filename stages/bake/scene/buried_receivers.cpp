@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::uint32_t no_chart = ~0u;
 
-/// Places of a texel that are tried where its centre is buried, in texels from it, the nearest first.
+/// Places that are tried in a texel whose centre is buried: offsets from it in texels, the nearest first.
 constexpr std::array<std::array<float, 2>, 16> places = {{{-.125f, -.125f},
                                                           {.125f, -.125f},
                                                           {-.125f, .125f},
@@ -39,10 +39,10 @@ constexpr std::array<std::array<float, 2>, 16> places = {{{-.125f, -.125f},
                                                           {-.375f, .375f},
                                                           {.375f, .375f}}};
 
-/// Texels farther from any that is not buried are tried at their outermost places alone, the last of the list.
+/// Number of places, the outermost and last of the list, that are tried in texels far from any that is not buried.
 constexpr std::size_t far_places = 4;
 
-/// How a texel's place moves on the low mesh from texel to texel, object units.
+/// Steps on the low mesh from a texel to the next, across and up, object units.
 struct TexelSteps {
   Eigen::Vector3f across = Eigen::Vector3f::Zero(), up = Eigen::Vector3f::Zero();
 
@@ -69,16 +69,16 @@ void for_each_neighbour(std::uint32_t texel, int width, int height, const Visit&
       if (x != i || y != j) visit(static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(width) + x);
 }
 
-/// The receivers that are kept, in order.
-void keep_only(TexelReceivers& receivers, const std::vector<std::uint8_t>& dropped) {
+/// Removes the receivers that are marked in `dropped`; the others stay in order.
+void keep_only(ReceiverSet& receivers, const std::vector<std::uint8_t>& dropped) {
   std::size_t kept = 0;
   for (std::size_t r = 0; r < dropped.size(); ++r) {
     if (dropped[r] != 0) continue;
-    receivers.texels[kept] = receivers.texels[r];
+    receivers.slots[kept] = receivers.slots[r];
     receivers.positions[kept] = receivers.positions[r];
     receivers.normals[kept++] = receivers.normals[r];
   }
-  receivers.texels.resize(kept);
+  receivers.slots.resize(kept);
   receivers.positions.resize(kept);
   receivers.normals.resize(kept);
 }
@@ -103,32 +103,32 @@ FillPlan plan_fills(std::vector<std::uint32_t> open, std::vector<std::uint8_t> k
       else
         left.push_back(place);
     }
-    if (plan.texels.size() == before) break;  // charts that are buried as a whole
+    if (plan.texels.size() == before) break;  // the rest is in charts that are buried as a whole
     for (std::size_t k = before; k < plan.texels.size(); ++k) known[plan.texels[k].texel] = 1;
     open = std::move(left);
   }
   return plan;
 }
 
-/// Gives receivers that are buried places in their texels that are not, where there are any, and takes their mark.
-std::size_t move_to_seen_places(TexelReceivers& receivers, const TriangleMesh& atlas, const UvRaster& raster,
+/// Moves buried receivers to places in their texels that are not buried, where there are any, and removes their mark.
+std::size_t move_to_seen_places(ReceiverSet& receivers, const TriangleMesh& atlas, const UvRaster& raster,
                                 const Occluders& occluders, const BuriedTest& is_buried,
                                 std::vector<std::uint8_t>& buried) {
   const RayScene surface(occluders.mesh);
   const Components parts = find_components(join_at_positions(occluders.mesh));
   std::vector<std::uint8_t> seen(raster.texels.size(), 0);
-  for (std::size_t r = 0; r < buried.size(); ++r) seen[receivers.texels[r]] = buried[r] == 0 ? 1 : 0;
+  for (std::size_t r = 0; r < buried.size(); ++r) seen[receivers.slots[r]] = buried[r] == 0 ? 1 : 0;
 
-  // Step 1: the points of the surface that other places of the texels stand for.
+  // Step 1: find the points of the surface that other places of the texels stand for.
   struct Candidate {
     std::uint32_t receiver;
     std::uint8_t place;
   };
   std::vector<Candidate> candidates;
   for (std::uint32_t r = 0; r < buried.size(); ++r) {
-    if (buried[r] == 0 || !raster.texels[receivers.texels[r]].covered()) continue;
+    if (buried[r] == 0 || !raster.texels[receivers.slots[r]].covered()) continue;
     bool is_near = false;
-    for_each_neighbour(receivers.texels[r], raster.width, raster.height,
+    for_each_neighbour(receivers.slots[r], raster.width, raster.height,
                        [&](std::uint32_t neighbour) { is_near = is_near || seen[neighbour] != 0; });
     for (std::size_t k = is_near ? 0 : places.size() - far_places; k < places.size(); ++k)
       candidates.push_back({r, static_cast<std::uint8_t>(k)});
@@ -137,7 +137,7 @@ std::size_t move_to_seen_places(TexelReceivers& receivers, const TriangleMesh& a
   std::vector<std::uint8_t> usable(candidates.size(), 0);
   tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t k) {
     const auto& [r, place] = candidates[k];
-    const TexelSteps steps(atlas, raster.texels[receivers.texels[r]].triangle, raster.width, raster.height);
+    const TexelSteps steps(atlas, raster.texels[receivers.slots[r]].triangle, raster.width, raster.height);
     const Eigen::Vector3f step = places[place][0] * steps.across + places[place][1] * steps.up;
     const Eigen::Vector3f &from = receivers.positions[r], &normal = receivers.normals[r];
     const float reach = step.norm();
@@ -150,7 +150,7 @@ std::size_t move_to_seen_places(TexelReceivers& receivers, const TriangleMesh& a
     normals[k] = normal;
   });
 
-  // Step 2: the first of them that is seen.
+  // Step 2: take the first of them that is seen.
   const std::vector<std::uint8_t> is_hidden = is_buried({positions, normals});
   std::size_t moved = 0;
   for (std::size_t k = 0; k < candidates.size(); ++k) {
@@ -167,23 +167,23 @@ bool all_of(const std::vector<std::uint8_t>& marks) {
   return std::all_of(marks.begin(), marks.end(), [](std::uint8_t mark) { return mark != 0; });
 }
 
-/// The places of receivers that are marked, and marks of the others' places.
-std::vector<std::uint32_t> places_of(const TexelReceivers& receivers, const std::vector<std::uint8_t>& marks,
+/// Returns the slots of the receivers that are marked, and marks the slots of the `others`.
+std::vector<std::uint32_t> places_of(const ReceiverSet& receivers, const std::vector<std::uint8_t>& marks,
                                      std::vector<std::uint8_t>& others) {
   std::vector<std::uint32_t> marked;
   others.assign(static_cast<std::size_t>(receivers.width) * static_cast<std::size_t>(receivers.height), 0);
   for (std::size_t r = 0; r < marks.size(); ++r) {
     if (marks[r] != 0)
-      marked.push_back(receivers.texels[r]);
+      marked.push_back(receivers.slots[r]);
     else
-      others[receivers.texels[r]] = 1;
+      others[receivers.slots[r]] = 1;
   }
   return marked;
 }
 
 }  // namespace
 
-BuriedReport set_aside_buried(TexelReceivers& receivers, const TriangleMesh& atlas, const Occluders& occluders,
+BuriedReport set_aside_buried(ReceiverSet& receivers, const TriangleMesh& atlas, const Occluders& occluders,
                               float ray_offset) {
   const BuriedTest is_buried(occluders.mesh.positions, occluders.mesh.triangles, ray_offset);
   std::vector<std::uint8_t> buried = is_buried(receivers.view());
@@ -210,7 +210,7 @@ BuriedReport set_aside_buried(TexelReceivers& receivers, const TriangleMesh& atl
   return report;
 }
 
-BuriedReport set_aside_buried_vertices(TexelReceivers& receivers, const TriangleMesh& mesh, const Occluders& occluders,
+BuriedReport set_aside_buried_vertices(ReceiverSet& receivers, const TriangleMesh& mesh, const Occluders& occluders,
                                        float ray_offset) {
   const std::vector<std::uint8_t> buried =
       BuriedTest(occluders.mesh.positions, occluders.mesh.triangles, ray_offset)(receivers.view());
@@ -222,7 +222,7 @@ BuriedReport set_aside_buried_vertices(TexelReceivers& receivers, const Triangle
   std::vector<std::uint32_t> open = places_of(receivers, buried, known);
   report.buried = open.size();
   receivers.buried = open;
-  std::vector<EdgeKey> edges;  // both ways
+  std::vector<EdgeKey> edges;  // each edge in both directions
   for (const Triangle& t : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
       edges.emplace_back(t[k], t[(k + 1) % 3]);

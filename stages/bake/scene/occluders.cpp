@@ -29,7 +29,7 @@ std::vector<Eigen::Vector3f> hull_corners(const TriangleMesh& mesh) {
   return hull;
 }
 
-/// Gives the whole corner normals where one of its parts has them; other parts get those of their creases.
+/// Sets the corner normals of the whole if one of its parts has them; other parts get those of their creases.
 void join_corner_normals(const std::vector<TriangleMesh>& parts, TriangleMesh& whole) {
   constexpr double crease_degrees = 45;  // as a surface cache has it for meshes without hard edges
   if (std::all_of(parts.begin(), parts.end(), [](const TriangleMesh& part) { return part.corner_normals.empty(); }))

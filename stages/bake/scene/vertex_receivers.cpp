@@ -20,18 +20,18 @@ namespace kiln {
 
 namespace {
 
-/// A point that faces as the vertex does is sought within this many times the largest distance of any vertex: beyond,
-/// it is on another part of the object.
+/// Multiple of the vertices' largest distance within which a point that faces as a vertex does is sought: beyond, it is
+/// on another part of the object.
 constexpr float largest_detour = 4;
 
-/// Fraction of the diagonal that is sought through at least: positions are quantised to 16 bits.
+/// Least distance of that search, a fraction of the diagonal: positions are quantised to 16 bits.
 constexpr float smallest_search = 1e-4f;
 
-/// Points and normals by vertex, listed along the curve.
-TexelReceivers pack(const std::vector<Eigen::Vector3f>& positions, const std::vector<Eigen::Vector3f>& normals) {
-  TexelReceivers receivers{static_cast<int>(positions.size()), 1, {}, {}, {}};
+/// Lists points and normals, one per vertex, along the curve.
+ReceiverSet pack(const std::vector<Eigen::Vector3f>& positions, const std::vector<Eigen::Vector3f>& normals) {
+  ReceiverSet receivers{static_cast<int>(positions.size()), 1, {}, {}, {}};
   for (const auto& [code, vertex] : morton_order(positions)) {
-    receivers.texels.push_back(vertex);
+    receivers.slots.push_back(vertex);
     receivers.positions.push_back(positions[vertex]);
     receivers.normals.push_back(normals[vertex]);
   }
@@ -102,7 +102,7 @@ VertexReceivers receivers_on_high_of_vertices(const TriangleMesh& mesh, const Tr
   const RayScene scene(high);
   const std::size_t vertices = mesh.positions.size();
 
-  // Step 1: the closest points of either side, and with them how far to look.
+  // Step 1: find the closest points of either side, and with them how far to look.
   std::vector<SurfacePoint> points(vertices);
   for_each_vertex(vertices, [&](std::size_t k) {
     points[k] = scene.closest_point(mesh.positions[k], std::numeric_limits<float>::infinity());
@@ -110,7 +110,7 @@ VertexReceivers receivers_on_high_of_vertices(const TriangleMesh& mesh, const Tr
   float farthest = smallest_search * bounding_box(high).diagonal();
   for (const SurfacePoint& point : points) farthest = std::max(farthest, largest_detour * point.distance);
 
-  // Step 2: the closest points of the right side.
+  // Step 2: find the closest points of the right side.
   std::vector<std::uint8_t> away(vertices, 0);
   std::vector<Eigen::Vector3f> positions(vertices), normals(vertices);
   for_each_vertex(vertices, [&](std::size_t k) {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/scene/texel_receivers.h"
+#include "bake/scene/receiver_set.h"
 #include "import/import_settings.h"
 #include "mesh/triangle_mesh.h"
 
@@ -14,10 +14,9 @@ namespace kiln {
 
 /// Vertices of a mesh as receivers.
 struct VertexReceivers {
-  /// Vertices as a texture of one row: texel k is vertex k. Listed along a space-filling curve, so that
-  /// neighbours in the list are neighbours in space.
-  TexelReceivers receivers;
-  double largest_distance = 0;  ///< of a vertex from its receiver, object units
+  /// One receiver for each vertex, along a space-filling curve.
+  ReceiverSet receivers;
+  double largest_distance = 0;  ///< largest distance of a vertex from its receiver, object units
   std::size_t facing_away = 0;  ///< vertices for which that surface has no point near them that faces as they do
 };
 

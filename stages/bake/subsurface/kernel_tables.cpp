@@ -18,12 +18,13 @@ constexpr int parts = 1 << part_bits;
 constexpr int radii_per_octave = 4;
 constexpr int distances_per_radius = 16;
 constexpr std::size_t distance_rows = static_cast<std::size_t>(KernelTables::disc_reach) * distances_per_radius + 2;
-constexpr int steps = 48;  // of the integrals below
+constexpr int steps = 48;  // number of steps of the integrals below
 
-/// A float that arithmetic may go on with.
+/// Returns a number as a float, clamped to what arithmetic may go on with.
 float tame(double value) { return static_cast<float>(std::min(value, 1e30)); }
 
-/// Of a circle of radius `rho` about a point at `distance` from the centre of a disc, the share that lies in the disc.
+/// Returns the share of a circle that lies in a disc: the circle of radius `rho` about a point at `distance` from the
+/// disc's centre.
 double arc_share(double rho, double distance, double radius) {
   if (rho <= radius - distance) return 1;
   if (rho >= radius + distance || rho <= distance - radius) return 0;
@@ -31,14 +32,14 @@ double arc_share(double rho, double distance, double radius) {
   return std::acos(std::clamp(cosine, -1.0, 1.0)) / std::numbers::pi;
 }
 
-/// What a disc sends to a point of its plane: the integral of arc_share over the energy within rho.
+/// Returns what a disc sends to a point of its plane: the integral of arc_share over the energy within rho.
 double disc_share(const ScatterProfile& profile, double distance, double radius) {
   const double from = std::abs(distance - radius), to = distance + radius;
   double below = profile.within(from);
   double sum = distance < radius ? below : 0;
   double lower = from;
   for (int k = 1; k <= steps && distance > 0; ++k) {
-    // Denser at both ends, where the share has its kinks.
+    // Sample denser at both ends, where the share has its kinks.
     const double upper = from + (to - from) * 0.5 * (1 - std::cos(std::numbers::pi * k / steps));
     const double above = profile.within(upper);
     sum += std::max(0.0, above - below) * arc_share(0.5 * (lower + upper), distance, radius);
@@ -53,7 +54,7 @@ double near_integral(const ScatterProfile& profile, double radius) {
   double sum = 0, below = 0;
   constexpr int fine_steps = 16 * steps;
   for (int k = 1; k <= fine_steps; ++k) {
-    // Cubic: dense at the centre, where R is steep.
+    // Space samples by the cube: dense at the centre, where R is steep.
     const auto place = [&](double at) { return reach * std::pow(at / fine_steps, 3); };
     const double above = profile.within(place(k));
     sum += std::max(0.0, above - below) *
@@ -73,7 +74,7 @@ float KernelTables::near_share(float distance, float radius) {
 KernelTables::KernelTables(std::span<const ScatterProfile> profiles, double least_radius, double most_radius,
                            double farthest)
     : channels_(profiles.size()) {
-  // Step 1: R over octaves of the squared distance, from a small part of the least disc on.
+  // Step 1: tabulate R over octaves of the squared distance, from a small part of the least disc on.
   const double nearest = least_radius / 16;
   lowest_octave_ = std::ilogb(std::max(nearest * nearest, 1e-37));
   const int highest_octave = std::ilogb(std::min(farthest * farthest, 1e37)) + 1;
@@ -85,7 +86,7 @@ KernelTables::KernelTables(std::span<const ScatterProfile> profiles, double leas
     for (std::size_t c = 0; c < channels_; ++c) density_[row * channels_ + c] = tame(profiles[c].density(r));
   }
 
-  // Step 2: means over discs, and the near parts.
+  // Step 2: tabulate means over discs, and the near parts.
   least_log2_radius_ = static_cast<float>(std::log2(least_radius));
   radii_ =
       2 + static_cast<std::size_t>(std::ceil(radii_per_octave * std::log2(std::max(1.0, most_radius / least_radius))));

@@ -26,7 +26,7 @@ class Builder {
   }
 
   void build(std::uint32_t first, std::uint32_t last, int level, std::uint32_t parent) {
-    // Step 1: down to where the samples part.
+    // Step 1: go down to where the samples part.
     while (level < morton_levels && octant(first, level) == octant(last - 1, level)) ++level;
     const auto own = static_cast<std::uint32_t>(tree_.nodes.size());
     SampleOctree::Node node;
@@ -37,7 +37,7 @@ class Builder {
     measure(node);
     tree_.nodes.push_back(node);
 
-    // Step 2: children.
+    // Step 2: add children.
     if (!node.is_leaf)
       for (std::uint32_t begin = first; begin < last;) {
         std::uint32_t end = begin + 1;

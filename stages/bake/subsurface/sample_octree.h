@@ -13,20 +13,20 @@ namespace kiln {
 struct SampleOctree {
   struct Node {
     Eigen::Vector3f centre;  ///< mean of the samples' positions, weighted by area
-    float area = 0;          ///< of all its samples
+    float area = 0;          ///< area of all its samples
     Eigen::Vector3f lower, upper;
-    std::uint32_t first = 0, last = 0;  ///< its samples in `order`; `last` is past the end
-    std::uint32_t next = 0;             ///< the node after all its children
-    std::uint32_t parent = 0;           ///< of the root: itself
+    std::uint32_t first = 0, last = 0;  ///< range of its samples in `order`; `last` is past the end
+    std::uint32_t next = 0;             ///< node after all its children
+    std::uint32_t parent = 0;           ///< the root's is the root itself
     bool is_leaf = false;
   };
   std::vector<Node> nodes;
-  std::vector<std::uint32_t> order;  ///< the samples along a Morton curve
+  std::vector<std::uint32_t> order;  ///< samples along a Morton curve
 
   explicit SampleOctree(const SurfaceSamples& samples);
 };
 
-/// Squared distance of a point from a node's box, 0 inside.
+/// Returns the squared distance of a point from a node's box, 0 inside.
 inline float squared_distance(const SampleOctree::Node& node, const Eigen::Vector3f& point) {
   return (node.lower - point).cwiseMax(point - node.upper).cwiseMax(0.f).squaredNorm();
 }

@@ -15,26 +15,27 @@ namespace kiln {
 
 namespace {
 
-constexpr int chunk_coefficients = 32;  // summed at a time, which bounds memory for many bands
+constexpr int chunk_coefficients = 32;  // coefficients summed at a time; bounds memory for many bands
 constexpr std::size_t block_receivers = 64;
 
-/// Samples whose normals are further apart than this stand on the other side of something thin, not around a crease.
+/// Least cosine between the normals of two samples on one side; below it, one stands on the other side of a thin part,
+/// not around a crease.
 constexpr float same_side_cosine = -0.5f;
 
-/// Discs much smaller than the others are as good as points.
+/// Least radius of a disc for the kernels, over the largest: smaller ones are as good as points.
 constexpr float least_radius_share = 1e-3f;
 
-/// Rows of numbers are padded to whole vectors of so many.
+/// Number of floats in a vector, to a multiple of which rows are padded.
 constexpr int row_lanes = 4;
 
 float radius_of(float area) { return std::sqrt(area * 0.318309886f); }
 
-/// One disc, along the octree's order.
+/// Sample of the surface as a disc, along the octree's order.
 struct OrderedSample {
   Eigen::Vector3f position;
   Eigen::Vector3f normal;
   float area = 0;
-  float radius = 0;  ///< for the kernels, not below least_radius_share of the largest
+  float radius = 0;  ///< radius for the kernels, at least least_radius_share of the largest
 };
 
 /// Weighted vectors on their way into sums: some at a time, so that they stay in the nearest cache while sums of a few
@@ -114,7 +115,7 @@ class KernelSums {
   KernelSums(const SampleOctree& tree, const std::vector<OrderedSample>& samples, const KernelTables& kernels)
       : tree_(tree), samples_(samples), kernels_(kernels), channels_(kernels.channels()) {}
 
-  /// `gains`: by sample and channel, what its vector is scaled with; empty for 1. Keeps references to both.
+  /// Keeps references to both. `gains` scale the vectors, by sample and channel; empty for 1.
   void set_vectors(const std::vector<float>& rows, std::size_t inputs, std::size_t width,
                    const std::vector<float>& gains) {
     rows_ = rows.data();
@@ -153,7 +154,7 @@ class KernelSums {
           near_weights(sums.channels_) {}
   };
 
-  /// What arrives at sample `p`: channels times width numbers, which stay in `scratch` until its next use.
+  /// Returns what arrives at sample `p`: channels times width numbers, which stay in `scratch` until its next use.
   const std::vector<float>& evaluate(std::uint32_t p, float solid_angle, Scratch& scratch) const {
     const OrderedSample& to = samples_[p];
     const float near_distance = KernelTables::near_reach * to.radius;
@@ -161,7 +162,7 @@ class KernelSums {
     scratch.near.clear();
     std::fill(scratch.near_weights.begin(), scratch.near_weights.end(), 0.f);
 
-    // Step 1: the octree, a node as a whole where it is far and small enough.
+    // Step 1: add the octree, a node as a whole where it is far and small enough.
     for (std::uint32_t at = 0; at < tree_.nodes.size();) {
       const SampleOctree::Node& node = tree_.nodes[at];
       const float squared = (node.centre - to.position).squaredNorm();
@@ -176,7 +177,7 @@ class KernelSums {
       ++at;
     }
 
-    // Step 2: what is near, with a plane's energy.
+    // Step 2: add the samples nearby, with a plane's energy.
     kernels_.near_total(to.radius, scratch.kernel.data());
     for (std::size_t c = 0; c < channels_; ++c)
       scratch.weights[c] = scratch.near_weights[c] > 0 ? scratch.kernel[c] / scratch.near_weights[c] : 0.f;
@@ -189,7 +190,7 @@ class KernelSums {
     return gains_ == nullptr ? 1.f : gains_[k * channels_ + channel];
   }
 
-  /// From one channel's vector to the next's.
+  /// Returns the distance from one channel's vector to the next's.
   std::size_t stride(std::size_t channels) const { return channels == 1 ? 0 : width_; }
 
   void add_sample(const OrderedSample& to, std::uint32_t q, float near_distance, Scratch& scratch) const {
@@ -202,7 +203,8 @@ class KernelSums {
     if (same_side)
       kernels_.disc_mean(from.radius, distance, kernel);
     else
-      kernels_.density(squared + 0.5f * from.radius * from.radius, kernel);  // a disc across: its mean square
+      kernels_.density(squared + 0.5f * from.radius * from.radius,
+                       kernel);  // the mean square distance of a disc's points from its centre
     const float* const vector = rows_ + q * inputs_ * width_;
     const float share = near ? KernelTables::near_share(distance, to.radius) : 0.f;
     if (near) {
@@ -258,7 +260,7 @@ std::vector<OrderedSample> ordered_samples(const SurfaceSamples& samples, const 
 
 std::size_t padded(int count) { return static_cast<std::size_t>((count + row_lanes - 1) / row_lanes * row_lanes); }
 
-/// `count` coefficients of every channel from `first` on, padded with zeros, row after row along the order.
+/// Returns `count` coefficients of every channel from `first` on, padded with zeros, row after row along the order.
 std::vector<float> gather_rows(const std::vector<TransferVectors>& incoming, const SampleOctree& tree, int first,
                                int count) {
   const std::size_t width = padded(count), row = incoming.size() * width;
@@ -285,7 +287,7 @@ void check(const SurfaceSamples& samples, const std::vector<TransferVectors>& in
     throw std::invalid_argument("scatter_transfer: the samples have no area");
 }
 
-/// Kernels for all distances between the samples of a tree.
+/// Makes kernels for all distances between the samples of a tree.
 KernelTables make_kernels(std::span<const ScatterProfile> profiles, const SampleOctree& tree,
                           const std::vector<OrderedSample>& ordered) {
   const auto [least, most] =
@@ -394,7 +396,7 @@ Scattering scatter_transfer(const SurfaceSamples& samples, const std::vector<Tra
                             std::span<const ScatterProfile> profiles, const ScatteringSettings& settings,
                             const ProgressFunction& progress) {
   check(samples, incoming, profiles);
-  constexpr double gains_share = 0.2;  // of the progress
+  constexpr double gains_share = 0.2;  // share of the progress
   const auto solid_angle = static_cast<float>(settings.solid_angle);
   const SampleOctree tree(samples);
   const std::vector<OrderedSample> ordered = ordered_samples(samples, tree);

@@ -12,11 +12,11 @@ namespace kiln {
 
 namespace {
 
-/// The receivers' surface is the high mesh if their areas come this close to it: another first occluder, a floor say,
-/// is not.
+/// Largest ratio between the areas of the receivers and of the high mesh, for that to be their surface: a first
+/// occluder of another kind, such as a floor, is not.
 constexpr double largest_correction = 1.25;
 
-/// Scales areas so that they sum to `area`, where that is near; gives the factor.
+/// Scales areas so that they sum to `area`, where that is near; returns the factor.
 double correct_areas(std::vector<float>& areas, double area) {
   const double sum = std::accumulate(areas.begin(), areas.end(), 0.0);
   if (!(area > 0 && area < sum * largest_correction && sum < area * largest_correction)) return 1;
@@ -32,7 +32,7 @@ SubsurfaceReport scatter_beneath(const SubsurfaceScene& scene, const SubsurfaceS
   std::vector<ScatterProfile> profiles = subsurface_profiles(settings);
   if (profiles.size() == 1) profiles.resize(channels.size(), profiles.front());
 
-  // Step 1: receivers as discs of a surface in millimetres.
+  // Step 1: make receivers into discs of a surface in millimetres.
   SubsurfaceReport report;
   const auto scale = static_cast<float>(settings.mm_per_unit);
   SurfaceSamples samples{

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bake/bake_reports.h"
-#include "bake/scene/texel_receivers.h"
+#include "bake/scene/receiver_set.h"
 #include "bake/subsurface/subsurface_settings.h"
 #include "base/progress.h"
 #include "mesh/triangle_mesh.h"
@@ -14,7 +14,7 @@ namespace kiln {
 
 /// Receivers, and the surface that they stand on.
 struct SubsurfaceScene {
-  const TexelReceivers& receivers;
+  const ReceiverSet& receivers;
   const TriangleMesh& mesh;  ///< the atlas; per vertex: the mesh whose vertices are receivers
   bool per_vertex = false;
   double high_area = 0;  ///< area of the high mesh, square object units; 0: the receivers stand on `mesh` itself

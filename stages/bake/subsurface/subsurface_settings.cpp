@@ -47,7 +47,7 @@ void add_text(OptionSet& options, const NumberText& text, GivenColours& value, c
       [text](const std::string& given) { return text.parse(given); }, text_of);
 }
 
-/// The wrong usage of one option beside what `material` and `model` are.
+/// Throws WrongUsage for options that do not go with `material` and `model`.
 void refuse_unused(const SubsurfaceSettings& settings, bool custom_dipole, bool custom_diffusion) {
   const auto refuse = [&](const char* name, bool given, bool used, const char* user) {
     if (given && !used)

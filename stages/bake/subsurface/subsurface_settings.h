@@ -13,7 +13,7 @@ namespace kiln {
 
 enum class SubsurfaceModel { dipole, diffusion };
 
-/// A quantity for red, green and blue, or nothing where the command line does not give it.
+/// Quantity for red, green and blue, or nothing where the command line does not give it.
 using GivenColours = std::optional<std::array<double, 3>>;
 
 struct SubsurfaceSettings {
@@ -22,10 +22,10 @@ struct SubsurfaceSettings {
   GivenColours scattering = {};      ///< custom, dipole: sigma_s', 1/mm
   GivenColours absorption = {};      ///< custom, dipole: sigma_a, 1/mm
   double eta = 1.3;                  ///< custom, dipole
-  GivenColours albedo = {};          ///< custom, diffusion: of the surface, 0 to 1
+  GivenColours albedo = {};          ///< custom, diffusion: albedo of the surface, 0 to 1
   GivenColours mean_free_path = {};  ///< custom, diffusion: mm
-  double mm_per_unit = 1000;         ///< object units are metres unless told otherwise
-  double solid_angle = 0.05;         ///< ScatteringSettings has it
+  double mm_per_unit = 1000;         ///< millimetres to an object unit; the default is for metres
+  double solid_angle = 0.05;         ///< as in ScatteringSettings
 
   bool wanted() const { return material != "none"; }
 };
@@ -33,8 +33,8 @@ struct SubsurfaceSettings {
 /// Adds `subsurface` and `subsurface-...` to the bake's options.
 void add_subsurface_options(OptionSet& options, SubsurfaceSettings& settings);
 
-/// One profile where all colours have the same, else those of red, green and blue; none where nothing is wanted. A
-/// measured material as diffusion has the dipole's total reflectance as surface albedo and the mean free path
+/// Returns one profile where all colours have the same, else those of red, green and blue; none where nothing is
+/// wanted. A measured material as diffusion has the dipole's total reflectance as surface albedo and the mean free path
 /// 1 / sigma_t'. Throws WrongUsage for settings that do not go together.
 std::vector<ScatterProfile> subsurface_profiles(const SubsurfaceSettings& settings);
 

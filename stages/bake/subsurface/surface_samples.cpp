@@ -13,9 +13,9 @@ namespace kiln {
 namespace {
 
 constexpr float least_cosine = 0.25f;
-constexpr int neighbourhood = 2;  // texels around an uncovered one in which a covered one is sought
+constexpr int neighbourhood = 2;  // texels around an uncovered one that are searched for a covered one
 
-/// A convex polygon of at most seven corners: a triangle cut by a square's four sides.
+/// Convex polygon of at most seven corners: a triangle cut by a square's four sides.
 struct Polygon {
   std::array<Eigen::Vector2d, 8> corners;
   int size = 0;
@@ -40,7 +40,7 @@ struct Polygon {
   }
 };
 
-/// What of `polygon` has sign * (coordinate - bound) >= 0 (Sutherland and Hodgman, "Reentrant polygon clipping", 1974).
+/// Cuts a polygon to the side where sign * (coordinate - bound) >= 0 [Sutherland 1974].
 Polygon clip(const Polygon& polygon, int axis, double bound, double sign) {
   Polygon kept;
   for (int k = 0; k < polygon.size; ++k) {
@@ -59,19 +59,14 @@ Polygon clip_to_texel(Polygon polygon, int i, int j) {
   return clip(polygon, 1, j + 1, -1);
 }
 
-Eigen::Vector3d twice_area_normal(const TriangleMesh& mesh, const Triangle& t) {
-  const Eigen::Vector3d a = mesh.positions[t[0]].cast<double>();
-  return (mesh.positions[t[1]].cast<double>() - a).cross(mesh.positions[t[2]].cast<double>() - a);
-}
-
-/// The receiver of each texel, or `none`.
+/// Map from texels to receivers.
 class ReceiverMap {
  public:
   static constexpr std::uint32_t none = ~0u;
 
-  explicit ReceiverMap(const TexelReceivers& receivers)
+  explicit ReceiverMap(const ReceiverSet& receivers)
       : receivers_(receivers), map_(static_cast<std::size_t>(receivers.width) * receivers.height, none) {
-    for (std::uint32_t r = 0; r < receivers.texels.size(); ++r) map_[receivers.texels[r]] = r;
+    for (std::uint32_t r = 0; r < receivers.slots.size(); ++r) map_[receivers.slots[r]] = r;
   }
 
   std::uint32_t at(int i, int j) const {
@@ -79,7 +74,7 @@ class ReceiverMap {
     return inside ? map_[static_cast<std::size_t>(j) * receivers_.width + i] : none;
   }
 
-  /// The receiver nearest to `point` in the texels around, or `none`.
+  /// Returns the receiver nearest to `point` in the texels around, or `none`.
   std::uint32_t nearest(int i, int j, const Eigen::Vector3d& point) const {
     std::uint32_t best = none;
     double least = std::numeric_limits<double>::infinity();
@@ -97,23 +92,23 @@ class ReceiverMap {
   }
 
  private:
-  const TexelReceivers& receivers_;
+  const ReceiverSet& receivers_;
   std::vector<std::uint32_t> map_;
 };
 
 }  // namespace
 
-std::vector<float> texel_areas(const TriangleMesh& atlas, const TexelReceivers& receivers) {
+std::vector<float> texel_areas(const TriangleMesh& atlas, const ReceiverSet& receivers) {
   const ReceiverMap map(receivers);
-  std::vector<double> areas(receivers.texels.size(), 0);
+  std::vector<double> areas(receivers.slots.size(), 0);
   for (const Triangle& t : atlas.triangles) {
-    // Step 1: the triangle in texels, and how much surface a square texel of it is.
+    // Step 1: map the triangle to texels, and find how much surface a square texel of it is.
     Polygon triangle;
     for (std::uint32_t vertex : t)
       triangle.add({static_cast<double>(atlas.uvs[vertex].x()) * receivers.width,
                     static_cast<double>(atlas.uvs[vertex].y()) * receivers.height});
     const double twice_texels = triangle.twice_area();
-    const Eigen::Vector3d cross = twice_area_normal(atlas, t);
+    const Eigen::Vector3d cross = area_normal(atlas, t);
     if (!(std::abs(twice_texels) > 0) || !(cross.norm() > 0)) continue;
     const double area_per_texel = cross.norm() / std::abs(twice_texels);
     const Eigen::Vector3d normal = cross.normalized();
@@ -121,7 +116,7 @@ std::vector<float> texel_areas(const TriangleMesh& atlas, const TexelReceivers& 
     sides << triangle.corners[1] - triangle.corners[0], triangle.corners[2] - triangle.corners[0];
     const Eigen::Matrix2d weights_of = sides.inverse();
 
-    // Step 2: its part of every texel that it touches.
+    // Step 2: add its part of every texel that it touches.
     Eigen::Vector2d lowest = triangle.corners[0], highest = lowest;
     for (int k = 1; k < 3; ++k) {
       lowest = lowest.cwiseMin(triangle.corners[k]);
@@ -148,13 +143,13 @@ std::vector<float> texel_areas(const TriangleMesh& atlas, const TexelReceivers& 
   return {areas.begin(), areas.end()};
 }
 
-std::vector<float> vertex_areas(const TriangleMesh& mesh, const TexelReceivers& receivers) {
+std::vector<float> vertex_areas(const TriangleMesh& mesh, const ReceiverSet& receivers) {
   std::vector<double> of_vertex(mesh.positions.size(), 0);
   for (const Triangle& t : mesh.triangles)
-    for (std::uint32_t vertex : t) of_vertex[vertex] += twice_area_normal(mesh, t).norm() / 6;
+    for (std::uint32_t vertex : t) of_vertex[vertex] += area_normal(mesh, t).norm() / 6;
   std::vector<float> areas;
-  areas.reserve(receivers.texels.size());
-  for (std::uint32_t vertex : receivers.texels) areas.push_back(static_cast<float>(of_vertex[vertex]));
+  areas.reserve(receivers.slots.size());
+  for (std::uint32_t vertex : receivers.slots) areas.push_back(static_cast<float>(of_vertex[vertex]));
   return areas;
 }
 

@@ -4,12 +4,12 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "bake/scene/texel_receivers.h"
+#include "bake/scene/receiver_set.h"
 #include "mesh/triangle_mesh.h"
 
 namespace kiln {
 
-/// A surface as discs that together have its area.
+/// Surface as discs that together have its area.
 struct SurfaceSamples {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
@@ -18,13 +18,14 @@ struct SurfaceSamples {
   std::size_t size() const { return positions.size(); }
 };
 
-/// Area of the surface that each covered texel stands for, in square object units: that of the atlas' triangles within
-/// the texel's square, divided by the cosine between the triangle and the receiver's normal (at least 1/4), which is
-/// how much larger the surface is that the texel was projected from. What lies in texels whose centre no triangle
-/// covers goes to the covered neighbour nearest to it.
-std::vector<float> texel_areas(const TriangleMesh& atlas, const TexelReceivers& receivers);
+/// Returns the area of the surface that each covered texel stands for, in square object units: that of the atlas'
+/// triangles within the texel's square, divided by the cosine between the triangle and the receiver's normal (at least
+/// 1/4), which is how much larger the surface is that the texel was projected from. What lies in texels whose centre no
+/// triangle covers goes to the covered neighbour nearest to it.
+std::vector<float> texel_areas(const TriangleMesh& atlas, const ReceiverSet& receivers);
 
-/// Area that each receiver stands for, those being the vertices of `mesh`: a third of every triangle around it.
-std::vector<float> vertex_areas(const TriangleMesh& mesh, const TexelReceivers& receivers);
+/// Returns the area that each receiver stands for, where receivers are the vertices of `mesh`: a third of every
+/// triangle around it.
+std::vector<float> vertex_areas(const TriangleMesh& mesh, const ReceiverSet& receivers);
 
 }  // namespace kiln

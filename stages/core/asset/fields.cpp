@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/json.h"
 #include "base/outputs.h"
 
 namespace kiln {
@@ -21,6 +22,8 @@ Fields Fields::child(const char* key, const Json& object) const { return {file_,
 Fields Fields::child(const char* key, std::size_t index, const Json& object) const {
   return {file_, path(key) + "[" + std::to_string(index) + "]", object, remedy_, faults_};
 }
+
+bool Fields::has(const char* key) const { return object_.is_object() && object_.contains(key); }
 
 const Json* Fields::find(const char* key, const std::string& expected) const {
   if (has(key)) return &object_[key];

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "asset/faults.h"
-#include "base/json.h"
+#include "base/json_fwd.h"
 
 namespace kiln {
 
@@ -24,7 +24,7 @@ class Fields {
   Fields child(const char* key, const Json& object) const;
   Fields child(const char* key, std::size_t index, const Json& object) const;
 
-  bool has(const char* key) const { return object_.is_object() && object_.contains(key); }
+  bool has(const char* key) const;
 
   /// Returns the value of `key`; null, and a fault, if there is none.
   const Json* find(const char* key, const std::string& expected) const;

@@ -5,6 +5,7 @@
 #include "asset/probe_set.h"
 #include "asset/read_description.h"
 #include "asset/read_parts.h"
+#include "base/json.h"
 #include "image/image_file.h"
 
 namespace kiln {

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "base/json.h"
+
 namespace kiln {
 
 namespace fs = std::filesystem;

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include "asset/read_description.h"
 #include "base/errors.h"
@@ -57,6 +59,28 @@ Image<std::uint16_t> read_grey(const fs::path& file, int width, int height, cons
   require_picture(picture, file, width, height, 1, remedy);
   return picture;
 }
+
+template <class Texel>
+std::vector<Image<Texel>> read_grey_pictures(const fs::path& folder, const PrtDescription& asset,
+                                             const std::string& remedy) {
+  std::vector<Image<Texel>> pictures(asset.planes.size());
+  std::vector<std::exception_ptr> faults(asset.planes.size());
+  tbb::parallel_for(std::size_t{0}, pictures.size(), [&](std::size_t k) {
+    try {
+      pictures[k] = read_grey<Texel>(folder / asset.planes[k].file, asset.width, asset.height, remedy);
+    } catch (...) {
+      faults[k] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& fault : faults)
+    if (fault) std::rethrow_exception(fault);
+  return pictures;
+}
+
+template std::vector<Image<std::uint8_t>> read_grey_pictures(const fs::path&, const PrtDescription&,
+                                                             const std::string&);
+template std::vector<Image<std::uint16_t>> read_grey_pictures(const fs::path&, const PrtDescription&,
+                                                              const std::string&);
 
 TriangleMesh read_atlas_mesh(const fs::path& folder, const PrtDescription& asset) {
   const fs::path file = folder / asset.mesh_file;

@@ -2,11 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <exception>
 #include <filesystem>
 #include <span>
 #include <string>
-#include <tbb/parallel_for.h>
 #include <vector>
 
 #include "asset/prt_asset.h"
@@ -57,19 +55,6 @@ Image<std::uint16_t> read_grey(const std::filesystem::path& file, int width, int
 /// reported, on any number of threads.
 template <class Texel>
 std::vector<Image<Texel>> read_grey_pictures(const std::filesystem::path& folder, const PrtDescription& asset,
-                                             const std::string& remedy) {
-  std::vector<Image<Texel>> pictures(asset.planes.size());
-  std::vector<std::exception_ptr> faults(asset.planes.size());
-  tbb::parallel_for(std::size_t{0}, pictures.size(), [&](std::size_t k) {
-    try {
-      pictures[k] = read_grey<Texel>(folder / asset.planes[k].file, asset.width, asset.height, remedy);
-    } catch (...) {
-      faults[k] = std::current_exception();
-    }
-  });
-  for (const std::exception_ptr& fault : faults)
-    if (fault) std::rethrow_exception(fault);
-  return pictures;
-}
+                                             const std::string& remedy);
 
 }  // namespace kiln

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "asset/read_description.h"
+#include "base/json.h"
 #include "image/image_file.h"
 #include "mesh/draco_file.h"
 #include "sh/basis.h"

@@ -19,6 +19,7 @@
 #include "base/errors.h"
 #include "base/file_names.h"
 #include "base/help_pages.h"
+#include "base/json.h"
 #include "base/process.h"
 #include "base/stopwatch.h"
 

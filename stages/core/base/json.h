@@ -4,10 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace kiln {
+#include "base/json_fwd.h"
 
-/// JSON type of the whole tree: keys keep the order in which they were added.
-using Json = nlohmann::ordered_json;
+namespace kiln {
 
 /// Writes a value as JSON text, on one line where `indent` is -1. Bytes of strings that are not UTF-8 become U+FFFD.
 std::string json_text(const Json& value, int indent = -1);

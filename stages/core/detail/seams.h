@@ -4,29 +4,16 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
-#include <limits>
-#include <memory>
 #include <span>
 #include <vector>
 
+#include "detail/footprint.h"
 #include "detail/normal_space.h"
 #include "image/image.h"
 #include "mesh/triangle_mesh.h"
 #include "mesh/uv_raster.h"
 
 namespace kiln {
-
-/// The four texels that a bilinear lookup weighs (clamped to the texture's edge), as j * width + i, and their weights.
-struct Footprint {
-  std::array<std::uint32_t, 4> texels{};
-  std::array<float, 4> weights{};
-
-  Footprint() = default;
-  Footprint(const Eigen::Vector2f& uv, int width, int height);
-
-  /// Looks up one channel of `image`.
-  double lookup(const Image<float>& image, int channel) const;
-};
 
 /// One side of a point on a seam: the triangle, the place in it, and the footprint of a lookup there.
 struct SeamSide {
@@ -93,50 +80,6 @@ class Seams {
   const TriangleMesh* atlas_;
   int width_, height_;
   std::vector<Edge> edges_;
-};
-
-/// Weights of the least squares against equality, which has weight 1 per texel of seam.
-struct SeamWeights {
-  double covered = 0.1;    ///< a covered texel keeps its value
-  double across = 0.1;     ///< a gutter texel has the value that lies across the seam
-  double gutter = 0.0005;  ///< a gutter texel keeps its value
-};
-
-/// Makes values equal on both sides of every seam under bilinear lookup: least squares over the texels that lookups on
-/// seams see, by sparse normal equations that are factorised once for any number of images ([Iwanicki 2013], [Liu
-/// 2017]). A gutter texel is drawn to the value across the seam, at the place that is as far from the edge in the other
-/// chart, so that lookups between a chart's last texel and the gutter follow the surface. May be used by several
-/// threads at once; results do not depend on them.
-class SeamSolver {
- public:
-  /// `covered` has one entry per texel. For a tangent-space normal map pass `space`: its three channels are then solved
-  /// together, and become equal in object space.
-  SeamSolver(const Seams& seams, std::span<const std::uint8_t> covered, NormalSpace space = NormalSpace::object,
-             const SeamWeights& weights = {});
-  ~SeamSolver();
-  SeamSolver(SeamSolver&&) noexcept;
-  SeamSolver& operator=(SeamSolver&&) noexcept;
-
-  /// Changes texels near seams, each channel separately (tangent space: all three together), and fills gutters. With
-  /// bounds, values stay within `lowest` to `highest`: constrained least squares, by projected Gauss-Seidel from the
-  /// free solution. Throws std::invalid_argument for another size, or without three channels in tangent space.
-  void equalise(Image<float>& image, float lowest = -std::numeric_limits<float>::infinity(),
-                float highest = std::numeric_limits<float>::infinity()) const;
-
-  /// Returns the points at which equality is asked for.
-  std::span<const SeamPoint> points() const;
-
-  /// Raises the weight of equality at those points() that keep a larger mismatch than others: `mismatches`, one per
-  /// point, are what equalise leaves (iteratively reweighted least squares). Must not run while other threads equalise.
-  /// Throws std::invalid_argument for another number of mismatches.
-  void reweigh(std::span<const double> mismatches);
-
-  /// Counts the texels that equalise may change.
-  std::size_t unknown_texels() const;
-
- private:
-  struct System;
-  std::unique_ptr<System> system_;
 };
 
 }  // namespace kiln

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/errors.h"
+#include "import/readers.h"
 
 namespace kiln {
 
@@ -35,7 +36,7 @@ double largest_used_coordinate(const std::string& file, const SourceMesh& mesh,
     const double size = mesh.places[corner.place].cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
     if (!std::isfinite(size))
       throw BadInput(file, name_of(corner.place) + " has a coordinate that is not a finite number",
-                     "finite coordinates of all vertices that faces use", "export the mesh again");
+                     "finite coordinates of all vertices that faces use", export_again);
     largest = std::max(largest, size);
   }
   return largest;

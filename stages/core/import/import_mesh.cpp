@@ -9,7 +9,6 @@
 #include "import/corner_attributes.h"
 #include "import/imported_normals.h"
 #include "import/readers.h"
-#include "import/remedies.h"
 #include "import/text_lines.h"
 #include "import/triangulate.h"
 #include "import/weld.h"

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/errors.h"
+#include "base/json.h"
 
 namespace kiln {
 
@@ -47,24 +48,6 @@ std::string text_of(const WeldChoice& choice) {
 double ImportSettings::factor() const {
   constexpr double metres[] = {1, 1e-3, 1e-2, 1, 0.0254};  // metres per unit, in the order of LengthUnit
   return scale * metres[static_cast<int>(unit)];
-}
-
-Eigen::Vector3d ImportSettings::turned(const Eigen::Vector3d& p) const {
-  switch (up) {
-    case UpAxis::plus_x:
-      return {-p.y(), p.x(), p.z()};
-    case UpAxis::minus_x:
-      return {p.y(), -p.x(), p.z()};
-    case UpAxis::minus_y:
-      return {p.x(), -p.y(), -p.z()};
-    case UpAxis::plus_z:
-      return {p.x(), p.z(), -p.y()};
-    case UpAxis::minus_z:
-      return {p.x(), -p.z(), p.y()};
-    case UpAxis::plus_y:
-      break;
-  }
-  return p;
 }
 
 NormalChoice parse_normal_choice(const std::string& text) {

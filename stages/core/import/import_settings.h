@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <string>
 
@@ -51,9 +50,6 @@ struct ImportSettings {
 
   /// Returns the factor of a file's coordinates: to metres where the unit is given, times `scale`.
   double factor() const;
-
-  /// Turns a file's coordinates, or directions, such that `up` becomes +Y, without mirroring.
-  Eigen::Vector3d turned(const Eigen::Vector3d& place) const;
 };
 
 /// Adds `up`, `unit`, `scale`, `normals`, `weld`, `orientation`, `backs` and `fill-holes` to a stage's options.

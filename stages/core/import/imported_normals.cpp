@@ -19,15 +19,6 @@ namespace {
 
 using CornerNormals = std::vector<std::array<Eigen::Vector3f, 3>>;
 
-/// Tells which components have no border.
-std::vector<bool> closed_components(const TriangleMesh& mesh, const Components& components) {
-  std::vector<bool> closed(components.count, true);
-  TriangleEdges(mesh.triangles).for_each([&](std::span<const std::uint32_t> sides) {
-    if (sides.size() == 1) closed[components.of_triangle[sides[0] / 3]] = false;
-  });
-  return closed;
-}
-
 /// Makes the winding of each component and the normals of its corners agree. Returns how many triangles were turned,
 /// and how many have turned normals.
 struct Turned {
@@ -45,11 +36,11 @@ Turned agree(TriangleMesh& mesh, CornerNormals& normals) {
   }
   Turned turned;
   if (std::none_of(agreeing.begin(), agreeing.end(), [](double sum) { return sum < 0; })) return turned;
-  const std::vector<bool> closed = closed_components(mesh, components);
+  const std::vector<std::uint8_t> closed = closed_components(mesh, components);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::uint32_t component = components.of_triangle[t];
     if (!(agreeing[component] < 0)) continue;
-    if (closed[component]) {
+    if (closed[component] != 0) {
       for (Eigen::Vector3f& normal : normals[t]) normal = -normal;
       ++turned.normals;
     } else {

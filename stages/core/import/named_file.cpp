@@ -5,6 +5,7 @@
 #include <string>
 
 #include "base/outputs.h"
+#include "import/text_lines.h"
 
 namespace kiln {
 
@@ -18,8 +19,7 @@ bool is_file(const fs::path& path) {
 }
 
 std::string lower(std::string text) {
-  for (char& c : text)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  for (char& c : text) c = in_lower_case(c);
   return text;
 }
 

@@ -13,7 +13,6 @@
 #include "import/obj_materials.h"
 #include "import/obj_vertices.h"
 #include "import/readers.h"
-#include "import/remedies.h"
 #include "import/text_words.h"
 #include "import/wavefront_lines.h"
 

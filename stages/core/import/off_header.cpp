@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "base/errors.h"
-#include "import/remedies.h"
+#include "import/readers.h"
 #include "import/text_lines.h"
 #include "import/text_words.h"
 

@@ -5,13 +5,11 @@
 #include <cmath>
 
 #include "base/errors.h"
-#include "import/remedies.h"
+#include "import/readers.h"
 #include "import/stored_colors.h"
 #include "import/text_words.h"
 
 namespace kiln {
-
-namespace {}  // namespace
 
 OffMesh::OffMesh(const std::filesystem::path& file, const OffHeader& header, std::size_t byte_count)
     : path_(file), file_(file.string()), header_(header) {

@@ -11,7 +11,6 @@
 #include "base/outputs.h"
 #include "import/off_mesh.h"
 #include "import/readers.h"
-#include "import/remedies.h"
 #include "import/text_words.h"
 
 namespace kiln {

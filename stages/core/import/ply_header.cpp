@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "base/errors.h"
-#include "import/remedies.h"
+#include "import/readers.h"
 #include "import/text_lines.h"
 #include "import/text_words.h"
 

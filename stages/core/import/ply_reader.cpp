@@ -15,7 +15,6 @@
 #include "import/ply_colors.h"
 #include "import/ply_rows.h"
 #include "import/readers.h"
-#include "import/remedies.h"
 #include "import/stored_colors.h"
 #include "import/text_words.h"
 

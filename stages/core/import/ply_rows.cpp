@@ -11,7 +11,7 @@
 
 #include "base/errors.h"
 #include "import/coordinates.h"
-#include "import/remedies.h"
+#include "import/readers.h"
 #include "import/text_words.h"
 
 namespace kiln {

@@ -24,11 +24,30 @@ SourceMesh read_source_mesh(const std::filesystem::path& file) {
                  "obj, ply, stl, off, drc, gltf, glb or fbx", "convert the mesh");
 }
 
+Eigen::Vector3d turned_upright(const Eigen::Vector3d& p, UpAxis up) {
+  switch (up) {
+    case UpAxis::plus_x:
+      return {-p.y(), p.x(), p.z()};
+    case UpAxis::minus_x:
+      return {p.y(), -p.x(), p.z()};
+    case UpAxis::minus_y:
+      return {p.x(), -p.y(), -p.z()};
+    case UpAxis::plus_z:
+      return {p.x(), p.z(), -p.y()};
+    case UpAxis::minus_z:
+      return {p.x(), -p.z(), p.y()};
+    case UpAxis::plus_y:
+      break;
+  }
+  return p;
+}
+
 void turn_and_scale(SourceMesh& source, const ImportSettings& settings) {
   const double factor = settings.factor();
   if (settings.up == UpAxis::plus_y && factor == 1) return;
-  for (Eigen::Vector3d& place : source.places) place = factor * settings.turned(place);
-  for (Eigen::Vector3f& normal : source.normals) normal = settings.turned(normal.cast<double>()).cast<float>();
+  for (Eigen::Vector3d& place : source.places) place = factor * turned_upright(place, settings.up);
+  for (Eigen::Vector3f& normal : source.normals)
+    normal = turned_upright(normal.cast<double>(), settings.up).cast<float>();
   source.precision *= factor;
 }
 

@@ -13,7 +13,6 @@
 #include "base/outputs.h"
 #include "import/coordinates.h"
 #include "import/readers.h"
-#include "import/remedies.h"
 #include "import/stored_colors.h"
 #include "import/text_lines.h"
 #include "import/text_words.h"

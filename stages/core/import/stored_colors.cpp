@@ -8,6 +8,7 @@
 
 #include "base/errors.h"
 #include "import/coordinates.h"
+#include "import/readers.h"
 #include "import/text_words.h"
 
 namespace kiln {
@@ -107,7 +108,7 @@ void check_vertex_colors(const std::string& file, SourceMesh& mesh) {
   for (const SourceMesh::Corner& corner : mesh.corners)
     if (!mesh.colors[corner.place].allFinite())
       throw BadInput(file, vertex_name(mesh, corner.place) + " has a colour that is not a finite number",
-                     "red, green and blue of 0 to 1", "export the mesh again");
+                     "red, green and blue of 0 to 1", export_again);
   for (Eigen::Vector3f& color : mesh.colors)
     if (!color.allFinite()) color.setOnes();
 }

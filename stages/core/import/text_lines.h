@@ -36,6 +36,9 @@ class TextLines {
 /// Tells whether a character separates words: space, tab, form feed, vertical tab or carriage return.
 constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\f' || c == '\v' || c == '\r'; }
 
+/// Returns a letter of ASCII in lower case, and any other character as it is.
+constexpr char in_lower_case(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
 /// Removes the next word from a line; blanks are spaces, tabs, form feeds and vertical tabs. Empty where there is none.
 std::string_view next_word(std::string_view& line);
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/errors.h"
+#include "import/readers.h"
 #include "import/text_lines.h"
 
 namespace kiln {
@@ -17,7 +18,6 @@ namespace {
 /// Tells whether a character is a blank; a carriage return is not, since it ends a line.
 bool is_gap(char c) { return c == ' ' || c == '\t' || c == '\f' || c == '\v'; }
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
-char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 /// Parses NaN and infinities as old C libraries of Windows write them: "-1.#IND", "1.#QNAN", "1.#INF000".
 std::optional<double> parse_old_nan(std::string_view word) {
@@ -70,16 +70,14 @@ double TextWords::number(std::string_view word) const {
   if (word.find(',') != std::string_view::npos)
     throw BadInput(where(), "the word " + in_quotes(word) + " is no number",
                    "a number with a decimal point, such as 0.5", "export the mesh again with decimal points");
-  throw BadInput(where(), "the word " + in_quotes(word) + " is no number", "a number such as 0.5",
-                 "export the mesh again");
+  throw BadInput(where(), "the word " + in_quotes(word) + " is no number", "a number such as 0.5", export_again);
 }
 
 double TextWords::whole_number(std::string_view word) const {
   const double value = number(word);
   constexpr double limit = 9007199254740992.0;  // 2^53
   if (value == std::trunc(value) && std::abs(value) < limit) return value;
-  throw BadInput(where(), "the word " + in_quotes(word) + " is no whole number", "a whole number",
-                 "export the mesh again");
+  throw BadInput(where(), "the word " + in_quotes(word) + " is no whole number", "a whole number", export_again);
 }
 
 std::uint64_t count_lines_with_words(std::string_view text) {
@@ -105,7 +103,7 @@ std::string in_quotes(std::string_view word) {
 }
 
 bool same_word(std::string_view a, std::string_view b) {
-  return std::ranges::equal(a, b, [](char x, char y) { return lower(x) == lower(y); });
+  return std::ranges::equal(a, b, [](char x, char y) { return in_lower_case(x) == in_lower_case(y); });
 }
 
 }  // namespace kiln

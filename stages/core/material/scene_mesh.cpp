@@ -7,10 +7,8 @@
 namespace kiln {
 
 void SceneMesh::add(const TriangleMesh& part) {
-  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
   first_triangles.push_back(static_cast<std::uint32_t>(mesh.triangles.size()));
-  mesh.positions.insert(mesh.positions.end(), part.positions.begin(), part.positions.end());
-  for (const auto& [a, b, c] : part.triangles) mesh.triangles.push_back({first + a, first + b, first + c});
+  append(mesh, part);
 }
 
 void SceneMesh::add(const TriangleMesh& part, SurfaceAlbedo albedo) {

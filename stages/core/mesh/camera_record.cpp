@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/camera_record.h"
 
+#include "base/json.h"
+
 namespace kiln {
 
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "base/options.h"
+#include "base/json_fwd.h"
 #include "mesh/camera.h"
 
 namespace kiln {

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "mesh/triangle_edges.h"
+#include "mesh/winding.h"
+
 namespace kiln {
 
 namespace {
@@ -16,7 +19,6 @@ struct ComponentShape {
   double six_volumes = 0;
   double double_area = 0;
   bool started = false;
-  bool closed = true;
   std::vector<std::uint32_t> triangles;  ///< filled only where needed
 };
 
@@ -39,29 +41,6 @@ std::vector<ComponentShape> measure(const TriangleMesh& mesh, const Components& 
     for (const std::uint32_t vertex : t) shape.box.extend(mesh.positions[vertex]);
   }
   return shapes;
-}
-
-/// Marks the components that have a border. At an inner vertex, the vertices after it in its triangles are the same set
-/// as those before it; at a border one of each differs, and so do the sums of their numbers.
-void find_open(const TriangleMesh& mesh, const Components& components, std::vector<ComponentShape>& shapes) {
-  std::vector<std::int64_t> balance(mesh.positions.size(), 0);
-  for (const Triangle& t : mesh.triangles)
-    for (int k = 0; k < 3; ++k) balance[t[k]] += std::int64_t{t[(k + 1) % 3]} - std::int64_t{t[(k + 2) % 3]};
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    for (const std::uint32_t vertex : mesh.triangles[i])
-      if (balance[vertex] != 0) shapes[components.of_triangle[i]].closed = false;
-}
-
-/// Returns the winding number of a closed component around `point` [Oosterom 1983].
-double winding_number(const TriangleMesh& mesh, const std::vector<std::uint32_t>& triangles,
-                      const Eigen::Vector3d& point) {
-  double half_angles = 0;
-  for (const std::uint32_t i : triangles) {
-    const auto [a, b, c] = corners_from(mesh, mesh.triangles[i], point);
-    const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    half_angles += std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-  }
-  return half_angles / (2 * 3.14159265358979323846);
 }
 
 }  // namespace
@@ -110,6 +89,17 @@ std::vector<BoundingBox> component_boxes(const TriangleMesh& mesh, const Compone
   return boxes;
 }
 
+std::vector<std::uint8_t> closed_components(const TriangleMesh& mesh, const Components& components) {
+  std::vector<std::uint8_t> closed(components.count, 1);
+  TriangleEdges(mesh.triangles).for_each([&](std::span<const std::uint32_t> sides) {
+    const std::uint32_t low = edge_at(mesh.triangles, sides[0]).first;
+    int balance = 0;
+    for (const std::uint32_t side : sides) balance += vertex_at(mesh.triangles, side) == low ? 1 : -1;
+    if (balance != 0) closed[components.of_triangle[sides[0] / 3]] = 0;
+  });
+  return closed;
+}
+
 int turn_inside_out_components(TriangleMesh& mesh, int& count) {
   const Components components = find_components(mesh);
   count = static_cast<int>(components.count);
@@ -119,7 +109,7 @@ int turn_inside_out_components(TriangleMesh& mesh, int& count) {
     return shape.six_volumes < -1e-9 * std::pow(shape.double_area, 1.5);
   };
   if (std::none_of(shapes.begin(), shapes.end(), is_negative)) return 0;
-  find_open(mesh, components, shapes);
+  const std::vector<std::uint8_t> closed = closed_components(mesh, components);
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) shapes[components.of_triangle[i]].triangles.push_back(i);
 
   const auto is_inside = [&](const ComponentShape& inner, const ComponentShape& outer) {
@@ -127,11 +117,14 @@ int turn_inside_out_components(TriangleMesh& mesh, int& count) {
                         (inner.box.highest.array() < outer.box.highest.array()).all();
     return may_be && std::abs(winding_number(mesh, outer.triangles, inner.origin)) > 0.5;
   };
+  const auto is_inside_another = [&](const ComponentShape& inner) {
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+      if (closed[i] != 0 && is_inside(inner, shapes[i])) return true;
+    return false;
+  };
   std::vector<bool> turned(components.count, false);
   for (std::size_t i = 0; i < shapes.size(); ++i)
-    turned[i] = shapes[i].closed && is_negative(shapes[i]) &&
-                std::none_of(shapes.begin(), shapes.end(),
-                             [&](const ComponentShape& outer) { return outer.closed && is_inside(shapes[i], outer); });
+    turned[i] = closed[i] != 0 && is_negative(shapes[i]) && !is_inside_another(shapes[i]);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     if (turned[components.of_triangle[i]]) std::swap(mesh.triangles[i][1], mesh.triangles[i][2]);
   return static_cast<int>(std::count(turned.begin(), turned.end(), true));

@@ -28,20 +28,6 @@ constexpr std::uint32_t none_yet = ~0u;
 
 bool repeats_vertex(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
-std::array<Eigen::Vector3d, 3> corners_of(const TriangleMesh& mesh, const Triangle& t) {
-  return {mesh.positions[t[0]].cast<double>(), mesh.positions[t[1]].cast<double>(),
-          mesh.positions[t[2]].cast<double>()};
-}
-
-Eigen::Vector3d area_normal(const TriangleMesh& mesh, const Triangle& triangle) {
-  const auto [a, b, c] = corners_of(mesh, triangle);
-  return (b - a).cross(c - a);
-}
-
-/// Tells whether a triangle has no area. Exact: differences and products of floats fit a double, unless the floats are
-/// of very different size.
-bool is_flat(const TriangleMesh& mesh, const Triangle& triangle) { return area_normal(mesh, triangle).isZero(0); }
-
 /// Merges vertices at the same position into the first of them. Returns how many others there were.
 int merge_vertices(TriangleMesh& mesh) {
   for (Eigen::Vector3f& p : mesh.positions) p += Eigen::Vector3f::Zero();  // turns -0 into +0

@@ -25,15 +25,6 @@ using Vertex = SurfaceMesh::Vertex_index;
 using Halfedge = SurfaceMesh::Halfedge_index;
 using Face = SurfaceMesh::Face_index;
 
-double double_area(const TriangleMesh& mesh, const Triangle& triangle) {
-  const Eigen::Vector3d a = mesh.positions[triangle[0]].cast<double>();
-  const Eigen::Vector3d b = mesh.positions[triangle[1]].cast<double>();
-  const Eigen::Vector3d c = mesh.positions[triangle[2]].cast<double>();
-  return (b - a).cross(c - a).norm();
-}
-
-bool has_no_area(const TriangleMesh& mesh, const Triangle& triangle) { return !(double_area(mesh, triangle) > 0); }
-
 /// Converts a mesh; vertices and faces keep their numbers.
 SurfaceMesh to_surface(const TriangleMesh& mesh) {
   SurfaceMesh surface;
@@ -110,7 +101,7 @@ class FlatTriangles {
 
   void push_if_flat(std::uint32_t triangle) {
     const Triangle& t = mesh_.triangles[triangle];
-    if (!has_no_area(mesh_, t)) return;
+    if (!is_flat(mesh_, t)) return;
     const std::size_t k = longest_edge_of(t);
     queue_.push({squared_length(t[k], t[(k + 1) % 3]), triangle, t});
   }
@@ -210,7 +201,7 @@ int fill_holes(TriangleMesh& mesh, TriangleOrigins& origins, int most_edges) {
   const Components components = find_components(mesh);
   std::vector<double> component_area(components.count, 0);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    component_area[components.of_triangle[i]] += double_area(mesh, mesh.triangles[i]);
+    component_area[components.of_triangle[i]] += area_normal(mesh, mesh.triangles[i]).norm();
   SurfaceMesh surface = to_surface(mesh);
   const auto old_faces = static_cast<std::uint32_t>(mesh.triangles.size());
   std::vector<Halfedge> loops;
@@ -224,7 +215,7 @@ int fill_holes(TriangleMesh& mesh, TriangleOrigins& origins, int most_edges) {
     std::vector<Face> patch;
     PMP::triangulate_hole(surface, loop, std::back_inserter(patch));
     double patch_area = 0;
-    for (const Face face : patch) patch_area += double_area(mesh, triangle_of(surface, face));
+    for (const Face face : patch) patch_area += area_normal(mesh, triangle_of(surface, face)).norm();
     if (patch.empty() || patch_area > 0.6 * component_area[component]) continue;
     for (const Face face : patch) {
       mesh.triangles.push_back(triangle_of(surface, face));

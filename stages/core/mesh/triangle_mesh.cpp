@@ -51,6 +51,21 @@ void compute_vertex_normals(TriangleMesh& mesh) {
   }
 }
 
+void append(TriangleMesh& whole, const TriangleMesh& part) {
+  const auto first = static_cast<std::uint32_t>(whole.positions.size());
+  whole.positions.insert(whole.positions.end(), part.positions.begin(), part.positions.end());
+  for (const auto& [a, b, c] : part.triangles) whole.triangles.push_back({first + a, first + b, first + c});
+}
+
+Eigen::Vector3d area_normal(const TriangleMesh& mesh, const Triangle& triangle) {
+  const Eigen::Vector3d a = mesh.positions[triangle[0]].cast<double>();
+  const Eigen::Vector3d b = mesh.positions[triangle[1]].cast<double>();
+  const Eigen::Vector3d c = mesh.positions[triangle[2]].cast<double>();
+  return (b - a).cross(c - a);
+}
+
+bool is_flat(const TriangleMesh& mesh, const Triangle& triangle) { return area_normal(mesh, triangle).isZero(0); }
+
 bool is_closed(const TriangleMesh& mesh) {
   bool closed = true;
   TriangleEdges(mesh.triangles).for_each([&](std::span<const std::uint32_t> sides) {
@@ -61,12 +76,7 @@ bool is_closed(const TriangleMesh& mesh) {
 
 double surface_area(const TriangleMesh& mesh) {
   double area = 0;
-  for (const Triangle& triangle : mesh.triangles) {
-    const Eigen::Vector3d a = mesh.positions[triangle[0]].cast<double>();
-    const Eigen::Vector3d b = mesh.positions[triangle[1]].cast<double>();
-    const Eigen::Vector3d c = mesh.positions[triangle[2]].cast<double>();
-    area += 0.5 * (b - a).cross(c - a).norm();
-  }
+  for (const Triangle& triangle : mesh.triangles) area += 0.5 * area_normal(mesh, triangle).norm();
   return area;
 }
 

@@ -88,6 +88,16 @@ inline const Eigen::Vector3f& corner_normal(const TriangleMesh& mesh, std::uint3
 /// and clears `corner_normals`. A vertex without a proper face gets +Y.
 void compute_vertex_normals(TriangleMesh& mesh);
 
+/// Appends the positions and triangles of a mesh to another that has no other attributes.
+void append(TriangleMesh& whole, const TriangleMesh& part);
+
+/// Returns the normal of a triangle by its winding, as long as twice its area.
+Eigen::Vector3d area_normal(const TriangleMesh& mesh, const Triangle& triangle);
+
+/// Tells whether a triangle has no area. Exact: differences and products of floats fit a double, unless the floats are
+/// of very different size.
+bool is_flat(const TriangleMesh& mesh, const Triangle& triangle);
+
 /// Tells whether every edge has exactly two triangles, which run along it in opposite directions.
 bool is_closed(const TriangleMesh& mesh);
 

@@ -69,7 +69,6 @@ class BeamTracer {
 
   /// Finds the part of `from` that the beams of a shaft may meet, and whether all their rays are blocked or free alike.
   /// Nodes are opened until there are `most` nodes and clusters.
-  /// are `most` of them and clusters.
   ///
   /// Rays fare alike if everything that they meet is a sheet: triangles that face all of them, clear of the receivers,
   /// whose neighbours do so, too. Then no ray passes an edge of the union of these sheets, so that each ray crosses it
@@ -95,7 +94,6 @@ class BeamTracer {
   bool stands_outside();
   /// Tests whether only triangles that face the rays of the shaft count: each triangle that turns its back to a ray
   /// lies behind one that faces it.
-  /// that faces it.
   ///
   /// From a place whose winding number is not above 0, a ray enters the closed surface of triangles and lids at least
   /// as often as it leaves it. If it enters through no lid, it enters through at least as many triangles as it leaves

@@ -37,27 +37,6 @@ constexpr float nearest_crossing = 4;
 constexpr float largest_open_winding = 0.5f;
 constexpr std::size_t chunk_points = 256;
 
-/// Finds the components that have each edge as often in one direction as in the other, so that they bound a solid.
-std::vector<std::uint8_t> closed_components(const TriangleMesh& mesh, const Components& components) {
-  std::vector<std::array<std::uint32_t, 3>> edges;  // lower vertex, higher vertex, 2 * component + direction
-  edges.reserve(3 * mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
-      edges.push_back({std::min(a, b), std::max(a, b), 2 * components.of_triangle[t] + (a < b ? 1u : 0u)});
-    }
-  std::sort(edges.begin(), edges.end());
-  std::vector<std::uint8_t> closed(components.count, 1);
-  for (std::size_t k = 0; k < edges.size();) {
-    int balance = 0;
-    const std::size_t first = k;
-    for (; k < edges.size() && edges[k][0] == edges[first][0] && edges[k][1] == edges[first][1]; ++k)
-      balance += edges[k][2] % 2 == 1 ? 1 : -1;
-    if (balance != 0) closed[edges[first][2] / 2] = 0;
-  }
-  return closed;
-}
-
 /// Components that a ray crosses, and how often it leaves each minus how often it enters it.
 using Crossings = std::vector<std::pair<std::uint32_t, int>>;
 

@@ -26,33 +26,34 @@ struct FillPlan {
   void apply(std::span<float> plane) const;
 };
 
-/// Covered texels of an atlas as receivers, tile after tile, so that neighbours in the list are neighbours on the
-/// surface.
-struct TexelReceivers {
-  int width = 0;
-  int height = 0;
-  std::vector<std::uint32_t> texels;  ///< j * width + i, rows from the bottom
+/// Receivers of a bake, and the slots of the result that they are for: covered texels of an atlas, tile after tile, or
+/// vertices of a mesh along a space-filling curve, so that neighbours in the list are neighbours on the surface.
+struct ReceiverSet {
+  int width = 0;   ///< texels; per vertex, the number of vertices
+  int height = 0;  ///< texels; per vertex 1
+  /// Slot of each receiver: its texel, as j * width + i with rows from the bottom, or its vertex.
+  std::vector<std::uint32_t> slots;
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
   std::vector<Eigen::Vector3f> albedos = {};  ///< linear red, green and blue; empty if nothing needs them
-  std::vector<std::uint32_t> buried = {};     ///< covered texels that are not among `texels` (set_aside_buried)
-  FillPlan fills = {};                        ///< fills of the buried texels
+  std::vector<std::uint32_t> buried = {};     ///< slots that receivers were taken from (set_aside_buried)
+  FillPlan fills = {};                        ///< fills of the buried slots
 
   Receivers view() const { return {positions, normals}; }
-  std::vector<std::uint8_t> covered() const;  ///< returns 1 for each texel that has a receiver, else 0
+  std::vector<std::uint8_t> covered() const;  ///< returns 1 for each slot that has a receiver, else 0
 };
 
 /// Returns receivers at the high mesh's points, with its normals.
-TexelReceivers receivers_on_high(const DetailMaps& detail);
+ReceiverSet receivers_on_high(const DetailMaps& detail);
 
 /// Returns receivers on the low mesh itself, with the high mesh's normals if `detail` is given (section 4.2.4 of
 /// [Chapter 2010]), else with the low mesh's, interpolated.
-TexelReceivers receivers_on_low(const TriangleMesh& atlas, int width, int height, const DetailMaps* detail);
+ReceiverSet receivers_on_low(const TriangleMesh& atlas, int width, int height, const DetailMaps* detail);
 
 /// Sets the receivers' albedos to those that `detail` has for their texels.
-void take_albedos(TexelReceivers& receivers, const DetailMaps& detail);
+void take_albedos(ReceiverSet& receivers, const DetailMaps& detail);
 
 /// Sets the receivers' albedos to those of the occluders' nearest points. `occluders` have albedos.
-void take_albedos(TexelReceivers& receivers, const Occluders& occluders);
+void take_albedos(ReceiverSet& receivers, const Occluders& occluders);
 
 }  // namespace kiln

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bake/scene/texel_receivers.h"
+#include "bake/scene/receiver_set.h"
 
 #include <algorithm>
 #include <limits>
@@ -12,8 +12,8 @@ namespace kiln {
 
 namespace {
 
-constexpr int outer_tile_texels = 16;  // 256 texels of a full tile are one stream of rays
-constexpr int inner_tile_texels = 8;   // 64 are one workgroup of the GPU
+constexpr int outer_tile_texels = 16;  // the 256 texels of a full tile are one stream of rays
+constexpr int inner_tile_texels = 8;   // its 64 texels are one workgroup of the GPU
 
 /// Calls visit(i, j) for all texels, tile after tile, and within each in four smaller tiles.
 template <class Visit>
@@ -43,31 +43,31 @@ void FillPlan::apply(std::span<float> plane) const {
   }
 }
 
-std::vector<std::uint8_t> TexelReceivers::covered() const {
+std::vector<std::uint8_t> ReceiverSet::covered() const {
   std::vector<std::uint8_t> flags(static_cast<std::size_t>(width) * height, 0);
   for (std::uint32_t texel : texels) flags[texel] = 1;
   return flags;
 }
 
-TexelReceivers receivers_on_high(const DetailMaps& detail) {
-  TexelReceivers receivers{detail.width, detail.height, {}, {}, {}};
+ReceiverSet receivers_on_high(const DetailMaps& detail) {
+  ReceiverSet receivers{detail.width, detail.height, {}, {}, {}};
   for_each_texel(detail.width, detail.height, [&](int i, int j) {
     const std::uint32_t texel = static_cast<std::uint32_t>(j) * detail.width + i;
     if (detail.covered[texel] == 0) return;
-    receivers.texels.push_back(texel);
+    receivers.slots.push_back(texel);
     receivers.positions.push_back(vector_at(detail.position, i, j));
     receivers.normals.push_back(vector_at(detail.normal_object, i, j));
   });
   return receivers;
 }
 
-TexelReceivers receivers_on_low(const TriangleMesh& atlas, int width, int height, const DetailMaps* detail) {
+ReceiverSet receivers_on_low(const TriangleMesh& atlas, int width, int height, const DetailMaps* detail) {
   const UvRaster raster = rasterise_uvs(atlas, width, height);
-  TexelReceivers receivers{width, height, {}, {}, {}};
+  ReceiverSet receivers{width, height, {}, {}, {}};
   for_each_texel(width, height, [&](int i, int j) {
     const TexelSource& source = raster.at(i, j);
     if (!source.covered()) return;
-    receivers.texels.push_back(static_cast<std::uint32_t>(j) * width + i);
+    receivers.slots.push_back(static_cast<std::uint32_t>(j) * width + i);
     receivers.positions.push_back(interpolate(atlas, atlas.positions, source));
     receivers.normals.push_back(detail != nullptr
                                     ? vector_at(detail->normal_object, i, j)
@@ -76,14 +76,14 @@ TexelReceivers receivers_on_low(const TriangleMesh& atlas, int width, int height
   return receivers;
 }
 
-void take_albedos(TexelReceivers& receivers, const DetailMaps& detail) {
+void take_albedos(ReceiverSet& receivers, const DetailMaps& detail) {
   receivers.albedos.clear();
-  for (std::uint32_t texel : receivers.texels)
+  for (std::uint32_t texel : receivers.slots)
     receivers.albedos.push_back(
         detail.albedo_at(static_cast<int>(texel % detail.width), static_cast<int>(texel / detail.width)));
 }
 
-void take_albedos(TexelReceivers& receivers, const Occluders& occluders) {
+void take_albedos(ReceiverSet& receivers, const Occluders& occluders) {
   const RayScene surface(occluders.mesh);
   receivers.albedos.resize(receivers.positions.size());
   tbb::parallel_for(std::size_t{0}, receivers.positions.size(), [&](std::size_t r) {
