@@ -50,10 +50,10 @@ def main(table, picture):
         draw.line([place(1, 10.0**exponent), place(LAST, 10.0**exponent)], fill=(220, 220, 220), width=SCALE)
         x, y = place(1, 10.0**exponent)
         draw.text((x - 8 * SCALE, y), f"{10.0 ** exponent:g}", fill="black", font=font(13), anchor="rm")
-    for band in (1, 2, 4, 8, 16, 32, 63):
+    for band in (1, 2, 4, 8, 16, 32, LAST):
         draw.line([place(band, 1), place(band, LOWEST)], fill=(220, 220, 220), width=SCALE)
         x, y = place(band, LOWEST)
-        draw.text((x, y + 6 * SCALE), str(band), fill="black", font=font(13), anchor="ma")
+        draw.text((x, y + 6 * SCALE), str(band), fill="black", font=font(13), anchor="ra" if band == LAST else "ma")
     draw.text((place(8, LOWEST)[0], (HEIGHT - 22) * SCALE), "band l", fill="black", font=font(13), anchor="ma")
     draw.text((place(1, 1)[0] + 6 * SCALE, place(1, 1)[1] + 4 * SCALE), "S_l / S_0", fill="black", font=font(13))
 
