@@ -62,6 +62,6 @@ void main() {
     diffuse += cosine * radiance;
     specular += pow(max(0.0, dot(reflect(-towards, normal), to_eye)), phong_eye.w) * radiance;
   }
-  vec3 colour = phong_albedo.rgb * surface_albedo(surface_uv) * diffuse + phong_albedo.a * specular;
-  radiance_and_coverage = vec4(colour, 1.0);
+  vec3 color = phong_albedo.rgb * surface_albedo(surface_uv) * diffuse + phong_albedo.a * specular;
+  radiance_and_coverage = vec4(color, 1.0);
 }

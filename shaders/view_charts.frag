@@ -6,9 +6,9 @@ in vec3 surface_position;
 in vec3 surface_normal;
 flat in vec3 surface_chart;
 
-layout(location = 0) out vec4 colour_and_coverage;
+layout(location = 0) out vec4 color_and_coverage;
 
 void main() {
   float facing = abs(dot(normalize(surface_normal), normalize(eye_object - surface_position)));
-  colour_and_coverage = vec4(surface_chart * (0.45 + 0.55 * facing), 1.0);
+  color_and_coverage = vec4(surface_chart * (0.45 + 0.55 * facing), 1.0);
 }

@@ -3,7 +3,7 @@
 in vec2 surface_uv;
 in vec3 surface_normal;
 
-layout(location = 0) out vec4 colour_and_coverage;
+layout(location = 0) out vec4 color_and_coverage;
 
 #ifdef NORMAL_MAP
 layout(binding = 5) uniform sampler2D normal_map;
@@ -15,5 +15,5 @@ void main() {
 #else
   vec3 normal = surface_normal;
 #endif
-  colour_and_coverage = vec4(0.5 * normalize(normal) + 0.5, 1.0);
+  color_and_coverage = vec4(0.5 * normalize(normal) + 0.5, 1.0);
 }

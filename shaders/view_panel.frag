@@ -3,8 +3,8 @@
 layout(location = 0) uniform ivec2 corner;  // lower left corner in the window, pixels
 layout(binding = 0) uniform sampler2D panel;
 
-layout(location = 0) out vec4 colour;
+layout(location = 0) out vec4 color;
 
 void main() {
-  colour = texelFetch(panel, ivec2(gl_FragCoord.xy) - corner, 0);
+  color = texelFetch(panel, ivec2(gl_FragCoord.xy) - corner, 0);
 }

@@ -29,35 +29,35 @@ vec3 srgb_from_linear(vec3 linear) {
   return mix(1.055 * pow(clamped, vec3(1.0 / 2.4)) - 0.055, 12.92 * clamped, lessThanEqual(clamped, vec3(0.0031308)));
 }
 
-vec3 signed_colour(float value) {
+vec3 signed_color(float value) {
   const vec3 nothing = vec3(0.84), above = vec3(0.76, 0.10, 0.08), below = vec3(0.10, 0.27, 0.74);
   return mix(nothing, value > 0.0 ? above : below, min(abs(value), 1.0));
 }
 
 void main() {
   vec4 mean = mean_of(picture_samples);
-  vec3 colour = mean.rgb;
+  vec3 color = mean.rgb;
   float alpha = mean.a;
 #if defined(VIEW_SIGNED)
   float value = dot(signed_weights, mean.rgb - mean_of(reference_samples).rgb);
-  colour = signed_colour(gain * value / max(alpha, 1e-6));
+  color = signed_color(gain * value / max(alpha, 1e-6));
 #elif defined(VIEW_RADIANCE)
   if (background.a > 0.0) {
-    colour = max(gain * colour, 0.0) + (1.0 - alpha) * background.rgb;
+    color = max(gain * color, 0.0) + (1.0 - alpha) * background.rgb;
     alpha = 1.0;
   } else {
-    colour = gain * colour / max(alpha, 1e-6);
+    color = gain * color / max(alpha, 1e-6);
   }
-  if (srgb_tone) colour = srgb_from_linear(colour);
+  if (srgb_tone) color = srgb_from_linear(color);
 #else
-  colour /= max(alpha, 1e-6);
+  color /= max(alpha, 1e-6);
 #endif
 #ifdef VIEW_EDGES
   // Draws dark edges on light colours and light edges on dark ones, so that no colour hides them.
-  colour = clamp(colour, 0.0, 1.0);
-  float brightness = dot(vec3(0.2126, 0.7152, 0.0722), colour);
+  color = clamp(color, 0.0, 1.0);
+  float brightness = dot(vec3(0.2126, 0.7152, 0.0722), color);
   float edge = mean_of(edge_samples).a;
-  colour = mix(colour, brightness > 0.45 ? vec3(0.05) : vec3(0.92), 0.6 * edge);
+  color = mix(color, brightness > 0.45 ? vec3(0.05) : vec3(0.92), 0.6 * edge);
 #endif
-  pixel = vec4(clamp(colour, 0.0, 1.0), alpha);
+  pixel = vec4(clamp(color, 0.0, 1.0), alpha);
 }

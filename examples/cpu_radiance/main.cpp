@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
     const std::vector<float> light = kiln::runtime::Light().from_text(argv[2]).coefficients(asset.bands());
     for (int k = 3; k < argc; ++k) {
       const auto point = static_cast<std::uint32_t>(std::strtoul(argv[k], nullptr, 10));
-      const kiln::runtime::Colour radiance = kiln::runtime::exit_radiance_at(asset, light, point);
+      const kiln::runtime::Color radiance = kiln::runtime::exit_radiance_at(asset, light, point);
       std::printf("%u %.6f %.6f %.6f\n", point, radiance[0], radiance[1], radiance[2]);
     }
   } catch (const kiln::runtime::Error& error) {

@@ -104,13 +104,13 @@ void save_picture(const kiln::runtime::Asset& asset, const char* file) {
   if (context == EGL_NO_CONTEXT || !eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context))
     throw std::runtime_error("EGL has no OpenGL 4.5");
   // Step 2: create a framebuffer, and draw the asset into it.
-  GLuint framebuffer, colour, depth;
+  GLuint framebuffer, color, depth;
   glCreateFramebuffers(1, &framebuffer);
-  glCreateRenderbuffers(1, &colour);
+  glCreateRenderbuffers(1, &color);
   glCreateRenderbuffers(1, &depth);
-  glNamedRenderbufferStorage(colour, GL_SRGB8_ALPHA8, picture_size, picture_size);
+  glNamedRenderbufferStorage(color, GL_SRGB8_ALPHA8, picture_size, picture_size);
   glNamedRenderbufferStorage(depth, GL_DEPTH_COMPONENT32F, picture_size, picture_size);
-  glNamedFramebufferRenderbuffer(framebuffer, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, colour);
+  glNamedFramebufferRenderbuffer(framebuffer, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color);
   glNamedFramebufferRenderbuffer(framebuffer, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
   std::vector<unsigned char> pixels(3 * picture_size * picture_size);

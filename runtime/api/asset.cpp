@@ -76,7 +76,7 @@ void Asset::transfer(std::span<const std::uint32_t> points, std::span<float> vec
 
 bool Asset::knows_albedo() const { return asset_->albedo.known; }
 
-Colour Asset::albedo(std::uint32_t point) const {
+Color Asset::albedo(std::uint32_t point) const {
   if (point >= points())
     throw Error("Asset::albedo: found point " + std::to_string(point) + "; expected less than " +
                 std::to_string(points()));

@@ -44,52 +44,51 @@ Light& Light::operator=(const Light& other) {
 }
 Light::~Light() = default;
 
-Light& Light::directional(double azimuth_degrees, double elevation_degrees, const Colour& radiance) {
+Light& Light::directional(double azimuth_degrees, double elevation_degrees, const Color& radiance) {
   LightSpec spec;
   spec.azimuth_degrees = azimuth_degrees;
   spec.elevation_degrees = elevation_degrees;
-  spec.colour = radiance;
+  spec.color = radiance;
   add(*lights_, spec);
   return *this;
 }
 
-Light& Light::cone(double azimuth_degrees, double elevation_degrees, double half_angle_degrees,
-                   const Colour& radiance) {
+Light& Light::cone(double azimuth_degrees, double elevation_degrees, double half_angle_degrees, const Color& radiance) {
   LightSpec spec;
   spec.kind = LightSpec::Kind::cone;
   spec.azimuth_degrees = azimuth_degrees;
   spec.elevation_degrees = elevation_degrees;
   spec.half_angle_degrees = half_angle_degrees;
-  spec.colour = radiance;
+  spec.color = radiance;
   add(*lights_, spec);
   return *this;
 }
 
-Light& Light::ball(const std::array<double, 3>& position, double radius, const Colour& radiance) {
+Light& Light::ball(const std::array<double, 3>& position, double radius, const Color& radiance) {
   LightSpec spec;
   spec.kind = LightSpec::Kind::sphere;
   spec.position = position;
   spec.radius = radius;
-  spec.colour = radiance;
+  spec.color = radiance;
   add(*lights_, spec);
   return *this;
 }
 
-Light& Light::hemisphere(double azimuth_degrees, double elevation_degrees, const Colour& sky, const Colour& ground) {
+Light& Light::hemisphere(double azimuth_degrees, double elevation_degrees, const Color& sky, const Color& ground) {
   LightSpec spec;
   spec.kind = LightSpec::Kind::hemisphere;
   spec.azimuth_degrees = azimuth_degrees;
   spec.elevation_degrees = elevation_degrees;
-  spec.colour = sky;
+  spec.color = sky;
   spec.ground = ground;
   add(*lights_, spec);
   return *this;
 }
 
-Light& Light::ambient(const Colour& radiance) {
+Light& Light::ambient(const Color& radiance) {
   LightSpec spec;
   spec.kind = LightSpec::Kind::ambient;
-  spec.colour = radiance;
+  spec.color = radiance;
   add(*lights_, spec);
   return *this;
 }

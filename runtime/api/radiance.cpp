@@ -26,19 +26,18 @@ std::size_t require_light(const Asset& asset, std::span<const float> light) {
   return coefficients;
 }
 
-Colour lit(const Asset& asset, std::span<const float> light, std::span<const float> vector, std::size_t coefficients) {
-  Colour radiance;
-  for (std::size_t colour = 0; colour < 3; ++colour)
-    radiance[colour] = static_cast<float>(
-        dot_product(light.subspan(colour * coefficients, coefficients),
-                    vector.subspan(asset.channels() == 1 ? 0 : colour * coefficients, coefficients)));
+Color lit(const Asset& asset, std::span<const float> light, std::span<const float> vector, std::size_t coefficients) {
+  Color radiance;
+  for (std::size_t color = 0; color < 3; ++color)
+    radiance[color] =
+        static_cast<float>(dot_product(light.subspan(color * coefficients, coefficients),
+                                       vector.subspan(asset.channels() == 1 ? 0 : color * coefficients, coefficients)));
   return radiance;
 }
 
 }  // namespace
 
-std::vector<float> exit_radiance(const Asset& asset, std::span<const float> light,
-                                 const std::optional<Colour>& albedo) {
+std::vector<float> exit_radiance(const Asset& asset, std::span<const float> light, const std::optional<Color>& albedo) {
   const std::size_t coefficients = require_light(asset, light), length = asset.vector_length();
   std::vector<float> radiance(3 * asset.points());
   constexpr std::size_t most_at_once = 4096;
@@ -49,24 +48,23 @@ std::vector<float> exit_radiance(const Asset& asset, std::span<const float> ligh
       std::vector<float> vectors(points.size() * length);
       asset.transfer(points, vectors);
       for (std::size_t k = 0; k < points.size(); ++k) {
-        const Colour sum = lit(asset, light, std::span(vectors).subspan(k * length, length), coefficients);
-        const Colour share = albedo ? *albedo : asset.albedo(points[k]);
-        for (std::size_t colour = 0; colour < 3; ++colour)
-          radiance[3 * points[k] + colour] = share[colour] * sum[colour];
+        const Color sum = lit(asset, light, std::span(vectors).subspan(k * length, length), coefficients);
+        const Color share = albedo ? *albedo : asset.albedo(points[k]);
+        for (std::size_t color = 0; color < 3; ++color) radiance[3 * points[k] + color] = share[color] * sum[color];
       }
     }
   });
   return radiance;
 }
 
-Colour exit_radiance_at(const Asset& asset, std::span<const float> light, std::uint32_t point,
-                        const std::optional<Colour>& albedo) {
+Color exit_radiance_at(const Asset& asset, std::span<const float> light, std::uint32_t point,
+                       const std::optional<Color>& albedo) {
   const std::size_t coefficients = require_light(asset, light);
   std::vector<float> vector(asset.vector_length());
   asset.transfer({&point, 1}, vector);
-  Colour radiance = lit(asset, light, vector, coefficients);
-  const Colour share = albedo ? *albedo : asset.albedo(point);
-  for (std::size_t colour = 0; colour < 3; ++colour) radiance[colour] *= share[colour];
+  Color radiance = lit(asset, light, vector, coefficients);
+  const Color share = albedo ? *albedo : asset.albedo(point);
+  for (std::size_t color = 0; color < 3; ++color) radiance[color] *= share[color];
   return radiance;
 }
 

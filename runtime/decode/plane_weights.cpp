@@ -17,9 +17,9 @@ namespace {
 Eigen::Vector3d lit(const PrtAsset& asset, const LightCoefficients& light, std::span<const float> transfer) {
   const std::size_t coefficients = static_cast<std::size_t>(asset.bands) * asset.bands;
   Eigen::Vector3d radiance = Eigen::Vector3d::Zero();
-  for (std::size_t colour = 0; colour < 3; ++colour)
-    radiance[static_cast<Eigen::Index>(colour)] = dot_product(
-        transfer.subspan(asset.channels == 1 ? 0 : colour * coefficients, coefficients), light.channels[colour]);
+  for (std::size_t color = 0; color < 3; ++color)
+    radiance[static_cast<Eigen::Index>(color)] = dot_product(
+        transfer.subspan(asset.channels == 1 ? 0 : color * coefficients, coefficients), light.channels[color]);
   return radiance;
 }
 
@@ -29,9 +29,9 @@ PlaneWeights coefficient_weights(const PrtAsset& asset, const LightCoefficients&
   PlaneWeights weights;
   for (const PrtPlane& plane : asset.planes) {
     Eigen::Vector3d level = Eigen::Vector3d::Zero();
-    for (int colour = 0; colour < 3; ++colour)
-      if (asset.channels == 1 || plane.channel == colour)
-        level[colour] = albedo[colour] * light.channels[colour][plane.coefficient];
+    for (int color = 0; color < 3; ++color)
+      if (asset.channels == 1 || plane.channel == color)
+        level[color] = albedo[color] * light.channels[color][plane.coefficient];
     constant += level * plane.range.lowest;
     weights.scales.emplace_back((level * plane.range.width()).cast<float>());
   }
@@ -83,8 +83,8 @@ PlaneWeights vector_weights(const PrtAsset& asset, const LightCoefficients& ligh
   for (int channel = 0; channel < asset.channels; ++channel)
     for (int i = 0; i < coefficients; ++i) {
       Eigen::Vector3f scale = Eigen::Vector3f::Zero();
-      for (int colour = 0; colour < 3; ++colour)
-        if (asset.channels == 1 || channel == colour) scale[colour] = albedo[colour] * light.channels[colour][i];
+      for (int color = 0; color < 3; ++color)
+        if (asset.channels == 1 || channel == color) scale[color] = albedo[color] * light.channels[color][i];
       weights.scales.push_back(scale);
     }
   return weights;
@@ -101,7 +101,7 @@ Image<float> relight_texels(const PrtAsset& asset, const LightCoefficients& ligh
         const PlaneWeights& weights = clusters[asset.clusters ? asset.clusters->of_texel(texel) : 0];
         Eigen::Vector3f sum = weights.constant;
         for (std::size_t k = 0; k < pictures.size(); ++k) sum += weights.scales[k] * (pictures[k].at(i, j) / white);
-        for (int colour = 0; colour < 3; ++colour) radiance.at(i, j, colour) = sum[colour];
+        for (int color = 0; color < 3; ++color) radiance.at(i, j, color) = sum[color];
       }
     });
   };

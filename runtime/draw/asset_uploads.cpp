@@ -170,11 +170,11 @@ UploadedTexture upload_light(const std::vector<std::vector<PlaneWeights>>& sampl
   float* to = values.data();
   for (const std::vector<PlaneWeights>& sample : samples)
     for (const PlaneWeights& weights : sample) {
-      for (std::size_t colour = 0; colour < 3; ++colour) {
-        to[colour] = weights.constant[static_cast<Eigen::Index>(colour)];
+      for (std::size_t color = 0; color < 3; ++color) {
+        to[color] = weights.constant[static_cast<Eigen::Index>(color)];
         for (std::size_t plane = 0; plane < weights.scales.size(); ++plane)
-          to[4 * (1 + 3 * (plane / planes_per_layer) + colour) + plane % planes_per_layer] =
-              weights.scales[plane][static_cast<Eigen::Index>(colour)];
+          to[4 * (1 + 3 * (plane / planes_per_layer) + color) + plane % planes_per_layer] =
+              weights.scales[plane][static_cast<Eigen::Index>(color)];
       }
       to += 4 * stride;
     }

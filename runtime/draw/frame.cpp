@@ -16,13 +16,13 @@ GlTexture make_target(GLenum format, int width, int height) {
   return texture;
 }
 
-void clear_colours(const GlFramebuffer& framebuffer, int attachments) {
+void clear_colors(const GlFramebuffer& framebuffer, int attachments) {
   const GLfloat nothing[4] = {0, 0, 0, 0};
   for (GLint k = 0; k < attachments; ++k) glClearNamedFramebufferfv(framebuffer.name(), GL_COLOR, k, nothing);
 }
 
 void clear(const GlFramebuffer& framebuffer, int attachments) {
-  clear_colours(framebuffer, attachments);
+  clear_colors(framebuffer, attachments);
   glClearNamedFramebufferfi(framebuffer.name(), GL_DEPTH_STENCIL, 0, 1.f, 0);
 }
 
@@ -44,10 +44,10 @@ void bind(const GlFramebuffer& framebuffer, int width, int height) {
 Frame::Frame(int width, int height)
     : width_(width),
       height_(height),
-      colour_(make_target(GL_RGBA32F, width, height)),
+      color_(make_target(GL_RGBA32F, width, height)),
       depth_(make_target(GL_DEPTH32F_STENCIL8, width, height)),
       framebuffer_(make_framebuffer()) {
-  glNamedFramebufferTexture(framebuffer_.name(), GL_COLOR_ATTACHMENT0, colour_.name(), 0);
+  glNamedFramebufferTexture(framebuffer_.name(), GL_COLOR_ATTACHMENT0, color_.name(), 0);
   glNamedFramebufferTexture(framebuffer_.name(), GL_DEPTH_STENCIL_ATTACHMENT, depth_.name(), 0);
   check_gl("making the frame");
 }
@@ -83,7 +83,7 @@ void AppearanceFrame::begin(const Frame& frame) const {
 void AppearanceFrame::begin_asset(int number) const { glStencilFunc(GL_ALWAYS, stencil_of(number), 0xff); }
 
 void AppearanceFrame::begin_shading(const Frame& frame) const {
-  clear_colours(frame.framebuffer(), 1);
+  clear_colors(frame.framebuffer(), 1);
   glBindFramebuffer(GL_FRAMEBUFFER, frame.framebuffer().name());
   glDisable(GL_DEPTH_TEST);
   glDepthMask(GL_FALSE);

@@ -17,13 +17,13 @@ class Frame {
   /// Binds and clears the framebuffer, and sets the state for drawing assets: depth test, both sides, no blending.
   void begin() const;
 
-  const GlTexture& colour() const { return colour_; }
+  const GlTexture& color() const { return color_; }
   const GlTexture& depth() const { return depth_; }
   const GlFramebuffer& framebuffer() const { return framebuffer_; }
 
  private:
   int width_, height_;
-  GlTexture colour_, depth_;
+  GlTexture color_, depth_;
   GlFramebuffer framebuffer_;
 };
 

@@ -27,14 +27,14 @@ Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Renderer::~Renderer() = default;
 
-void Renderer::set_light(const Light& light, const std::optional<Colour>& albedo) {
+void Renderer::set_light(const Light& light, const std::optional<Color>& albedo) {
   report_errors([&] {
     Implementation& own = *implementation_;
     const AssetLight incident =
         light_asset(light.implementation(), own.asset.bands(), Placement{}, own.renderer.samples().points);
     SurfaceLook look;
     look.own_albedo = !albedo;
-    look.albedo = albedo ? *albedo : Colour{1, 1, 1};
+    look.albedo = albedo ? *albedo : Color{1, 1, 1};
     own.renderer.set_light(incident, look);
   });
 }

@@ -17,14 +17,14 @@ namespace kiln {
 namespace {
 
 /// Reads red, green and blue of a grey, RGB or RGBA picture.
-Image<float> read_colours(const std::filesystem::path& file) {
+Image<float> read_colors(const std::filesystem::path& file) {
   const Image<float> picture = read_float_image(file);
   const auto fail = [&](const std::string& found, const std::string& expected) {
     throw BadInput(file.string(), found, expected, "choose another environment");
   };
   if (picture.channels() < 1 || picture.channels() > 4)
     fail("has " + std::to_string(picture.channels()) + " channels", "a grey, RGB or RGBA picture");
-  Image<float> colours(picture.width(), picture.height(), 3);
+  Image<float> colors(picture.width(), picture.height(), 3);
   for (int j = 0; j < picture.height(); ++j)
     for (int i = 0; i < picture.width(); ++i)
       for (int c = 0; c < 3; ++c) {
@@ -37,9 +37,9 @@ Image<float> read_colours(const std::filesystem::path& file) {
               "radiance of 0 or more, finite",
               "clamp the picture, for instance `oiiotool " + file.filename().string() +
                   " --fixnan box3 --clamp:min=0 -o clamped.exr`, or choose another environment");
-        colours.at(i, j, c) = value;
+        colors.at(i, j, c) = value;
       }
-  return colours;
+  return colors;
 }
 
 /// Turns a light about +Y.
@@ -61,7 +61,7 @@ LightCoefficients load_cube_map(const std::filesystem::path& folder, int bands, 
     if (!std::filesystem::exists(file))
       throw BadInput(folder.string(), "has no " + name + ".exr or " + name + ".hdr", "six faces of a cube map",
                      "add the face, or name a latitude-longitude picture");
-    const Image<float> face = read_colours(file);
+    const Image<float> face = read_colors(file);
     if (k == 0) size = face.width();
     if (face.width() != size || face.height() != size)
       throw BadInput(file.string(), "is " + std::to_string(face.width()) + " x " + std::to_string(face.height()),
@@ -79,9 +79,8 @@ LightCoefficients load_cube_map(const std::filesystem::path& folder, int bands, 
 
 LightCoefficients load_environment(const std::filesystem::path& file, int bands, double rotation_degrees) {
   if (std::filesystem::is_directory(file)) return load_cube_map(file, bands, rotation_degrees);
-  const Image<float> colours = read_colours(file);
-  return turned(latitude_longitude_light(bands, colours.width(), colours.height(), 3, colours.values()),
-                rotation_degrees);
+  const Image<float> colors = read_colors(file);
+  return turned(latitude_longitude_light(bands, colors.width(), colors.height(), 3, colors.values()), rotation_degrees);
 }
 
 }  // namespace kiln

@@ -30,13 +30,13 @@ LightCoefficients first_bands(const LightCoefficients& light, int bands) {
 DirectLight direct_light(const LightSpec& spec, const Placement& placement) {
   if (spec.kind != Kind::sphere) {
     const Eigen::Vector3d towards = direction_from_angles(spec.azimuth_degrees, spec.elevation_degrees).cast<double>();
-    return {(placement.rotation.transpose() * towards).cast<float>(), 0, spec.colour};
+    return {(placement.rotation.transpose() * towards).cast<float>(), 0, spec.color};
   }
   // Computes the ball's own radiance: a white surface at the scene's origin that faces it has the radiance `colour`.
   const Eigen::Vector3d position(spec.position.data());
   const double sine = std::min(1.0, spec.radius / position.norm());
   DirectLight light{placement.to_object(position).cast<float>(), static_cast<float>(spec.radius / placement.scale),
-                    spec.colour};
+                    spec.color};
   for (float& radiance : light.radiance) radiance = static_cast<float>(radiance / (sine * sine));
   return light;
 }

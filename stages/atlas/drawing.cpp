@@ -13,19 +13,19 @@ namespace kiln {
 
 namespace {
 
-using Colour = std::array<double, 3>;
+using Color = std::array<double, 3>;
 
 /// Returns a chart's colour. Hues are a golden section apart, so that neighbouring numbers differ most; two
 /// brightnesses.
-Colour chart_colour(std::uint32_t chart) {
+Color chart_color(std::uint32_t chart) {
   const double hue = std::fmod(0.618033988749895 * chart, 1.0) * 6;
   const double value = chart % 2 == 0 ? 235 : 185;
-  Colour colour;
+  Color color;
   for (int channel = 0; channel < 3; ++channel) {
     const double k = std::fmod(5.0 - 2 * channel + hue, 6.0);
-    colour[channel] = value * (1 - 0.55 * std::clamp(std::min(k, 4 - k), 0.0, 1.0));
+    color[channel] = value * (1 - 0.55 * std::clamp(std::min(k, 4 - k), 0.0, 1.0));
   }
-  return colour;
+  return color;
 }
 
 /// Returns the distance in pixels from a point of a triangle to its nearest side.
@@ -76,18 +76,18 @@ Image<std::uint8_t> draw_atlas(const TriangleMesh& atlas, const Extent& size, in
   for (int j = 0; j < pixels.height; ++j)
     for (int i = 0; i < pixels.width; ++i) {
       const TexelSource& source = raster.at(i, j);
-      Colour colour{30, 30, 34};
+      Color color{30, 30, 34};
       if (source.covered()) {
-        colour = chart_colour(chart_of[source.triangle]);
+        color = chart_color(chart_of[source.triangle]);
         // Edges are lines one pixel wide on each side.
         const double edge =
             std::clamp(1.5 - side_distance(atlas, source, Eigen::Vector2d(pixels.width, pixels.height)), 0.0, 1.0);
-        for (double& channel : colour) channel *= 1 - 0.6 * edge;
+        for (double& channel : color) channel *= 1 - 0.6 * edge;
       } else if (gutter[static_cast<std::size_t>(j) * pixels.width + i]) {
-        colour = {82, 82, 88};
+        color = {82, 82, 88};
       }
       for (int channel = 0; channel < 3; ++channel)
-        picture.at(i, j, channel) = static_cast<std::uint8_t>(std::lround(colour[channel]));
+        picture.at(i, j, channel) = static_cast<std::uint8_t>(std::lround(color[channel]));
     }
   return picture;
 }

@@ -140,7 +140,7 @@ Image<std::uint8_t> picture_of(const Image<std::uint8_t>& ways) {
   Image<std::uint8_t> picture(ways.width(), ways.height(), 3);
   for (int j = 0; j < ways.height(); ++j)
     for (int i = 0; i < ways.width(); ++i)
-      std::copy_n(texel_way_colours[ways.at(i, j)].colour.begin(), 3, picture.pixel(i, j).begin());
+      std::copy_n(texel_way_colors[ways.at(i, j)].color.begin(), 3, picture.pixel(i, j).begin());
   return picture;
 }
 
@@ -208,7 +208,7 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   progress(1);
 
   // Step 5: measure what is written.
-  std::array<std::int64_t, texel_way_colours.size()> found{};
+  std::array<std::int64_t, texel_way_colors.size()> found{};
   for (const std::uint8_t way : matches.way.values()) ++found[way];
   result.covered_texels = raster.covered_texels;
   const auto share = [&](TexelWay way) {

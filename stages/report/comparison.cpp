@@ -16,6 +16,7 @@
 #include "mesh/draco_file.h"
 #include "report/pictures.h"
 #include "report/reference.h"
+#include "report/transport.h"
 #include "sh/directions.h"
 #include "sh/light_spec.h"
 
@@ -27,6 +28,7 @@ namespace {
 
 constexpr double field_of_view_degrees = 30;
 constexpr int supersample = 2;
+constexpr double split_share = 0.3;  // share of the progress
 
 std::vector<LightSpec> parse_lights(const std::vector<std::string>& texts) {
   std::vector<LightSpec> specs;
@@ -40,31 +42,78 @@ bool has_albedo(const AssetFolder& asset) {
   return asset.record("normals").value("albedo", Json::object()).value("source", "none") != "none";
 }
 
-/// Loads the high mesh's reflectance, by the settings of the normals stage.
-SurfaceAlbedo high_albedo(const AssetFolder& asset, const ImportedMesh& high) {
+/// Sets options to what the record of a stage has of them.
+void take_settings(const OptionSet& options, const Json& record) {
+  const Json settings = record.value("settings", Json::object());
+  for (const Option& option : options.options())
+    if (settings.contains(option.name)) option.set(settings.at(option.name).get<std::string>());
+}
+
+MaterialSettings material_of(const Json& record) {
   MaterialSettings material;
   OptionSet options;
   add_material_options(options, material);
-  const Json settings = asset.record("normals").value("settings", Json::object());
-  for (const Option& option : options.options())
-    if (settings.contains(option.name)) option.set(settings.at(option.name).get<std::string>());
-  return load_albedo(high, material).albedo;
+  take_settings(options, record);
+  return material;
 }
 
-/// Returns the bake's surroundings of the asset as one mesh.
-TriangleMesh surroundings_of(const AssetFolder& asset, const TriangleMesh& high) {
+/// Returns the high mesh and the bake's surroundings, with the albedos that the bake took where light bounces.
+SceneMesh scene_of(const AssetFolder& asset, const ImportedMesh& high) {
   const Json& bake = asset.record("bake");
-  const Json settings = bake.value("settings", Json::object());
   Surroundings surroundings;
   OptionSet options;
   add_surroundings_options(options, surroundings);
-  for (const Option& option : options.options())
-    if (settings.contains(option.name)) option.set(settings.at(option.name).get<std::string>());
+  take_settings(options, bake);
   surroundings.neighbours = bake.value("neighbours", surroundings.neighbours);
-  TriangleMesh all;
-  for (const PlacedMesh& placed : load_surroundings(surroundings, bounding_box(high), {}, false, high.frame))
-    append(all, placed.mesh);
-  return all;
+  const bool bounces = bounces_taken(bake) > 0;
+  const MaterialSettings material = material_of(bake);
+  SceneMesh scene;
+  const auto add = [&](const TriangleMesh& mesh, const SurfaceAlbedo& albedo) {
+    if (bounces)
+      scene.add(mesh, albedo);
+    else
+      scene.add(mesh);
+  };
+  add(high.mesh, bounces ? load_albedo(high, material).albedo : SurfaceAlbedo());
+  for (const PlacedMesh& placed :
+       load_surroundings(surroundings, bounding_box(high.mesh), material, bounces, high.mesh.frame))
+    add(placed.mesh, placed.material.albedo);
+  return scene;
+}
+
+/// Returns why the causes of the error are not measured; empty if they are.
+std::string left_out(const AssetFolder& asset) {
+  const Json& bake = asset.record("bake");
+  const Json settings = bake.value("settings", Json::object());
+  if (bounces_taken(bake) > 0) return "light bounces, which the split does not follow";
+  if (bake.contains("subsurface")) return "light scatters beneath the surface, which the split does not follow";
+  if (asset.baked.vertices > 0) return "the asset is baked per vertex";
+  if (asset.baked.channels != 1) return "the transfer has the albedo within";
+  if (settings.value("receiver", std::string("high")) != "high") return "the bake's receivers are on the low mesh";
+  return {};
+}
+
+/// Returns the directions of the bake.
+std::vector<Eigen::Vector3f> directions_of(const Json& bake) {
+  const Json& settings = bake.at("settings");
+  const std::string sampling = settings.value("sampling", std::string("fibonacci"));
+  const bool by_error = settings.value("max-error", std::string("none")) != "none";
+  return sample_directions(by_error                    ? Sampling::progressive
+                           : sampling == "stratified"  ? Sampling::stratified
+                           : sampling == "progressive" ? Sampling::progressive
+                                                       : Sampling::fibonacci,
+                           bake.at("directions").get<int>(), settings.value("seed", std::uint64_t{1}));
+}
+
+ErrorSplit split_error(const AssetFolder& asset, const TriangleMesh& low, const TriangleMesh& high,
+                       const SceneMesh& scene, const ComparisonRun& run) {
+  const PrtAsset plain = load_prt_asset(asset.prt());
+  std::optional<PrtAsset> compressed;
+  if (!asset.compressed.empty()) compressed = load_prt_asset(asset.compressed);
+  const DetailMaps detail = load_detail_maps(layout::stage_folder(asset.folder, "normals"), low);
+  return error_causes({high, low, scene, plain, compressed ? &*compressed : nullptr, detail,
+                       directions_of(asset.record("bake")), static_cast<std::uint64_t>(run.seed)},
+                      part_of(run.progress, 1 - split_share, 1));
 }
 
 /// Pictures of assets under each light.
@@ -205,13 +254,17 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   view.camera = camera_of_json(rendered.said.at("camera"));
   view.supersample = supersample;
   view.albedo = static_cast<float>(albedo);
-  view.surface_albedo = high_albedo(asset, imported);
-  view.surroundings = surroundings_of(asset, high);
+  view.surface_albedo = load_albedo(imported, material_of(asset.record("normals"))).albedo;
+  view.scene = scene_of(asset, imported);
+  view.bounces = static_cast<int>(bounces_taken(asset.record("bake")));
   view.bands = asset.baked.bands;
   // Take other directions than the bake, so that an error of the bake's does not cancel.
   const std::vector<Eigen::Vector3f> directions =
       sample_directions(Sampling::fibonacci, settings.directions, static_cast<std::uint64_t>(run.seed) + 1);
-  std::vector<Image<float>> references = reference_pictures(high, view, specs, directions, run.progress);
+  std::vector<Image<float>> references =
+      reference_pictures(high, view, specs, directions, part_of(run.progress, 0, 1 - split_share));
+  comparison.error_left_out = left_out(asset);
+  if (comparison.error_left_out.empty()) comparison.error = split_error(asset, atlas, high, view.scene, run);
   comparison.reference_seconds = reference_watch.seconds();
 
   for (std::size_t k = 0; k < lights.size(); ++k) {

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/progress.h"
 #include "image/compare.h"
 #include "image/image.h"
+#include "report/error_causes.h"
 #include "report/records.h"
 #include "report/report_settings.h"
 
@@ -32,6 +34,8 @@ struct Comparison {
   bool software_renderer = false;
   double render_seconds = 0;
   double reference_seconds = 0;
+  std::optional<ErrorSplit> error;  ///< E of what is seen, and its causes
+  std::string error_left_out;       ///< why that was not measured
 };
 
 /// Context of a comparison beyond the settings.

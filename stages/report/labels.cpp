@@ -100,6 +100,16 @@ constexpr Known known_metrics[] = {
     {"texel_error", "texel error", Unit::share, Better::lower},
     {"border_jump", "border jump", Unit::plain, Better::lower},
     {"texel_directions_per_second", "texel directions per second", Unit::plain, Better::higher},
+    {"report.error.total", "expected relighting error as seen", Unit::share, Better::lower},
+    {"report.error.root_sum_of_causes", "root of the sum of its causes' squares", Unit::share},
+    {"report.error.causes.geometry", "of it: geometry", Unit::share, Better::lower},
+    {"report.error.causes.texels", "of it: texels", Unit::share, Better::lower},
+    {"report.error.causes.bands", "of it: bands", Unit::share, Better::lower},
+    {"report.error.causes.directions", "of it: directions", Unit::share, Better::lower},
+    {"report.error.causes.bits", "of it: bits", Unit::share, Better::lower},
+    {"report.error.causes.visibility", "of it: visibility", Unit::share, Better::lower},
+    {"report.error.causes.seams", "of it: seams", Unit::share, Better::lower},
+    {"report.error.causes.compression", "of it: compression", Unit::share, Better::lower},
     {"silhouette_difference", "silhouette difference", Unit::share, Better::lower},
 };
 
@@ -209,15 +219,15 @@ std::string escaped(const std::string& text) {
 
 std::string light_label(const std::string& light) {
   const LightSpec spec = parse_light_spec(light);
-  const auto colour = [&] {
-    const auto& [r, g, b] = spec.colour;
+  const auto color = [&] {
+    const auto& [r, g, b] = spec.color;
     return r == g && g == b ? fmt::format("{:g}", r) : fmt::format("{:g}, {:g}, {:g}", r, g, b);
   };
-  if (spec.kind == LightSpec::Kind::ambient) return "Ambient, radiance " + colour();
+  if (spec.kind == LightSpec::Kind::ambient) return "Ambient, radiance " + color();
   const auto degrees = [](double angle) { return fmt::format("{}{:g}°", angle < 0 ? "−" : "", std::abs(angle)); };
   std::string text =
       "Directional, azimuth " + degrees(spec.azimuth_degrees) + ", elevation " + degrees(spec.elevation_degrees);
-  if (spec.colour != std::array<float, 3>{1, 1, 1}) text += ", radiance " + colour();
+  if (spec.color != std::array<float, 3>{1, 1, 1}) text += ", radiance " + color();
   return text;
 }
 

@@ -8,6 +8,7 @@
 #include "base/asset_layout.h"
 #include "base/json.h"
 #include "detail/texel_way.h"
+#include "report/error_section.h"
 #include "report/labels.h"
 #include "report/page_style.h"
 #include "report/page_tables.h"
@@ -134,11 +135,15 @@ std::string relit_section(const AssetFolder& asset, const Report& report, const 
       settings.value("directions", Json("–")).dump(), asset.baked.bands,
       metric_value("pixels", comparison.compared_pixels),
       metric_value("silhouette_difference", comparison.silhouette_difference));
-  if (scatters_light(asset.record("bake")))
+  if (const std::size_t bounces = bounces_taken(asset.record("bake")); bounces > 0)
+    html += fmt::format(
+        "<p class=note>Its light bounces, too: {} time{}, by paths that end in the sky, so without the points of the "
+        "surface at which the bake keeps light.</p>\n",
+        bounces, bounces == 1 ? "" : "s");
+  if (asset.record("bake").contains("subsurface"))
     html +=
-        "<p class=note>The reference has direct light alone: light that bounces, or scatters beneath the surface, is "
-        "part of "
-        "the difference.</p>\n";
+        "<p class=note>The reference has no light that scatters beneath the surface: that is part of the "
+        "difference.</p>\n";
   const Crop crop = crop_of(comparison.lights.front());
   for (const LightComparison& light : comparison.lights) {
     const std::string name = light_label(light.light);
@@ -198,10 +203,10 @@ std::string compression_section(const AssetFolder& asset, const Report& report, 
 /// Makes the figure that shows how each texel found its point of the high mesh, with its legend.
 std::string match_figure(const fs::path& file, const fs::path& scratch) {
   std::string legend;
-  for (std::size_t way = 1; way < texel_way_colours.size(); ++way) {
-    const auto& [name, colour] = texel_way_colours[way];
-    legend += fmt::format("<span class=key><i style='background:rgb({},{},{})'></i>{}</span>", colour[0], colour[1],
-                          colour[2], name);
+  for (std::size_t way = 1; way < texel_way_colors.size(); ++way) {
+    const auto& [name, color] = texel_way_colors[way];
+    legend += fmt::format("<span class=key><i style='background:rgb({},{},{})'></i>{}</span>", color[0], color[1],
+                          color[2], name);
   }
   return figure(image(thumbnail(file, 8, texture_pixels), "How texels found their point", scratch),
                 "<b>Match</b> · how texels found their point of the high mesh: " + legend);
@@ -311,9 +316,10 @@ std::string page_html(const AssetFolder& asset, const Report& report, const Json
          escaped(asset.name) + " · Kiln report</title>\n<style>\n" + page_style() +
          "</style>\n</head>\n<body><main>\n" + header(asset, report, metrics) +
          relit_section(asset, report, metrics, scratch) + marked_budgets(report.budgets) +
-         compression_section(asset, report, scratch) + transport_section(asset.record("bake")) +
-         textures_section(asset, scratch) + coefficients_section(asset, scratch) + verification_section(asset) +
-         stages_section(metrics) + footer(metrics) + "</main></body>\n</html>\n";
+         error_section(report.comparison) + compression_section(asset, report, scratch) +
+         transport_section(asset.record("bake")) + textures_section(asset, scratch) +
+         coefficients_section(asset, scratch) + verification_section(asset) + stages_section(metrics) +
+         footer(metrics) + "</main></body>\n</html>\n";
 }
 
 }  // namespace kiln

@@ -13,14 +13,14 @@ namespace kiln {
 
 namespace {
 
-struct StageColour {
+struct StageColor {
   const char* stage;
-  const char* colour;
+  const char* color;
 };
-constexpr std::array stage_colours = {StageColour{"simplify", "#7a5c3e"}, StageColour{"atlas", "#5f6b3a"},
-                                      StageColour{"normals", "#3f6b6b"},  StageColour{"bake", "#8c4a2f"},
-                                      StageColour{"compress", "#7d4a66"}, StageColour{"probes", "#8a6d2f"},
-                                      StageColour{"report", "#5a5568"}};
+constexpr std::array stage_colors = {StageColor{"simplify", "#7a5c3e"}, StageColor{"atlas", "#5f6b3a"},
+                                     StageColor{"normals", "#3f6b6b"},  StageColor{"bake", "#8c4a2f"},
+                                     StageColor{"compress", "#7d4a66"}, StageColor{"probes", "#8a6d2f"},
+                                     StageColor{"report", "#5a5568"}};
 
 std::string row(const std::string& label, const std::string& value) {
   return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", escaped(label), value);
@@ -78,9 +78,9 @@ std::string verification_section(const AssetFolder& asset) {
 std::string stages_section(const Json& metrics) {
   std::string bar, cards;
   double total = 0;
-  for (const StageColour& stage : stage_colours)
+  for (const StageColor& stage : stage_colors)
     if (metrics.contains(stage.stage)) total += metrics.at(stage.stage).at("seconds").get<double>();
-  for (const auto& [stage, colour] : stage_colours) {
+  for (const auto& [stage, color] : stage_colors) {
     if (!metrics.contains(stage)) continue;  // on request
     const Json& result = metrics.at(stage);
     const double seconds = result.at("seconds").get<double>();
@@ -88,12 +88,12 @@ std::string stages_section(const Json& metrics) {
     // A thin slice has no room for its name; the card names it.
     const std::string label = seconds > 0.08 * total ? stage + (" " + time) : std::string();
     bar += fmt::format("<span style='flex:{:.4f} 0 0;background:{}' title='{} {}'>{}</span>", std::max(seconds, 1e-4),
-                       colour, stage, time, label);
+                       color, stage, time, label);
     cards += fmt::format(
         "<div class=card><h3><i style='background:{}'></i>{}<span>{}</span></h3>\n<dl "
         "class=rows>\n{}</dl>\n<details><summary>Settings</summary><dl "
         "class=rows>\n{}</dl></details></div>\n",
-        colour, stage, time, metric_rows(stage, result), settings_rows(result.value("settings", Json::object())));
+        color, stage, time, metric_rows(stage, result), settings_rows(result.value("settings", Json::object())));
   }
   return "<section><h2>Stages</h2>\n<p class=note>Each stage's own work, without reading and writing files, and what "
          "it measured on what it "

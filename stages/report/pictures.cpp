@@ -16,11 +16,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Colour = std::array<float, 3>;
+using Color = std::array<float, 3>;
 
-constexpr Colour white = {247, 247, 247};
-constexpr Colour red = {178, 24, 43};
-constexpr Colour blue = {33, 102, 172};
+constexpr Color white = {247, 247, 247};
+constexpr Color red = {178, 24, 43};
+constexpr Color blue = {33, 102, 172};
 constexpr std::uint8_t uncompared_grey = 128;
 
 /// Weights of old pixels in the new ones, along one axis.
@@ -90,7 +90,7 @@ Image<std::uint8_t> shown_difference(const Image<float>& a, const Image<float>& 
       float difference = 0;
       for (int c = 0; c < 3; ++c) difference += (a.at(i, j, c) - b.at(i, j, c)) / 3;
       const float strength = std::clamp(static_cast<float>(gain) * difference, -1.f, 1.f);
-      const Colour& end = strength > 0 ? red : blue;
+      const Color& end = strength > 0 ? red : blue;
       for (int c = 0; c < 3; ++c)
         pixel[c] = byte_from_unit((white[c] + std::abs(strength) * (end[c] - white[c])) / 255);
       pixel[3] = 255;

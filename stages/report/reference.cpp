@@ -3,17 +3,20 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include "raycast/ray_scene.h"
 #include "raycast/ray_transfer.h"
+#include "report/bounce_paths.h"
 #include "sh/ray_offset.h"
 
 namespace kiln {
 
 namespace {
 
+constexpr std::size_t path_step = 2;  // directions for each path: bounced light is a part of all, and may be noisier
 constexpr std::size_t batch_receivers = 16384;  // bounds the memory of transfer vectors of many bands
 
 /// Surface points that samples of a picture see.
@@ -58,8 +61,9 @@ std::vector<Eigen::Vector3f> every_nth(std::span<const Eigen::Vector3f> directio
   return chosen;
 }
 
-/// Computes the radiance that receivers send out under one light, at an albedo of 1.
-std::vector<Eigen::Vector3f> radiance_of(const TransferVectors& transfer, const LightSpec& light,
+/// Computes the radiance that receivers send out under one light, at an albedo of 1, from one channel of transfer or
+/// three.
+std::vector<Eigen::Vector3f> radiance_of(const std::vector<TransferVectors>& channels, const LightSpec& light,
                                          const ReferenceView& view, const Receivers& receivers) {
   std::vector<Eigen::Vector3f> radiance(receivers.size());
   const bool is_local = light.kind == LightSpec::Kind::sphere;
@@ -70,11 +74,12 @@ std::vector<Eigen::Vector3f> radiance_of(const TransferVectors& transfer, const 
     std::vector<LightCoefficients> near;
     for (std::size_t r = range.begin(); is_local && r != range.end(); ++r)
       near.push_back(windowed_light(light, view.bands, view.window, receivers.positions[r].template cast<double>()));
-    for (int i = 0; i < transfer.coefficients; ++i) {
-      const std::span<const float> plane = transfer.plane(i);
-      for (std::size_t k = 0; k < range.size(); ++k) {
-        const LightCoefficients& incident = is_local ? near[k] : far;
-        for (int c = 0; c < 3; ++c) sums[k][c] += incident.channels[c][i] * plane[range.begin() + k];
+    for (int c = 0; c < 3; ++c) {
+      const TransferVectors& transfer = channels[channels.size() == 1 ? 0 : static_cast<std::size_t>(c)];
+      for (int i = 0; i < transfer.coefficients; ++i) {
+        const std::span<const float> plane = transfer.plane(i);
+        for (std::size_t k = 0; k < range.size(); ++k)
+          sums[k][c] += (is_local ? near[k] : far).channels[c][i] * plane[range.begin() + k];
       }
     }
     for (std::size_t k = 0; k < range.size(); ++k) radiance[range.begin() + k] = sums[k].cast<float>();
@@ -106,10 +111,14 @@ std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const Ref
   std::size_t count = 0, done = 0;
   for (const VisiblePoints& points : places) count += points.positions.size();
 
-  TriangleMesh occluders{mesh.positions, mesh.triangles, {}, {}};
-  append(occluders, view.surroundings);
-  const RayScene scene(occluders);  // Embree's, not the beams that make bakes, so that the two do not share a fault
-  const float ray_offset = rounding_offset(occluders.positions);  // as in kiln-bake
+  SceneMesh alone;
+  if (view.scene.mesh.triangles.empty()) alone.add(mesh);
+  const SceneMesh& surface = alone.mesh.triangles.empty() ? view.scene : alone;
+  // Embree's rays, not the beams that make bakes, so that the two do not share a fault.
+  const RayScene scene(surface.mesh);
+  const float ray_offset = rounding_offset(surface.mesh.positions);  // as in kiln-bake
+  std::optional<BouncePaths> paths;
+  if (view.bounces > 0) paths.emplace(scene, surface, view.bounces, ray_offset);
   const std::size_t groups = std::min(places.size(), directions.size());
   for (std::size_t place = 0; place < places.size(); ++place) {
     const VisiblePoints& points = places[place];
@@ -118,9 +127,13 @@ std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const Ref
       const std::size_t size = std::min(batch_receivers, points.positions.size() - begin);
       const Receivers receivers{std::span(points.positions).subspan(begin, size),
                                 std::span(points.normals).subspan(begin, size)};
-      const TransferVectors transfer = transfer_by_rays(scene, receivers, own, view.bands, ray_offset);
+      std::vector<TransferVectors> channels = {transfer_by_rays(scene, receivers, own, view.bands, ray_offset)};
+      if (paths) {
+        channels.resize(3, channels.front());
+        paths->add(receivers, every_nth(own, 0, path_step), done, channels);
+      }
       for (std::size_t light = 0; light < lights.size(); ++light)
-        add_samples(pictures[light], points, begin, radiance_of(transfer, lights[light], view, receivers),
+        add_samples(pictures[light], points, begin, radiance_of(channels, lights[light], view, receivers),
                     1.f / static_cast<float>(places.size()));
       done += size;
       progress(static_cast<double>(done) / static_cast<double>(count));

@@ -7,6 +7,7 @@
 
 #include "base/progress.h"
 #include "image/image.h"
+#include "material/scene_mesh.h"
 #include "material/surface_albedo.h"
 #include "mesh/camera.h"
 #include "mesh/triangle_mesh.h"
@@ -22,17 +23,20 @@ struct ReferenceView {
   int supersample = 2;           ///< samples per pixel along each axis
   float albedo = 0.8f;           ///< factor of the surface's albedo
   SurfaceAlbedo surface_albedo;  ///< albedo of the mesh itself
-  TriangleMesh surroundings;     ///< casts shadows but is not seen
+  SceneMesh scene;               ///< casts shadows, and reflects where light bounces: the mesh first, then what
+                                 ///< surrounds it, which is not seen; empty: the mesh alone
+  int bounces = 0;               ///< how often light bounces off the scene, which then has albedos
   int bands = 5;                 ///< number of bands that light is projected on
   LightWindow window = LightWindow::hann;
 };
 
 /// Draws pictures of a mesh under each of `lights`: the first hit of each sample's ray is shaded by the transfer
-/// integral over `directions` (rays against the mesh, with interpolated normals, and its surroundings), projected on
-/// the view's bands. The samples of a pixel share the directions among them: sample s of n takes every n-th from the
-/// s-th on, so the pixel's mean is over all of them at the price of one sample (interleaved sampling,
-/// [Keller 2001]). A light near the mesh is evaluated at every point. Without atlas, textures or rasteriser, this is
-/// what the baked asset approximates. RGBA in linear radiance; alpha is coverage and colours are multiplied by it.
+/// integral over `directions` (rays against the view's scene, with interpolated normals), and by paths for light that
+/// bounces (report/bounce_paths.h), projected on the view's bands. The samples of a pixel share the directions among
+/// them: sample s of n takes every n-th from the s-th on, so the pixel's mean is over all of them at the price of one
+/// sample (interleaved sampling, [Keller 2001]). A light near the mesh is evaluated at every point. Without atlas,
+/// textures or rasteriser, this is what the baked asset approximates. RGBA in linear radiance; alpha is coverage and
+/// colours are multiplied by it.
 std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
                                              std::span<const LightSpec> lights,
                                              std::span<const Eigen::Vector3f> directions,

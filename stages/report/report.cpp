@@ -36,6 +36,7 @@ Json Report::to_json() const {
                {"lights", lights}};
   put_verdicts(json, budgets);
   if (is_compressed) json["compressed_relative_l2"] = compressed_relative_l2;
+  if (comparison.error) json["error"] = kiln::to_json(*comparison.error);
   return json;
 }
 
@@ -43,6 +44,7 @@ Json all_metrics(const AssetFolder& asset, const Json& report_result) {
   Json metrics = {{"asset", asset.name}, {"version", KILN_VERSION}};
   for (const StageRecord& record : asset.records) metrics[record.stage] = record.json;
   metrics["report"] = report_result;
+  if (report_result.contains("error")) metrics["error"] = report_result["error"];
   return metrics;
 }
 

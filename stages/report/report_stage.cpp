@@ -16,6 +16,22 @@ constexpr const char* metric_names =
     "relative_l2 root_mean_square silhouette_difference compared_pixels software_renderer render_seconds "
     "reference_seconds seconds";
 
+constexpr const char* error_names =
+    "error.total error.root_sum_of_causes error.samples error.reference_directions error.reference_bands "
+    "error.causes.geometry error.causes.texels error.causes.bands error.causes.directions error.causes.bits "
+    "error.causes.visibility error.causes.seams";
+
+/// Tells whether the report splits the error: of direct light in textures, on the high mesh's points.
+bool splits_error(const AssetSettings& all) {
+  const auto bake = all.find("bake");
+  const auto is = [&](const char* name, const char* plain) {
+    if (bake == all.end()) return true;
+    const auto found = bake->second.find(name);
+    return found == bake->second.end() || found->second == plain;
+  };
+  return is("bounces", "0") && is("subsurface", "none") && is("receiver", "high") && is("bake-albedo", "false");
+}
+
 StageOptions options() { return StageOptions::of(report_options); }
 
 StageRun run(const AssetPlan& plan) {
@@ -43,12 +59,16 @@ StageRun run(const AssetPlan& plan) {
 }  // namespace
 
 const StageInfo& report_stage() {
-  static const StageInfo info = {.name = "report",
-                                 .options = options,
-                                 .metrics = {{metric_names},
-                                             {"compressed_relative_l2", "compressed_", "compress",
-                                              [](const AssetSettings& all) { return all.contains("compress"); }}},
-                                 .run = run};
+  static const StageInfo info = {
+      .name = "report",
+      .options = options,
+      .metrics = {{metric_names},
+                  {error_names, "error.", "bounces of bake", splits_error},
+                  {"error.causes.compression", "error.causes.compression", "compress",
+                   [](const AssetSettings& all) { return splits_error(all) && all.contains("compress"); }},
+                  {"compressed_relative_l2", "compressed_", "compress",
+                   [](const AssetSettings& all) { return all.contains("compress"); }}},
+      .run = run};
   return info;
 }
 

@@ -67,6 +67,10 @@ std::string subsurface_table(const Json& subsurface) {
 
 bool scatters_light(const Json& bake) { return bake.contains("bounces") || bake.contains("subsurface"); }
 
+std::size_t bounces_taken(const Json& bake) {
+  return bake.value("bounces", Json::object()).value("energy", Json::array()).size();
+}
+
 std::string transport_section(const Json& bake) {
   std::string html;
   if (bake.contains("bounces")) html += "<section><h2>Light that bounces</h2>\n" + bounces_table(bake) + "</section>\n";

@@ -48,7 +48,7 @@ NormalsResult make(const TriangleMesh& high, const TriangleMesh& low, const Norm
 /// 2.275.
 constexpr float half_step = 0.5f / 255 * 2.275f;
 
-TEST(AlbedoMap, HoldsTheColourOfEveryTexelsPoint) {
+TEST(AlbedoMap, HoldsTheColorOfEveryTexelsPoint) {
   const TriangleMesh high = shapes::icosphere(6), low = shapes::cube_sphere(6);
   for (const int samples : {1, 16}) {
     SCOPED_TRACE(samples);

@@ -503,12 +503,12 @@ TEST(Drawing, ShowsChartsGutterAndFreeRoom) {
   const Image<std::uint8_t> picture = draw_atlas(mesh, 512, 4);
   ASSERT_EQ(picture.width(), 1024);
   ASSERT_EQ(picture.height(), 1024);
-  std::set<std::array<int, 3>> colours;
+  std::set<std::array<int, 3>> colors;
   for (const int i : {10, 252, 330}) {  // free room, 4 pixels from the chart, inside it
     const auto pixel = picture.pixel(i, 400);
-    colours.insert({pixel[0], pixel[1], pixel[2]});
+    colors.insert({pixel[0], pixel[1], pixel[2]});
   }
-  EXPECT_EQ(colours.size(), 3u);
+  EXPECT_EQ(colors.size(), 3u);
 }
 
 }  // namespace

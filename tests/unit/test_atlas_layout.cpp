@@ -161,7 +161,7 @@ TEST_F(AtlasLayout, GivesTexelsToWhereTransferVaries) {
   EXPECT_GE(measures.smallest_gap_texels, settings.gutter);
 }
 
-TEST_F(AtlasLayout, KeepsColours) {
+TEST_F(AtlasLayout, KeepsColors) {
   TriangleMesh mesh = shapes::plane(2);
   for (const Eigen::Vector3f& p : mesh.positions) mesh.colors.push_back(p + Eigen::Vector3f::Constant(0.5f));
   const TriangleMesh atlas = make_atlas(mesh, quick_settings(64)).mesh;

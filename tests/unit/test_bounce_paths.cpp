@@ -23,7 +23,7 @@ std::vector<double> sky_light() {
   return light;
 }
 
-TEST(BouncePaths, BunnyOnAColouredFloor) {
+TEST(BouncePaths, BunnyOnAColoredFloor) {
   constexpr int bounces = 3, paths = 20000;
   const Eigen::Vector3f bunny_albedo(0.7f, 0.8f, 0.9f), floor_albedo(0.8f, 0.3f, 0.1f);
   BounceStand stand;

@@ -538,11 +538,11 @@ TEST(PcaAsset, GpuAndCpuAgree) {
                     y = (0.1f + 0.8f * (0.5f - point.z())) * height - 0.5f;
         const int column = static_cast<int>(x), row = static_cast<int>(y);
         const float s = x - static_cast<float>(column), t = y - static_cast<float>(row);
-        for (int colour = 0; colour < 3; ++colour) {
+        for (int color = 0; color < 3; ++color) {
           const float expected =
-              (1 - t) * ((1 - s) * cpu.at(column, row, colour) + s * cpu.at(column + 1, row, colour)) +
-              t * ((1 - s) * cpu.at(column, row + 1, colour) + s * cpu.at(column + 1, row + 1, colour));
-          largest = std::max<double>(largest, std::abs(expected - gpu.at(i, j, colour)));
+              (1 - t) * ((1 - s) * cpu.at(column, row, color) + s * cpu.at(column + 1, row, color)) +
+              t * ((1 - s) * cpu.at(column, row + 1, color) + s * cpu.at(column + 1, row + 1, color));
+          largest = std::max<double>(largest, std::abs(expected - gpu.at(i, j, color)));
           brightest = std::max<double>(brightest, std::abs(expected));
         }
       }

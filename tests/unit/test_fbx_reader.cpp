@@ -256,7 +256,7 @@ TEST_F(FbxReader, TurnsTheWindingOfMirroredModels) {
   EXPECT_NEAR(worst_normal(mesh), 1, 1e-6);
 }
 
-TEST_F(FbxReader, ReadsCoordinatesAndColoursOfCorners) {
+TEST_F(FbxReader, ReadsCoordinatesAndColorsOfCorners) {
   Cube cube;
   cube.layers =
       "LayerElementUV: 0 {\nMappingInformationType: \"ByPolygonVertex\"\nReferenceInformationType: \"IndexToDirect\"\n"

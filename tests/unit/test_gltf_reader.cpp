@@ -213,7 +213,7 @@ TEST_F(GltfReader, TakesTheSetOfCoordinatesThatThePictureNames) {
   EXPECT_EQ(mesh.materials[0].diffuse, Eigen::Vector3f::Constant(0.5f));
 }
 
-TEST_F(GltfReader, ReadsColoursAsLinear) {
+TEST_F(GltfReader, ReadsColorsAsLinear) {
   GltfBuilder builder;
   Json primitive = square(builder);
   std::string bytes;

@@ -72,10 +72,10 @@ TEST(BandMoments, TurnsChangeNothing) {
 }
 
 TEST(BandMoments, ChannelsCountAlike) {
-  const std::array<float, 3> colour = {1, 2, 0};
+  const std::array<float, 3> color = {1, 2, 0};
   const std::vector<double> grey = band_moments(directional_light(4, {0, 0, 1}, white));
-  const std::vector<double> coloured = band_moments(directional_light(4, {0, 0, 1}, colour));
-  for (std::size_t l = 0; l < grey.size(); ++l) EXPECT_NEAR(coloured[l], grey[l] * 5 / 3, 1e-5);
+  const std::vector<double> colored = band_moments(directional_light(4, {0, 0, 1}, color));
+  for (std::size_t l = 0; l < grey.size(); ++l) EXPECT_NEAR(colored[l], grey[l] * 5 / 3, 1e-5);
 }
 
 TEST(BandMoments, AreTheMeanSquareOverAllTurns) {
@@ -171,8 +171,8 @@ TEST(SoftBoxes, FaceOfACubeHasASixthOfTheSphere) {
 TEST(SoftBoxes, SmallOnesAreDirectional) {
   // 1 cm at 10 m.
   const LightCoefficients box = soft_box_light(17, {90, 0, 10, 0.01, 0.01, 2});
-  const std::array<float, 1> colour = {2};
-  const LightCoefficients distant = directional_light(17, {1, 0, 0}, colour);
+  const std::array<float, 1> color = {2};
+  const LightCoefficients distant = directional_light(17, {1, 0, 0}, color);
   for (std::size_t i = 0; i < box.channels[0].size(); ++i)
     EXPECT_NEAR(box.channels[0][i], distant.channels[0][i], 1e-4) << i;
 }

@@ -142,7 +142,7 @@ TEST_F(Material, TextureLookupsAreBilinearInLinearLightAndRepeat) {
   EXPECT_FALSE(texture.is_grey());
 }
 
-TEST_F(Material, TexturesOfEveryKindGiveTheSameColours) {
+TEST_F(Material, TexturesOfEveryKindGiveTheSameColors) {
   // A grey PNG of 16 bits, one with alpha, and an EXR that holds the linear values.
   Image<std::uint16_t> grey16(1, 2, 1);
   Image<std::uint8_t> rgba(1, 2, 4, 255);
@@ -169,7 +169,7 @@ TEST_F(Material, TexturesOfEveryKindGiveTheSameColours) {
   }
 }
 
-TEST_F(Material, VertexColoursAreDecodedThenInterpolated) {
+TEST_F(Material, VertexColorsAreDecodedThenInterpolated) {
   const fs::path file =
       write("a.ply",
             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
@@ -196,7 +196,7 @@ TEST_F(Material, NothingKnownIsWhite) {
   EXPECT_TRUE(loaded.files.empty() && loaded.warnings().empty());
 }
 
-TEST_F(Material, ColoursOutsideAreCountedAndThoseThatAreNoNumbersRefused) {
+TEST_F(Material, ColorsOutsideAreCountedAndThoseThatAreNoNumbersRefused) {
   const std::string rest = "v 1 0 0 0 0 0\nv 0 1 0 1 1 1\nf 1 2 3\n";
   const ImportedMesh imported = import_mesh(write("a.obj", "v 0 0 0 2 -1 0.5\n" + rest));
   const TriangleMesh& mesh = imported.mesh;

@@ -50,7 +50,7 @@ class MtlFiles : public ObjFiles {
 
 const Eigen::Vector3f red(0.75f, 0.125f, 0.25f);
 
-TEST_F(MtlFiles, DiffuseColours) {
+TEST_F(MtlFiles, DiffuseColors) {
   const SourceMaterial m = material("newmtl m\nKd 0.75 0.125 0.25\n");
   EXPECT_EQ(m.diffuse, red);
   EXPECT_TRUE(m.has_diffuse && !m.linear_diffuse && !m.texture);
@@ -68,7 +68,7 @@ TEST_F(MtlFiles, DiffuseColours) {
   EXPECT_EQ(with("newmtl m\nKd 0.5\n").further_files, (std::vector<fs::path>{path("a.mtl")}));
 }
 
-TEST_F(MtlFiles, ColoursThatAreNoneAreFaults) {
+TEST_F(MtlFiles, ColorsThatAreNoneAreFaults) {
   EXPECT_TRUE(says(fault("newmtl m\nKd 1 red 1\n"), {"a.mtl:2: Kd '1 red 1'"}));
   EXPECT_TRUE(says(fault("newmtl m\nKd 1 1\n"), {"a.mtl:2: Kd '1 1'", "three"}));
   EXPECT_TRUE(says(fault("newmtl m\nKd 1 1 1 1\n"), {"a.mtl:2"}));

@@ -431,11 +431,11 @@ TEST(Normals, ASphereThroughABoxKeepsToItself) {
 TEST(Normals, ThePictureOfWaysAgreesWithTheShares) {
   const TriangleMesh high = dented_sphere(), low = shapes::cube_sphere(6);
   const NormalsResult result = make_normals(high, low, {.size = 96, .cage = 0.004});
-  std::array<int, texel_way_colours.size()> counts{};
+  std::array<int, texel_way_colors.size()> counts{};
   for (int j = 0; j < 96; ++j)
     for (int i = 0; i < 96; ++i)
       for (std::size_t way = 0; way < counts.size(); ++way)
-        if (std::equal(texel_way_colours[way].colour.begin(), texel_way_colours[way].colour.end(),
+        if (std::equal(texel_way_colors[way].color.begin(), texel_way_colors[way].color.end(),
                        result.match.pixel(i, j).begin())) {
           ++counts[way];
           EXPECT_EQ(way != 0, result.coverage.at(i, j) != 0);

@@ -148,7 +148,7 @@ TEST_F(ObjFiles, WeightsDivide) {
       says(refusal("v 1 1 1 0\nv 1 0 0\nv 0 1 0\nf 2 3 1\n"), {"a.obj:1: vertex '1 1 1 0'", "weight other than 0"}));
 }
 
-TEST_F(ObjFiles, ColoursOfUnitsAndBytes) {
+TEST_F(ObjFiles, ColorsOfUnitsAndBytes) {
   const std::string rest = "v 1 0 0 0 1 0\nv 0 1 0 0 0 1\nf 1 2 3\n";
   SourceMesh mesh = read("v 0 0 0 0.25 0.5 1\n" + rest);
   ASSERT_EQ(mesh.colors.size(), 3u);
@@ -171,7 +171,7 @@ TEST_F(ObjFiles, ColoursOfUnitsAndBytes) {
   EXPECT_TRUE(says(refusal("v 0 0 0 0,5 0 0\n" + rest), {"a.obj:1: '0,5'"}));
 }
 
-TEST_F(ObjFiles, VerticesWithoutAColourAreWhiteAmongOthers) {
+TEST_F(ObjFiles, VerticesWithoutAColorAreWhiteAmongOthers) {
   const SourceMesh mesh = read("v 0 0 0\nv 1 0 0 102 0 0\nv 0 1 0\nv 9 9 9\nf 1 2 3\n");
   ASSERT_EQ(mesh.colors.size(), 4u);
   EXPECT_EQ(mesh.colors[0], Eigen::Vector3f::Ones());

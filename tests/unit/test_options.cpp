@@ -93,12 +93,12 @@ TEST(OptionSet, LeavesOutThoseOfSomeNames) {
   EXPECT_EQ(width, 640);
 }
 
-TEST(Colours, AreOneNumberOrThree) {
-  EXPECT_EQ(parse_colours("0.5"), (std::array<double, 3>{0.5, 0.5, 0.5}));
-  EXPECT_EQ(parse_colours("1, 2e-3,0"), (std::array<double, 3>{1, 2e-3, 0}));
-  EXPECT_EQ(parse_colours("1;2;3"), (std::array<double, 3>{1, 2, 3}));
+TEST(Colors, AreOneNumberOrThree) {
+  EXPECT_EQ(parse_colors("0.5"), (std::array<double, 3>{0.5, 0.5, 0.5}));
+  EXPECT_EQ(parse_colors("1, 2e-3,0"), (std::array<double, 3>{1, 2e-3, 0}));
+  EXPECT_EQ(parse_colors("1;2;3"), (std::array<double, 3>{1, 2, 3}));
   for (const char* text : {"", "red", "1,2", "1,2,3,4", "1,,3", "1,2,", "nan", "1,2,inf", "1,2,3x"})
-    EXPECT_FALSE(parse_colours(text)) << text;
+    EXPECT_FALSE(parse_colors(text)) << text;
 }
 
 }  // namespace

@@ -210,7 +210,7 @@ TEST(Probes, AboveAWhitePlaneTheSkyIsMirroredDiffusely) {
     }
 }
 
-TEST(Probes, ColouredSurfacesGiveThreeChannels) {
+TEST(Probes, ColoredSurfacesGiveThreeChannels) {
   ProbesSettings settings;
   settings.bands = 2;
   settings.directions = 512;

@@ -48,12 +48,12 @@ TEST(LightSpec, ReadsEveryForm) {
   EXPECT_EQ(plain.kind, LightSpec::Kind::directional);
   EXPECT_EQ(plain.azimuth_degrees, -60);
   EXPECT_EQ(plain.elevation_degrees, 20);
-  EXPECT_EQ(plain.colour, (std::array<float, 3>{1, 1, 1}));
-  const LightSpec coloured = parse_light_spec("directional:12.5,-3e1,1,0.9,0.25");
-  EXPECT_EQ(coloured.azimuth_degrees, 12.5);
-  EXPECT_EQ(coloured.elevation_degrees, -30);
-  EXPECT_EQ(coloured.colour, (std::array<float, 3>{1, 0.9f, 0.25f}));
-  EXPECT_EQ(parse_light_spec("ambient:2").colour, (std::array<float, 3>{2, 2, 2}));
+  EXPECT_EQ(plain.color, (std::array<float, 3>{1, 1, 1}));
+  const LightSpec colored = parse_light_spec("directional:12.5,-3e1,1,0.9,0.25");
+  EXPECT_EQ(colored.azimuth_degrees, 12.5);
+  EXPECT_EQ(colored.elevation_degrees, -30);
+  EXPECT_EQ(colored.color, (std::array<float, 3>{1, 0.9f, 0.25f}));
+  EXPECT_EQ(parse_light_spec("ambient:2").color, (std::array<float, 3>{2, 2, 2}));
   EXPECT_EQ(parse_light_spec("ambient:1,2,3").kind, LightSpec::Kind::ambient);
   for (const char* text : {"45,30", "directional:-0.1,7,0.1,0.2,0.3", "ambient:0.7"})
     EXPECT_EQ(to_text(parse_light_spec(to_text(parse_light_spec(text)))), to_text(parse_light_spec(text)));
@@ -387,13 +387,13 @@ TEST(Relight, GpuAndCpuAgree) {
       }
 }
 
-TEST(Relight, ChannelsAreColours) {
+TEST(Relight, ChannelsAreColors) {
   const Scratch scratch;
   const TriangleMesh mesh = shapes::plane(1);
   const LightCoefficients white = constant_light(2, std::array<float, 3>{1, 1, 1});
   write_asset(scratch.folder(), mesh, unoccluded_stack(mesh, 16, 16, 2, 8, {1, 0.5f, 0.25f}));
-  const Image<float> colours = relight_texels(load_prt_asset(scratch.folder()), white, {1, 1, 1});
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(colours.at(8, 8, c), std::pow(0.5, c), 1e-6);
+  const Image<float> colors = relight_texels(load_prt_asset(scratch.folder()), white, {1, 1, 1});
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(colors.at(8, 8, c), std::pow(0.5, c), 1e-6);
   write_asset(scratch.folder(), mesh, unoccluded_stack(mesh, 16, 16, 2, 8, {1, 1, 1, 1}));
   EXPECT_THROW(relight_texels(load_prt_asset(scratch.folder()), white, {1, 1, 1}), BadInput);
 }

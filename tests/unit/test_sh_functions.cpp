@@ -341,9 +341,9 @@ TEST(LightSpecs, NumbersOutOfRangeAreRefusedInAStructToo) {
   };
   expect_refused([](LightSpec& spec) { spec.elevation_degrees = 90.5; });
   expect_refused([](LightSpec& spec) { spec.azimuth_degrees = nan; });
-  expect_refused([](LightSpec& spec) { spec.colour[1] = -1; });
-  expect_refused([](LightSpec& spec) { spec.colour[2] = 2e6f; });
-  expect_refused([](LightSpec& spec) { spec.colour[0] = static_cast<float>(nan); });
+  expect_refused([](LightSpec& spec) { spec.color[1] = -1; });
+  expect_refused([](LightSpec& spec) { spec.color[2] = 2e6f; });
+  expect_refused([](LightSpec& spec) { spec.color[0] = static_cast<float>(nan); });
   expect_refused([](LightSpec& spec) { spec.kind = LightSpec::Kind::cone, spec.half_angle_degrees = 181; });
   expect_refused([](LightSpec& spec) { spec.kind = LightSpec::Kind::sphere, spec.radius = 0; });
   expect_refused([](LightSpec& spec) { spec.kind = LightSpec::Kind::sphere, spec.position[2] = nan; });

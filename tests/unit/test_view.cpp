@@ -213,7 +213,7 @@ TEST(ViewLights, TheMainLightIsDragged) {
   const SceneLights lights = lights_of(state.light, given);
   EXPECT_NEAR(lights.specs[1].azimuth_degrees, -40, 1e-9);
   EXPECT_NEAR(lights.specs[1].elevation_degrees, 30, 1e-9);
-  EXPECT_EQ(lights.specs[1].colour, given.specs[1].colour);
+  EXPECT_EQ(lights.specs[1].color, given.specs[1].color);
   EXPECT_EQ(to_text(lights.specs[2]), to_text(given.specs[2]));
 }
 
@@ -544,14 +544,13 @@ TEST(Inspection, ShowsNormalsChartsAndEdges) {
     }
   EXPECT_GT(changed, covered / 10);
   EXPECT_LT(changed, covered * 9 / 10);
-  std::set<std::array<int, 3>> colours;
+  std::set<std::array<int, 3>> colors;
   for (std::size_t k = 0; k < 40; ++k) {
-    const Eigen::Vector3f colour = chart_colour(k);
-    EXPECT_TRUE(colour.minCoeff() >= 0 && colour.maxCoeff() <= 1);
-    colours.insert(
-        {static_cast<int>(20 * colour[0]), static_cast<int>(20 * colour[1]), static_cast<int>(20 * colour[2])});
+    const Eigen::Vector3f color = chart_color(k);
+    EXPECT_TRUE(color.minCoeff() >= 0 && color.maxCoeff() <= 1);
+    colors.insert({static_cast<int>(20 * color[0]), static_cast<int>(20 * color[1]), static_cast<int>(20 * color[2])});
   }
-  EXPECT_GT(colours.size(), 30u);
+  EXPECT_GT(colors.size(), 30u);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ std::vector<LightSpec> light_specs(const LightSettings& settings) {
   std::vector<LightSpec> specs;
   for (const std::string& text : settings.lights) specs.push_back(parse_light_spec(text));
   if (settings.ambient != "none")
-    specs.push_back({.kind = LightSpec::Kind::ambient, .colour = parse_colour("ambient", settings.ambient, 0, 1e6)});
+    specs.push_back({.kind = LightSpec::Kind::ambient, .color = parse_color("ambient", settings.ambient, 0, 1e6)});
   if (specs.empty() && settings.environment.empty()) specs.emplace_back();
   return specs;
 }

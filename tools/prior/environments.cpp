@@ -38,8 +38,8 @@ constexpr double sunlight = 127.5;  // klx, outside the air
 
 /// Returns a round lamp that gives a white surface that faces it the radiance `level`.
 LightCoefficients lamp_light(int bands, double azimuth, double elevation, double half_angle, double level) {
-  const std::array<float, 1> colour = {static_cast<float>(level)};
-  return cone_light(bands, direction_of(azimuth, elevation).cast<float>(), half_angle * degree, colour);
+  const std::array<float, 1> color = {static_cast<float>(level)};
+  return cone_light(bands, direction_of(azimuth, elevation).cast<float>(), half_angle * degree, color);
 }
 
 /// Returns the radiance of walls and of the floor.
@@ -154,8 +154,8 @@ LightCoefficients sky_light(int bands, const Sky& sky) {
   const double level = sky.sky_illuminance + sky.sun_illuminance * std::sin(sky.sun_elevation * degree);
   std::fill_n(pixels.begin(), pixels.size() / 2, static_cast<float>(sky.ground_albedo * level / pi));
   const LightCoefficients above = latitude_longitude_light(bands, width, height, 1, pixels);
-  const std::array<float, 1> colour = {static_cast<float>(sky.sun_illuminance / pi)};
-  return add_lights(above, cone_light(bands, sun.cast<float>(), sun_half_angle, colour));
+  const std::array<float, 1> color = {static_cast<float>(sky.sun_illuminance / pi)};
+  return add_lights(above, cone_light(bands, sun.cast<float>(), sun_half_angle, color));
 }
 
 LightCoefficients soft_box_light(int bands, const SoftBox& box) {

@@ -110,7 +110,7 @@ std::vector<SceneView> views_of(const RenderSettings& settings, std::span<const 
 
 SurfaceLook look_of(const RenderSettings& settings) {
   SurfaceLook look;
-  if (settings.albedo != "auto") look.albedo = parse_colour("albedo", settings.albedo, 0, 1);
+  if (settings.albedo != "auto") look.albedo = parse_color("albedo", settings.albedo, 0, 1);
   look.specular = static_cast<float>(settings.specular);
   look.shininess = static_cast<float>(settings.shininess);
   return look;
@@ -120,7 +120,7 @@ PictureSettings picture_of(const RenderSettings& settings) {
   PictureSettings picture;
   picture.exposure_stops = settings.exposure_stops;
   picture.tone = settings.tone;
-  if (settings.background != "none") picture.background = parse_colour("background", settings.background, 0, 1e6);
+  if (settings.background != "none") picture.background = parse_color("background", settings.background, 0, 1e6);
   return picture;
 }
 

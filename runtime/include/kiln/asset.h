@@ -18,7 +18,7 @@ struct PrtAsset;
 namespace kiln::runtime {
 
 /// Linear red, green and blue.
-using Colour = std::array<float, 3>;
+using Color = std::array<float, 3>;
 
 /// How an asset stores its transfer vectors.
 enum class Form {
@@ -59,7 +59,7 @@ class KILN_RUNTIME_API Asset {
 
   /// Tests whether the asset states the reflectance of its surface; if not, albedo() is 1.
   bool knows_albedo() const;
-  Colour albedo(std::uint32_t point) const;
+  Color albedo(std::uint32_t point) const;
 
   /// Returns the library's own representation.
   const PrtAsset& implementation() const { return *asset_; }

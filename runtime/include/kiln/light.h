@@ -28,16 +28,16 @@ class KILN_RUNTIME_API Light {
   Light& operator=(const Light& other);
   ~Light();
 
-  Light& directional(double azimuth_degrees, double elevation_degrees, const Colour& radiance = {1, 1, 1});
+  Light& directional(double azimuth_degrees, double elevation_degrees, const Color& radiance = {1, 1, 1});
   /// Adds light from all directions within `half_angle_degrees`, 0 to 180, of one direction.
   Light& cone(double azimuth_degrees, double elevation_degrees, double half_angle_degrees,
-              const Colour& radiance = {1, 1, 1});
+              const Color& radiance = {1, 1, 1});
   /// Adds a glowing ball at a position (object units): the only light that depends on the viewpoint.
-  Light& ball(const std::array<double, 3>& position, double radius, const Colour& radiance = {1, 1, 1});
+  Light& ball(const std::array<double, 3>& position, double radius, const Color& radiance = {1, 1, 1});
   /// Adds `sky` from the side of a direction and `ground` from the opposite side, mixed by the cosine in between.
-  Light& hemisphere(double azimuth_degrees, double elevation_degrees, const Colour& sky, const Colour& ground);
+  Light& hemisphere(double azimuth_degrees, double elevation_degrees, const Color& sky, const Color& ground);
   /// Adds the same radiance from everywhere.
-  Light& ambient(const Colour& radiance);
+  Light& ambient(const Color& radiance);
   /// Adds a light written as for kiln-render --light: "45,30", "sphere:1,2,1,0.1,1,0.9,0.8".
   Light& from_text(std::string_view text);
   /// Adds a latitude-longitude picture of radiance: three numbers per pixel, rows from the bottom (-Y first), u =

@@ -14,10 +14,10 @@ namespace kiln::runtime {
 /// the asset's bands; `albedo` replaces the asset's own. Throws Error for a light of another length, and for assets
 /// with other than 1 or 3 channels.
 KILN_RUNTIME_API std::vector<float> exit_radiance(const Asset& asset, std::span<const float> light,
-                                                  const std::optional<Colour>& albedo = {});
+                                                  const std::optional<Color>& albedo = {});
 
 /// Computes the exit radiance of one point.
-KILN_RUNTIME_API Colour exit_radiance_at(const Asset& asset, std::span<const float> light, std::uint32_t point,
-                                         const std::optional<Colour>& albedo = {});
+KILN_RUNTIME_API Color exit_radiance_at(const Asset& asset, std::span<const float> light, std::uint32_t point,
+                                        const std::optional<Color>& albedo = {});
 
 }  // namespace kiln::runtime

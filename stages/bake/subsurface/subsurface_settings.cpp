@@ -13,20 +13,20 @@ namespace kiln {
 
 namespace {
 
-using Colours = std::array<double, 3>;
+using Colors = std::array<double, 3>;
 
 struct NumberText {
   const char* name;
   const char* range;
   double lowest, highest;
 
-  Colours parse(const std::string& text) const {
-    const std::optional<Colours> colours = parse_colours(text);
-    const bool good = colours && std::all_of(colours->begin(), colours->end(),
-                                             [&](double value) { return value >= lowest && value <= highest; });
+  Colors parse(const std::string& text) const {
+    const std::optional<Colors> colors = parse_colors(text);
+    const bool good = colors && std::all_of(colors->begin(), colors->end(),
+                                            [&](double value) { return value >= lowest && value <= highest; });
     if (!good)
       throw WrongUsage(std::string(name) + ": found '" + text + "'; expected one number or R,G,B, each " + range);
-    return *colours;
+    return *colors;
   }
 };
 
@@ -35,14 +35,14 @@ constexpr NumberText absorption_text{"subsurface-absorption", "0 to 1e6 per mm",
 constexpr NumberText albedo_text{"subsurface-albedo", "0 to 1", 0, 1};
 constexpr NumberText path_text{"subsurface-mean-free-path", "1e-6 to 1e6 mm", 1e-6, 1e6};
 
-std::string text_of(const GivenColours& given) {
+std::string text_of(const GivenColors& given) {
   if (!given) return "";
   const auto [red, green, blue] = *given;
   return red == green && green == blue ? numbers_text({red}) : numbers_text({red, green, blue});
 }
 
-void add_text(OptionSet& options, const NumberText& text, GivenColours& value, const std::string& help) {
-  options.typed<GivenColours>(
+void add_text(OptionSet& options, const NumberText& text, GivenColors& value, const std::string& help) {
+  options.typed<GivenColors>(
       text.name, value, std::string("one number or R,G,B, each ") + text.range, help,
       [text](const std::string& given) { return text.parse(given); }, text_of);
 }
@@ -63,7 +63,7 @@ void refuse_unused(const SubsurfaceSettings& settings, bool custom_dipole, bool 
   refuse(path_text.name, settings.mean_free_path.has_value(), custom_diffusion, "diffusion");
 }
 
-Colours required(const NumberText& text, const GivenColours& value) {
+Colors required(const NumberText& text, const GivenColors& value) {
   if (!value)
     throw WrongUsage(std::string("subsurface custom: found no --") + text.name +
                      "; expected one number or R,G,B, each " + text.range);
@@ -100,7 +100,7 @@ std::vector<ScatterProfile> subsurface_profiles(const SubsurfaceSettings& settin
 
   std::vector<ScatterProfile> profiles;
   if (custom && !dipole) {
-    const Colours albedo = required(albedo_text, settings.albedo), path = required(path_text, settings.mean_free_path);
+    const Colors albedo = required(albedo_text, settings.albedo), path = required(path_text, settings.mean_free_path);
     for (std::size_t c = 0; c < 3; ++c) profiles.push_back(ScatterProfile::diffusion(albedo[c], path[c]));
   } else {
     ScatterMaterial material;

@@ -14,18 +14,18 @@ namespace kiln {
 enum class SubsurfaceModel { dipole, diffusion };
 
 /// Quantity for red, green and blue, or nothing where the command line does not give it.
-using GivenColours = std::optional<std::array<double, 3>>;
+using GivenColors = std::optional<std::array<double, 3>>;
 
 struct SubsurfaceSettings {
   std::string material = "none";  ///< none, custom or the name of a measured material
   SubsurfaceModel model = SubsurfaceModel::dipole;
-  GivenColours scattering = {};      ///< custom, dipole: sigma_s', 1/mm
-  GivenColours absorption = {};      ///< custom, dipole: sigma_a, 1/mm
-  double eta = 1.3;                  ///< custom, dipole
-  GivenColours albedo = {};          ///< custom, diffusion: albedo of the surface, 0 to 1
-  GivenColours mean_free_path = {};  ///< custom, diffusion: mm
-  double mm_per_unit = 1000;         ///< millimetres to an object unit; the default is for metres
-  double solid_angle = 0.05;         ///< as in ScatteringSettings
+  GivenColors scattering = {};      ///< custom, dipole: sigma_s', 1/mm
+  GivenColors absorption = {};      ///< custom, dipole: sigma_a, 1/mm
+  double eta = 1.3;                 ///< custom, dipole
+  GivenColors albedo = {};          ///< custom, diffusion: albedo of the surface, 0 to 1
+  GivenColors mean_free_path = {};  ///< custom, diffusion: mm
+  double mm_per_unit = 1000;        ///< millimetres to an object unit; the default is for metres
+  double solid_angle = 0.05;        ///< as in ScatteringSettings
 
   bool wanted() const { return material != "none"; }
 };

@@ -36,7 +36,7 @@ inline std::vector<double> parse_numbers(std::string_view name, std::string_view
 }
 
 /// Parses one grey number or R,G,B, as parse_numbers does.
-inline std::array<float, 3> parse_colour(std::string_view name, std::string_view text, double lowest, double highest) {
+inline std::array<float, 3> parse_color(std::string_view name, std::string_view text, double lowest, double highest) {
   const std::vector<double> numbers = parse_numbers(name, text, lowest, highest);
   if (numbers.size() != 1 && numbers.size() != 3)
     throw WrongUsage(std::string(name) + ": found '" + std::string(text) + "'; expected one number, or three: R,G,B");

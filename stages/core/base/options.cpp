@@ -32,7 +32,7 @@ std::string Extent::text() const {
   return width == height ? std::to_string(width) : fmt::format("{}x{}", width, height);
 }
 
-std::optional<std::array<double, 3>> parse_colours(const std::string& text) {
+std::optional<std::array<double, 3>> parse_colors(const std::string& text) {
   std::vector<double> values;
   for (std::string rest = text;;) {
     const std::size_t end = rest.find_first_of(",;");
@@ -56,8 +56,8 @@ std::string numbers_text(std::initializer_list<double> numbers) {
   return text;
 }
 
-std::string colour_text(const std::array<float, 3>& colour) {
-  const auto [red, green, blue] = colour;
+std::string color_text(const std::array<float, 3>& color) {
+  const auto [red, green, blue] = color;
   return red == green && green == blue ? fmt::format("{}", red) : fmt::format("{},{},{}", red, green, blue);
 }
 

@@ -29,11 +29,11 @@ struct Extent {
 
 /// Parses red, green and blue: "0.8" (three times that) or "0.8,0.5,0.2", also with the semicolons that a list of
 /// pipeline.yaml becomes; numbers are finite. Nothing for other text.
-std::optional<std::array<double, 3>> parse_colours(const std::string& text);
+std::optional<std::array<double, 3>> parse_colors(const std::string& text);
 
 /// Numbers between commas, each as short as it reads back.
 std::string numbers_text(std::initializer_list<double> numbers);
-std::string colour_text(const std::array<float, 3>& colour);
+std::string color_text(const std::array<float, 3>& color);
 
 /// What a setting has a say in, where a stage keeps its work half done: sums of integration, which later settings only
 /// store.

@@ -11,11 +11,11 @@ namespace {
 
 std::optional<std::array<float, 3>> parse_albedo(const std::string& text) {
   if (text == "auto") return std::nullopt;
-  const std::optional<std::array<double, 3>> colours = parse_colours(text);
-  if (!colours || !std::all_of(colours->begin(), colours->end(), [](double c) { return c >= 0 && c <= 1; }))
+  const std::optional<std::array<double, 3>> colors = parse_colors(text);
+  if (!colors || !std::all_of(colors->begin(), colors->end(), [](double c) { return c >= 0 && c <= 1; }))
     throw WrongUsage("albedo: found '" + text + "'; expected auto, one number or three as R,G,B, each 0 to 1");
   std::array<float, 3> albedo{};
-  std::transform(colours->begin(), colours->end(), albedo.begin(), [](double c) { return static_cast<float>(c); });
+  std::transform(colors->begin(), colors->end(), albedo.begin(), [](double c) { return static_cast<float>(c); });
   return albedo;
 }
 
@@ -26,7 +26,7 @@ void add_material_options(OptionSet& options, MaterialSettings& settings) {
       "albedo", settings.albedo, "auto, one number or R,G,B, each 0 to 1",
       "Share of light that the high mesh's surface reflects, in linear light; auto: its file's own "
       "materials or colours of vertices, or 1 where it has none",
-      parse_albedo, [](const auto& albedo) { return albedo ? colour_text(*albedo) : "auto"; });
+      parse_albedo, [](const auto& albedo) { return albedo ? color_text(*albedo) : "auto"; });
   options.file("albedo-texture", settings.texture,
                "A picture looked up with the high mesh's texture coordinates, in place of its file's materials (PNG, "
                "JPEG, EXR)");

@@ -47,10 +47,10 @@ const Syntax& syntax_of(LightSpec::Kind kind) {
 }
 
 /// Reads the colour that starts at `first` of a list of numbers.
-std::array<float, 3> colour_at(const std::vector<double>& values, std::size_t first) {
-  std::array<float, 3> colour;
-  for (std::size_t c = 0; c < 3; ++c) colour[c] = static_cast<float>(values[first + c]);
-  return colour;
+std::array<float, 3> color_at(const std::vector<double>& values, std::size_t first) {
+  std::array<float, 3> color;
+  for (std::size_t c = 0; c < 3; ++c) color[c] = static_cast<float>(values[first + c]);
+  return color;
 }
 
 /// Throws WrongUsage that quotes `found` unless the numbers of a light are in range; NaN is not.
@@ -59,8 +59,8 @@ void check(const LightSpec& spec, std::string_view found) {
     if (!holds) fail("light", found, expected);
   };
   const auto is_within = [](double value, double most) { return std::abs(value) <= most; };
-  for (const auto* colour : {&spec.colour, &spec.ground})
-    for (const float value : *colour) {
+  for (const auto* color : {&spec.color, &spec.ground})
+    for (const float value : *color) {
       require(!(value < 0), "a colour of no negative numbers");
       require(is_within(static_cast<double>(value), brightest), "colours of 0 to 1e6");
     }
@@ -76,8 +76,8 @@ void check(const LightSpec& spec, std::string_view found) {
     require(spec.half_angle_degrees >= 0 && spec.half_angle_degrees <= 180, "a half-angle of 0 to 180 degrees");
 }
 
-std::string to_text(const std::array<float, 3>& colour) {
-  return shortest(colour[0]) + "," + shortest(colour[1]) + "," + shortest(colour[2]);
+std::string to_text(const std::array<float, 3>& color) {
+  return shortest(color[0]) + "," + shortest(color[1]) + "," + shortest(color[2]);
 }
 
 }  // namespace
@@ -97,17 +97,16 @@ LightSpec parse_light_spec(std::string_view text) {
   LightSpec spec;
   spec.kind = syntax->kind;
   if (spec.kind == LightSpec::Kind::ambient) {
-    spec.colour = parse_colour("light", numbers, 0, brightest);
+    spec.color = parse_color("light", numbers, 0, brightest);
     return spec;
   }
 
   const std::vector<double> values = parse_numbers("light", numbers, -brightest, brightest);
-  const std::size_t colours = spec.kind == LightSpec::Kind::hemisphere ? 2 : 1;
-  const bool has_colours = values.size() == syntax->numbers + 3 * colours;
-  if (!has_colours && (colours == 2 || values.size() != syntax->numbers))
-    fail("light", text, std::string(syntax->form));
-  if (has_colours) spec.colour = colour_at(values, syntax->numbers);
-  if (colours == 2) spec.ground = colour_at(values, syntax->numbers + 3);
+  const std::size_t colors = spec.kind == LightSpec::Kind::hemisphere ? 2 : 1;
+  const bool has_colors = values.size() == syntax->numbers + 3 * colors;
+  if (!has_colors && (colors == 2 || values.size() != syntax->numbers)) fail("light", text, std::string(syntax->form));
+  if (has_colors) spec.color = color_at(values, syntax->numbers);
+  if (colors == 2) spec.ground = color_at(values, syntax->numbers + 3);
   if (spec.kind == LightSpec::Kind::sphere) {
     spec.position = {values[0], values[1], values[2]};
     spec.radius = values[3];
@@ -127,18 +126,18 @@ std::string to_text(const LightSpec& spec) {
       angles = shortest(spec.azimuth_degrees) + "," + shortest(spec.elevation_degrees);
   switch (spec.kind) {
     case LightSpec::Kind::directional:
-      return name + ":" + angles + "," + to_text(spec.colour);
+      return name + ":" + angles + "," + to_text(spec.color);
     case LightSpec::Kind::cone:
-      return name + ":" + angles + "," + shortest(spec.half_angle_degrees) + "," + to_text(spec.colour);
+      return name + ":" + angles + "," + shortest(spec.half_angle_degrees) + "," + to_text(spec.color);
     case LightSpec::Kind::sphere:
       return name + ":" + shortest(spec.position[0]) + "," + shortest(spec.position[1]) + "," +
-             shortest(spec.position[2]) + "," + shortest(spec.radius) + "," + to_text(spec.colour);
+             shortest(spec.position[2]) + "," + shortest(spec.radius) + "," + to_text(spec.color);
     case LightSpec::Kind::hemisphere:
-      return name + ":" + angles + "," + to_text(spec.colour) + "," + to_text(spec.ground);
+      return name + ":" + angles + "," + to_text(spec.color) + "," + to_text(spec.ground);
     case LightSpec::Kind::ambient:
       break;
   }
-  return name + ":" + to_text(spec.colour);
+  return name + ":" + to_text(spec.color);
 }
 
 namespace {
@@ -152,20 +151,20 @@ LightCoefficients light_coefficients(const LightSpec& spec, int bands, const Eig
   const Eigen::Vector3f direction = direction_from_angles(spec.azimuth_degrees, spec.elevation_degrees);
   switch (spec.kind) {
     case LightSpec::Kind::directional:
-      return directional_light(bands, direction, spec.colour);
+      return directional_light(bands, direction, spec.color);
     case LightSpec::Kind::cone:
-      return cone_light(bands, direction, spec.half_angle_degrees * std::numbers::pi / 180, spec.colour);
+      return cone_light(bands, direction, spec.half_angle_degrees * std::numbers::pi / 180, spec.color);
     case LightSpec::Kind::sphere: {
       const Eigen::Vector3d position(spec.position.data()), away = position - viewpoint;
       const double ratio = sine_of_ball(spec.radius, away.norm()) / sine_of_ball(spec.radius, position.norm());
-      return scale_light(sphere_light(bands, away.cast<float>(), spec.radius, spec.colour), ratio * ratio);
+      return scale_light(sphere_light(bands, away.cast<float>(), spec.radius, spec.color), ratio * ratio);
     }
     case LightSpec::Kind::hemisphere:
-      return hemisphere_light(bands, direction, spec.colour, spec.ground);
+      return hemisphere_light(bands, direction, spec.color, spec.ground);
     case LightSpec::Kind::ambient:
       break;
   }
-  return constant_light(bands, spec.colour);
+  return constant_light(bands, spec.color);
 }
 
 std::vector<double> window_weights(const LightSpec& spec, int bands, LightWindow window,

@@ -28,7 +28,7 @@ struct LightSpec {
   double half_angle_degrees = 10;              ///< half-angle of a cone
   std::array<double, 3> position = {0, 0, 0};  ///< centre of a ball, object units
   double radius = 1;                           ///< radius of a ball, object units
-  std::array<float, 3> colour = {1, 1, 1};
+  std::array<float, 3> color = {1, 1, 1};
   std::array<float, 3> ground = {0, 0, 0};
 };
 

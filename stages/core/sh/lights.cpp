@@ -11,8 +11,8 @@
 
 namespace kiln {
 
-LightCoefficients directional_light(int bands, const Eigen::Vector3f& direction, std::span<const float> colour) {
-  return cone_light(bands, direction, 0, colour);
+LightCoefficients directional_light(int bands, const Eigen::Vector3f& direction, std::span<const float> color) {
+  return cone_light(bands, direction, 0, color);
 }
 
 LightCoefficients constant_light(int bands, std::span<const float> radiance) {
@@ -42,13 +42,13 @@ std::vector<double> cone_bands(int bands, double half_angle) {
 }
 
 LightCoefficients cone_light(int bands, const Eigen::Vector3f& direction, double half_angle,
-                             std::span<const float> colour) {
+                             std::span<const float> color) {
   const std::vector<double> zonal = cone_bands(bands, half_angle);
   const ShBasis basis(bands);
   std::vector<double> values(basis.size());
   basis.evaluate<double>(direction.cast<double>().normalized(), values);
   LightCoefficients light{bands, {}};
-  for (const float level : colour) {
+  for (const float level : color) {
     std::vector<float>& channel = light.channels.emplace_back(basis.size());
     for (int i = 0; i < basis.size(); ++i) channel[i] = static_cast<float>(level * zonal[band_of(i)] * values[i]);
   }
@@ -56,10 +56,10 @@ LightCoefficients cone_light(int bands, const Eigen::Vector3f& direction, double
 }
 
 LightCoefficients sphere_light(int bands, const Eigen::Vector3f& position, double radius,
-                               std::span<const float> colour) {
+                               std::span<const float> color) {
   const double distance = position.cast<double>().norm();
-  if (distance <= radius) return constant_light(bands, colour);
-  return cone_light(bands, position, std::asin(radius / distance), colour);
+  if (distance <= radius) return constant_light(bands, color);
+  return cone_light(bands, position, std::asin(radius / distance), color);
 }
 
 LightCoefficients hemisphere_light(int bands, const Eigen::Vector3f& up, std::span<const float> sky,

@@ -15,7 +15,7 @@ struct LightCoefficients {
 
 /// Returns a distant light in `direction` (towards the light) that gives a white surface that faces it the radiance
 /// `colour`: the irradiance is pi times that. One channel per entry of `colour`.
-LightCoefficients directional_light(int bands, const Eigen::Vector3f& direction, std::span<const float> colour);
+LightCoefficients directional_light(int bands, const Eigen::Vector3f& direction, std::span<const float> color);
 
 /// Returns the same radiance from everywhere (a furnace).
 LightCoefficients constant_light(int bands, std::span<const float> radiance);
@@ -31,7 +31,7 @@ LightCoefficients latitude_longitude_light(int bands, int width, int height, int
 /// surface that faces it has the radiance `colour` as long as the half-angle is at most 90 degrees; beyond, the
 /// radiance is `colour`. `half_angle` in radians, 0 (a directional light) to pi (from everywhere).
 LightCoefficients cone_light(int bands, const Eigen::Vector3f& direction, double half_angle,
-                             std::span<const float> colour);
+                             std::span<const float> color);
 
 /// Returns z_l of a cone light of colour 1, whose coefficients are z_l Y_lm(direction); for a half-angle of 0 those of
 /// a directional light.
@@ -39,8 +39,7 @@ std::vector<double> cone_bands(int bands, double half_angle);
 
 /// Returns the light of a glowing ball of `radius` around `position` (object units), as seen from the origin: the cone
 /// light of the cap of sky that it covers. Inside the ball the light comes from everywhere.
-LightCoefficients sphere_light(int bands, const Eigen::Vector3f& position, double radius,
-                               std::span<const float> colour);
+LightCoefficients sphere_light(int bands, const Eigen::Vector3f& position, double radius, std::span<const float> color);
 
 /// Returns radiance that changes from `ground` to `sky` with the cosine c to `up`: (1 + c) / 2 sky + (1 - c) / 2
 /// ground.

@@ -18,7 +18,7 @@ bool is_skipped(const std::string& key) { return key == "settings" || key == "in
 
 void add_numbers(const Json& json, const std::string& prefix, std::vector<std::pair<std::string, double>>& numbers) {
   for (const auto& [key, value] : json.items()) {
-    if (is_skipped(key)) continue;
+    if (is_skipped(key) || (prefix.empty() && key == "error")) continue;  // the report has it, too
     const std::string name = prefix.empty() ? key : prefix + "." + key;
     if (value.is_object())
       add_numbers(value, name, numbers);

@@ -215,9 +215,8 @@ std::string sweep_html(const std::vector<SweepResult>& results) {
       "<meta name=viewport content='width=device-width, initial-scale=1'>\n<title>Sweep – "
       "Kiln</title>\n<style>{}</style>\n"
       "<main>\n<h1>Speed against accuracy</h1>\n<p class=summary>{} points. Error: the expected relighting error "
-      "against "
-      "rays, with that of compression; of pictures where the bake did not verify itself. Green: no other point is both "
-      "cheaper and nearer.</p>\n{}<footer>Kiln {}</footer>\n</main>\n</html>\n",
+      "of what a viewer sees; without reports, of the bake against rays. Green: no other point is both cheaper and "
+      "nearer.</p>\n{}<footer>Kiln {}</footer>\n</main>\n</html>\n",
       style, results.size(), body, KILN_VERSION);
 }
 

@@ -51,6 +51,7 @@ std::optional<double> SweepResult::metric(const std::string& name) const {
 }
 
 std::optional<double> SweepResult::error() const {
+  if (const std::optional<double> seen = metric("report.error.total")) return seen;
   if (const std::optional<double> baked = metric("bake.verification.relighting_error")) {
     // The errors of bake and compression are independent, so their squares add up.
     return std::hypot(*baked, metric("compress.error").value_or(0));

@@ -25,8 +25,9 @@ struct SweepResult {
   /// Returns a number of the records; nothing where there is none.
   std::optional<double> metric(const std::string& name) const;
 
-  /// Returns the error that the front is made of: the expected relighting error against rays where the bake verified
-  /// itself, combined with that of compression; else the report's difference; else nothing.
+  /// Returns the error that the front is made of: E as seen, of the report; without a report the expected relighting
+  /// error against rays where the bake verified itself, combined with that of compression; else the report's difference
+  /// of pictures; else nothing.
   std::optional<double> error() const;
 };
 

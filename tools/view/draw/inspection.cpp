@@ -32,7 +32,7 @@ std::vector<Corner> corners_of(const TriangleMesh& mesh) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (const std::uint32_t v : mesh.triangles[t])
       corners.push_back({mesh.positions[v], mesh.uvs.empty() ? Eigen::Vector2f(0, 0) : mesh.uvs[v], mesh.normals[v],
-                         chart_colour(charts.of_triangle[t])});
+                         chart_color(charts.of_triangle[t])});
   return corners;
 }
 
@@ -44,17 +44,17 @@ void add_attribute(GLuint vertices, GLuint location, int components, std::size_t
 
 }  // namespace
 
-Eigen::Vector3f chart_colour(std::size_t chart) {
+Eigen::Vector3f chart_color(std::size_t chart) {
   // Hues a golden ratio apart, so that neighbouring numbers get distant colours; two levels of lightness.
   const double hue = 6 * std::fmod(0.08 + 0.6180339887498949 * static_cast<double>(chart), 1.0);
   const float lightness = chart % 2 == 0 ? 0.92f : 0.72f, saturation = 0.62f;
-  Eigen::Vector3f colour;
+  Eigen::Vector3f color;
   for (int c = 0; c < 3; ++c) {
     const double from_peak = std::abs(std::remainder(hue - 2 * c, 6));
     const auto share = static_cast<float>(std::clamp(2 - from_peak, 0.0, 1.0));
-    colour[c] = lightness * (1 - saturation + saturation * share);
+    color[c] = lightness * (1 - saturation + saturation * share);
   }
-  return colour;
+  return color;
 }
 
 Inspection::Inspection(const PrtAsset& asset)

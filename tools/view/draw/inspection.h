@@ -38,6 +38,6 @@ class Inspection {
 };
 
 /// Returns a chart's colour, 0 to 1 to be shown unchanged, distant from those of charts with neighbouring numbers.
-Eigen::Vector3f chart_colour(std::size_t chart);
+Eigen::Vector3f chart_color(std::size_t chart);
 
 }  // namespace kiln

@@ -84,10 +84,10 @@ void Screen::resolve(Canvas& canvas, const Resolve& how) {
   glViewport(0, 0, width_, height_);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_BLEND);
-  glBindTextureUnit(picture_unit, canvas.picture().colour().name());
+  glBindTextureUnit(picture_unit, canvas.picture().color().name());
   // A coefficient is shown as its difference from nothing.
-  glBindTextureUnit(reference_unit, how.show == Show::difference ? canvas.reference().colour().name() : 0);
-  glBindTextureUnit(edges_unit, how.edges ? canvas.edges().colour().name() : 0);
+  glBindTextureUnit(reference_unit, how.show == Show::difference ? canvas.reference().color().name() : 0);
+  glBindTextureUnit(edges_unit, how.edges ? canvas.edges().color().name() : 0);
   glProgramUniform1i(program, supersample_location, canvas.supersample());
   glProgramUniform1f(program, gain_location,
                      is_signed(how.show) ? how.gain : static_cast<float>(std::exp2(how.picture.exposure_stops)));

@@ -42,7 +42,7 @@ std::string name_of(const fs::path& folder) {
 }
 
 /// Throws BadInput if the asset has no colours.
-void require_colours(const PrtAsset& asset) {
+void require_colors(const PrtAsset& asset) {
   const std::vector<float> dark(asset.vector_length() / static_cast<std::size_t>(asset.channels), 0.f);
   vector_weights(asset, {asset.bands, {dark, dark, dark}}, {1, 1, 1});
 }
@@ -83,7 +83,7 @@ AssetForms load_asset_forms(const AssetFolders& folders) {
     forms.compressed =
         forms.plain ? load_other_form(folders.compressed, *forms.plain) : load_prt_asset(folders.compressed);
   for (const auto* form : {&forms.plain, &forms.compressed})
-    if (*form) require_colours(**form);
+    if (*form) require_colors(**form);
   return forms;
 }
 

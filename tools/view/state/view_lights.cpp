@@ -35,7 +35,7 @@ void move_light(LightSpec& spec, double azimuth_degrees, double elevation_degree
   const Eigen::Vector3d place =
       centre + from_centre(spec, box).norm() * direction_from_angles(azimuth_degrees, elevation_degrees).cast<double>();
   const double reach = std::max(spec.radius, before), now = std::max(spec.radius, place.norm());
-  for (float& value : spec.colour) value = static_cast<float>(value * reach * reach / (now * now));
+  for (float& value : spec.color) value = static_cast<float>(value * reach * reach / (now * now));
   spec.position = {place.x(), place.y(), place.z()};
 }
 
@@ -55,12 +55,12 @@ LightSpec preset_light(const LightChoice& choice, const BoundingBox& box) {
       spec.radius = 0.1 * distance;
       // Radiance 1 at the box's centre, while `colour` is that at the origin.
       const double at_origin = std::max(spec.radius, place.norm());
-      spec.colour.fill(static_cast<float>(distance * distance / (at_origin * at_origin)));
+      spec.color.fill(static_cast<float>(distance * distance / (at_origin * at_origin)));
       break;
     }
     case LightPreset::hemisphere:
       spec.kind = LightSpec::Kind::hemisphere;
-      spec.colour = {0.75f, 0.9f, 1.1f};
+      spec.color = {0.75f, 0.9f, 1.1f};
       spec.ground = {0.3f, 0.22f, 0.15f};
       break;
     case LightPreset::ambient:
@@ -152,9 +152,9 @@ AssetLight light_for_asset(const SceneLights& lights, int bands, const PrtAsset&
 AssetLight light_of_coefficient(int coefficient, const PrtAsset& asset, const IncidentSamples& samples) {
   const int count = coefficient_count(asset.bands);
   LightCoefficients one{asset.bands, {3, std::vector<float>(static_cast<std::size_t>(count), 0.f)}};
-  for (int colour = 0; colour < 3; ++colour)
-    if (asset.channels == 1 || colour == coefficient / count)
-      one.channels[static_cast<std::size_t>(colour)][static_cast<std::size_t>(coefficient % count)] = 1;
+  for (int color = 0; color < 3; ++color)
+    if (asset.channels == 1 || color == coefficient / count)
+      one.channels[static_cast<std::size_t>(color)][static_cast<std::size_t>(coefficient % count)] = 1;
   AssetLight light;
   light.samples.assign(samples.points.size(), one);
   light.rest = {3, {3, std::vector<float>(9, 0.f)}};

@@ -24,7 +24,7 @@ class KILN_RUNTIME_API Renderer {
   ~Renderer();
 
   /// Sets the light of all following draws. `albedo` replaces the asset's own.
-  void set_light(const Light& light, const std::optional<Colour>& albedo = {});
+  void set_light(const Light& light, const std::optional<Color>& albedo = {});
 
   /// Draws all triangles, both sides. `clip_from_object` is a matrix for column vectors, column after column;
   /// `eye_object` is the camera's position.

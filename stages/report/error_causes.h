@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "asset/prt_asset.h"
+#include "base/json_fwd.h"
+#include "base/progress.h"
+#include "detail/detail_maps.h"
+#include "material/scene_mesh.h"
+#include "sh/directions.h"
+
+namespace kiln {
+
+/// One cause of an asset's error, and what it contributes to E (sh/transfer.h).
+struct ErrorCause {
+  std::string name;
+  double error = 0;
+};
+
+/// E of an asset against the high mesh as it is seen, and its causes. Their squares add up to that of the whole as far
+/// as they are unrelated.
+struct ErrorSplit {
+  double total = 0;
+  std::vector<ErrorCause> causes;
+  std::size_t samples = 0;
+  int directions = 0;  ///< of the reference
+  int bands = 0;       ///< of the reference
+
+  /// Returns the root of the sum of the causes' squares.
+  double root_sum() const;
+};
+
+/// What error_causes compares.
+struct SplitInput {
+  const TriangleMesh& high;                      ///< with normals, in the frame of the low mesh
+  const TriangleMesh& low;                       ///< with normals and uvs
+  const SceneMesh& scene;                        ///< the high mesh and what surrounds it: what casts shadows
+  const PrtAsset& asset;                         ///< of kiln-bake, with direct light and textures alone
+  const PrtAsset* compressed;                    ///< the same by kiln-compress; null: none
+  const DetailMaps& detail;                      ///< maps that the bake read
+  std::vector<Eigen::Vector3f> bake_directions;  ///< directions of the bake
+  std::uint64_t seed = 1;
+};
+
+/// Measures E at points spread evenly over the low mesh, each seen from a direction of its own, by changing one thing
+/// after another between what a viewer should see and what the asset has there:
+/// - `geometry`: transfer at the point of the high mesh that the viewer's ray meets, or at that which the low mesh's
+///   point stands for;
+/// - `texels`: there, or looked up bilinearly between the texels' points;
+/// - `directions`: by the reference's directions, or by the bake's;
+/// - `bits`: as computed, or rounded to the planes' ranges;
+/// - `visibility`: by rays, or as stored, at points whose texels lie inside charts;
+/// - `seams`: the same at the borders of charts, where seams are made equal;
+/// - `compression`: as baked, or as compressed;
+/// - `bands`: what bands beyond the asset's would add, up to those of the result.
+/// Rays are Embree's. Throws BadInput where a texture of the asset cannot be looked up.
+ErrorSplit error_causes(const SplitInput& input, const ProgressFunction& progress = no_progress);
+
+Json to_json(const ErrorSplit& split);
+
+}  // namespace kiln
