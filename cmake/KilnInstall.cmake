@@ -5,11 +5,12 @@ include(CMakePackageConfigHelpers)
 set(KILN_PROGRAMS kiln kiln-check ${stage_programs} kiln-render kiln-view)
 install(TARGETS ${KILN_PROGRAMS} RUNTIME)
 install(TARGETS kiln-runtime kiln-runtime-gl EXPORT kilnTargets LIBRARY)
+install(TARGETS kiln-openimageio LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/kiln)
 install(DIRECTORY runtime/include/kiln TYPE INCLUDE)
 install(DIRECTORY shaders/ DESTINATION ${CMAKE_INSTALL_DATADIR}/kiln/shaders
         FILES_MATCHING PATTERN "common_*" PATTERN "render_*")
 install(FILES LICENSE LICENSES/MIT.txt README.md TYPE DOC)
-install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png")
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.csv")
 install(DIRECTORY examples TYPE DOC)
 
 # Man pages and completions, made from the programs' own option tables.

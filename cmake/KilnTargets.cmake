@@ -6,6 +6,9 @@ set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
+# Where programs and the runtime look for libkiln-openimageio.so (image/picture_codec.h).
+set(CMAKE_BUILD_RPATH "$ORIGIN/../lib")
+set(CMAKE_INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/kiln")
 
 find_program(KILN_CCACHE ccache)
 if(KILN_CCACHE)
@@ -22,6 +25,10 @@ if(KILN_WARNINGS_AS_ERRORS)
 endif()
 target_include_directories(kiln_flags INTERFACE ${PROJECT_SOURCE_DIR}/stages/core ${PROJECT_SOURCE_DIR}/stages ${PROJECT_SOURCE_DIR})
 target_compile_definitions(kiln_flags INTERFACE KILN_VERSION="${PROJECT_VERSION}")
+# Turns -Wsubobject-linkage off in unity builds: GCC takes the files of a unit for headers.
+if(CMAKE_UNITY_BUILD)
+  target_compile_options(kiln_flags INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+endif()
 if(KILN_SANITIZE)
   # Turns -Wmaybe-uninitialized off: GCC takes the sanitizers' checks of values for uses of uninitialised ones (bug
   # 100016).

@@ -14,7 +14,7 @@ namespace kiln {
 
 namespace {
 
-bool within_bounds(const Surface& surface, const Chart& chart, const ChartSettings& settings) {
+bool keeps_bounds(const Surface& surface, const Chart& chart, const ChartSettings& settings) {
   const Stretch stretch = measure_stretch(surface, chart);
   return stretch.l2 <= settings.largest_l2 && stretch.linf <= settings.largest_linf;
 }
@@ -29,7 +29,7 @@ int flatten_or_split(Disks& disks, std::vector<Chart>& charts, std::vector<std::
     tbb::parallel_for(std::size_t{0}, ids.size(), [&](std::size_t i) {
       charts[ids[i]] = chart_of_disk(disks, ids[i]);
       flat[i] = parameterise_quickly(disks.surface(), charts[ids[i]]) &&
-                within_bounds(disks.surface(), charts[ids[i]], settings);
+                keeps_bounds(disks.surface(), charts[ids[i]], settings);
     });
     std::vector<std::uint32_t> pieces;
     grow_settings.largest_spread *= 0.25;

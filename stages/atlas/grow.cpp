@@ -9,12 +9,12 @@ namespace kiln {
 
 namespace {
 
-struct Candidate {
+struct GrowthCandidate {
   double cost;
   std::uint32_t half_edge;
   std::uint32_t version_here, version_there;
 
-  bool operator<(const Candidate& other) const {  // the queue's top is the largest: here the cheapest
+  bool operator<(const GrowthCandidate& other) const {  // the queue's top is the largest: here the cheapest
     return cost != other.cost ? cost > other.cost : half_edge > other.half_edge;
   }
 };
@@ -31,7 +31,7 @@ class Grower {
     for (const std::uint32_t id : ids) listed_[id] = 1;
     for (const std::uint32_t id : ids) push_runs(id, true);
     while (!queue_.empty()) {
-      const Candidate candidate = queue_.top();
+      const GrowthCandidate candidate = queue_.top();
       queue_.pop();
       const std::uint32_t h = candidate.half_edge;
       if (!disks_.on_border(h)) continue;
@@ -89,7 +89,7 @@ class Grower {
   Disks& disks_;
   const GrowSettings& settings_;
   std::vector<std::uint8_t> listed_;
-  std::priority_queue<Candidate> queue_;
+  std::priority_queue<GrowthCandidate> queue_;
 };
 
 }  // namespace

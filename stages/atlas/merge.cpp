@@ -249,12 +249,12 @@ std::optional<Chart> flattened(const Surface& surface, GluedChart glued, const C
   return std::move(chart);
 }
 
-struct Candidate {
+struct MergeCandidate {
   double score;
   std::uint32_t half_edge;
   std::uint32_t version_here, version_there;
 
-  bool operator<(const Candidate& other) const {  // the queue's top is the largest: the best score
+  bool operator<(const MergeCandidate& other) const {  // the queue's top is the largest: the best score
     return score != other.score ? score < other.score : half_edge > other.half_edge;
   }
 };
@@ -281,15 +281,15 @@ class Merger {
   void try_batch() {
     constexpr std::size_t batch_size = 8;
     struct Trial {
-      Candidate candidate;
+      MergeCandidate candidate;
       Disks::Run run;
       std::uint32_t here, there;
       std::optional<Chart> result;
     };
     std::vector<Trial> trials;
-    std::vector<Candidate> later;
+    std::vector<MergeCandidate> later;
     while (!queue_.empty() && trials.size() < batch_size && later.size() < batch_size) {
-      const Candidate candidate = queue_.top();
+      const MergeCandidate candidate = queue_.top();
       queue_.pop();
       const std::uint32_t h = candidate.half_edge;
       if (!disks_.on_border(h)) continue;
@@ -308,7 +308,7 @@ class Merger {
       Trial& t = trials[i];
       t.result = flattened(disks_.surface(), glued_chart(disks_, t.run, charts_[t.here], charts_[t.there]), settings_);
     });
-    for (const Candidate& candidate : later) queue_.push(candidate);
+    for (const MergeCandidate& candidate : later) queue_.push(candidate);
     for (Trial& t : trials) {
       if (!t.result) continue;
       const std::uint32_t id = disks_.glue(t.run);
@@ -328,7 +328,7 @@ class Merger {
     }
     // Walk run by run, from a run's first edge on.
     if (disks_.run_through(start).possible()) start = disks_.run_through(start).first;
-    std::vector<std::pair<std::uint32_t, Candidate>> best;
+    std::vector<std::pair<std::uint32_t, MergeCandidate>> best;
     std::uint32_t h = start;
     do {
       const std::uint32_t twin = disks_.surface().twins[h];
@@ -346,14 +346,14 @@ class Merger {
   }
 
   void consider(std::uint32_t here, std::uint32_t there, const Disks::Run& run,
-                std::vector<std::pair<std::uint32_t, Candidate>>& best) const {
+                std::vector<std::pair<std::uint32_t, MergeCandidate>>& best) const {
     if (run.bend > settings_.crease_degrees * std::numbers::pi / 180) return;
     const Disks::Disk &a = disks_.disk(here), &b = disks_.disk(there);
     // Score: the share of a chart's border that would no longer be a seam, weighted by its visibility.
     const double share = run.length / std::min(a.perimeter, b.perimeter);
     if (share < 0.1 && here != there) return;
     const double score = run.cost / std::min(a.perimeter, b.perimeter);
-    const Candidate candidate{score, run.first, a.version, b.version};
+    const MergeCandidate candidate{score, run.first, a.version, b.version};
     const auto known = std::find_if(best.begin(), best.end(), [&](const auto& entry) { return entry.first == there; });
     if (known == best.end())
       best.emplace_back(there, candidate);
@@ -364,7 +364,7 @@ class Merger {
   Disks& disks_;
   std::vector<Chart>& charts_;
   const ChartSettings& settings_;
-  std::priority_queue<Candidate> queue_;
+  std::priority_queue<MergeCandidate> queue_;
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace kiln {
 namespace {
 
 /// Share of the progress that the other backend takes, and that it and the direct rays take.
-constexpr double backend_share = 0.3, direct_share = 0.7;
+constexpr double backend_share = 0.3, rays_share = 0.7;
 
 /// Returns every `step`-th receiver's transfer.
 std::vector<TransferVectors> thin_out(const std::vector<TransferVectors>& channels, std::size_t step) {
@@ -68,14 +68,14 @@ std::vector<TransferVectors> reference_transfer(const BakeJob& job, std::span<co
   const auto make_rays = [&] { return make_engine(BakeBackend::embree, job.occluders, job.settings, job.threads); };
   const Receivers receivers = job.receivers.view();
   std::vector<TransferVectors> channels = {direct_transfer(*make_rays(), receivers, many, job.settings.bands,
-                                                           part_of(job.progress, backend_share, direct_share))};
+                                                           part_of(job.progress, backend_share, rays_share))};
   if (bounces) {
     std::vector<Eigen::Vector3f> own =
         sample_directions(job.settings.sampling, job.settings.directions, static_cast<std::uint64_t>(job.seed));
     order_coherently(own, block_directions);
     std::vector<TracedReceivers> traced = untraced(receivers);
     add_bounced_light(job, BakeBackend::embree, make_rays(), {own, many}, traced, channels,
-                      part_of(job.progress, direct_share, 1));
+                      part_of(job.progress, rays_share, 1));
   }
   multiply_albedo(channels, job.receivers.albedos);
   return channels;

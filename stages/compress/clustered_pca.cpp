@@ -14,7 +14,7 @@ namespace kiln {
 
 namespace {
 
-constexpr std::size_t sampled_texels = 32768;
+constexpr std::size_t training_texels = 32768;
 constexpr int mean_rounds = 6, subspace_rounds = 10, full_rounds = 1, further_rounds = 8;
 constexpr int tried_subspaces = 16;
 
@@ -255,7 +255,7 @@ void settle(const TransferSource& source, const PrincipalComponents& all, int ro
 
 TexelClusters cluster_texels(const TransferSource& source, int clusters, int seed) {
   TexelClusters result;
-  result.sample = source.sample(sampled_texels);
+  result.sample = source.sample(training_texels);
   result.vectors = source.vectors(result.sample);
   result.means = first_means(result.vectors, clusters, seed);
   result.ids.resize(result.sample.size());

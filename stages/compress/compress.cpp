@@ -16,7 +16,7 @@ namespace kiln {
 
 namespace {
 
-constexpr std::size_t sampled_texels = 65536;  // texels that steps are chosen on
+constexpr std::size_t judged_texels = 65536;  // texels that steps are chosen on
 constexpr int planes_per_lookup = 4;
 constexpr int most_clusters = 256;
 constexpr double rounding_allowance =
@@ -38,7 +38,7 @@ class Search {
         progress_(std::move(progress)),
         source_(asset),
         owners_(gutter_owners(source_, settings.gutter)),
-        sample_(source_.sample(sampled_texels)),
+        sample_(source_.sample(judged_texels)),
         sample_vectors_(source_.vectors(sample_)),
         all_(principal_components(source_)) {}
 

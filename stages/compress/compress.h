@@ -23,8 +23,8 @@ enum class CompressScheme {
 std::string scheme_name(CompressScheme scheme);
 
 /// Bounds on the worst errors, whatever mean error is asked for (README.md, "The worst", tells how they were chosen).
-inline constexpr double most_texel_error = 0.05;
-inline constexpr double most_border_jump = 0.08;
+inline constexpr double most_texel_error = 0.07;
+inline constexpr double most_border_jump = 0.11;
 
 /// Way to store an asset, and its costs.
 struct CompressCandidate {

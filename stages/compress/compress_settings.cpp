@@ -13,8 +13,8 @@ OptionSet compress_options(CompressSettings& settings) {
       .typed<std::optional<double>>(
           "max-error", settings.max_error, "auto or 1e-06 to 1",
           "Expected relighting error against the input that the result stays under, 1e-6 to 1, or auto: what planes "
-          "of 8 bits have against planes of more. Whatever it is, 999 of 1,000 texels stay under an error of 0.05, and "
-          "999 of 1,000 jumps of it where clusters meet under 0.08, so that no blotch and no border shows; where "
+          "of 8 bits have against planes of more. Whatever it is, 999 of 1,000 texels stay under an error of 0.07, and "
+          "999 of 1,000 jumps of it where clusters meet under 0.11, so that no blotch and no border shows; where "
           "--clusters and --pca leave no choice, a miss is warned of",
           parse_compression_error,
           [](const std::optional<double>& error) { return error ? numbers_text({*error}) : "auto"; })

@@ -8,7 +8,7 @@
 #include "base/errors.h"
 #include "mesh/uv_raster.h"
 #include "sh/basis.h"
-#include "sh/transfer.h"
+#include "sh/light_prior.h"
 
 namespace kiln {
 

@@ -16,7 +16,7 @@ namespace {
 
 bool is_measure(const Json& value) { return value.is_number() || value.is_boolean() || value.is_null(); }
 
-std::string known_metrics(const Json& json) {
+std::string names_of_metrics(const Json& json) {
   std::string names;
   for (const auto& [key, value] : json.items())
     if (is_measure(value)) names += (names.empty() ? "" : ", ") + key;
@@ -47,7 +47,7 @@ BudgetVerdict judge_budget(const Budget& budget, const Json& metrics) {
     if (!at->is_object() || !at->contains(key)) {
       const std::string names = walked.empty() ? "a stage: simplify, atlas, normals, bake, compress and probes (where "
                                                  "kiln-report is given them) or report"
-                                               : walked + ".*: " + known_metrics(*at);
+                                               : walked + ".*: " + names_of_metrics(*at);
       throw WrongUsage("budget: found the metric '" + budget.metric + "'; expected one of " + names);
     }
     at = &(*at)[key];

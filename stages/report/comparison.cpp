@@ -14,6 +14,7 @@
 #include "material/surroundings.h"
 #include "mesh/camera_record.h"
 #include "mesh/draco_file.h"
+#include "report/pictures.h"
 #include "report/reference.h"
 #include "sh/directions.h"
 #include "sh/light_spec.h"
@@ -138,15 +139,13 @@ Rendered render(const AssetFolder& asset, const std::vector<std::string>& lights
   return rendered;
 }
 
-bool is_whole(float coverage) { return coverage > 0.9999f; }
-
 /// Compares two pictures over the pixels that both cover wholly: elsewhere the background would be compared.
 ImageDifference compare(const Image<float>& picture, const Image<float>& reference, std::size_t& compared_pixels) {
   std::vector<float> ours, theirs;
   for (int j = 0; j < picture.height(); ++j)
     for (int i = 0; i < picture.width(); ++i) {
       const std::span<const float> a = picture.pixel(i, j), b = reference.pixel(i, j);
-      if (!is_whole(a[3]) || !is_whole(b[3])) continue;
+      if (!is_wholly_covered(a[3]) || !is_wholly_covered(b[3])) continue;
       ours.insert(ours.end(), a.begin(), a.begin() + 3);
       theirs.insert(theirs.end(), b.begin(), b.begin() + 3);
     }

@@ -11,6 +11,15 @@ namespace kiln {
 /// names of their own. Keys here and below may be preceded by their stage, "compress.error".
 std::string metric_label(const std::string& key);
 
+/// Direction in which a metric gets better.
+enum class Better { neither, lower, higher };
+
+/// Returns the direction of a metric; `neither` for facts, such as a number of triangles, and for unknown ones.
+Better better_direction(const std::string& key);
+
+/// Tells whether a metric is a time or a speed or an amount of memory, which depends on the machine and its other work.
+bool is_machine_cost(const std::string& key);
+
 /// Formats a metric's value with its unit, chosen by its key: shares in percent, seconds, bytes, counts with thin
 /// spaces. HTML.
 std::string metric_value(const std::string& key, const Json& value);

@@ -23,9 +23,6 @@ constexpr Colour red = {178, 24, 43};
 constexpr Colour blue = {33, 102, 172};
 constexpr std::uint8_t uncompared_grey = 128;
 
-// Coverage is a sum of sample shares, each of them rounded.
-bool is_whole(float coverage) { return coverage > 0.9999f; }
-
 /// Weights of old pixels in the new ones, along one axis.
 struct AxisWeight {
   int from;
@@ -64,6 +61,8 @@ Image<std::uint8_t> shrunk(const Image<Stored>& image, int longest) {
 
 }  // namespace
 
+bool is_wholly_covered(float coverage) { return coverage > 0.9999f; }
+
 Image<std::uint8_t> shown_radiance(const Image<float>& radiance) {
   Image<std::uint8_t> shown(radiance.width(), radiance.height(), 4);
   for (int j = 0; j < radiance.height(); ++j)
@@ -83,7 +82,7 @@ Image<std::uint8_t> shown_difference(const Image<float>& a, const Image<float>& 
       const std::span<std::uint8_t> pixel = shown.pixel(i, j);
       const float a_coverage = a.at(i, j, 3), b_coverage = b.at(i, j, 3);
       if (a_coverage <= 0 && b_coverage <= 0) continue;
-      if (!is_whole(a_coverage) || !is_whole(b_coverage)) {
+      if (!is_wholly_covered(a_coverage) || !is_wholly_covered(b_coverage)) {
         std::fill_n(pixel.begin(), 3, uncompared_grey);
         pixel[3] = byte_from_unit(std::max(a_coverage, b_coverage));
         continue;

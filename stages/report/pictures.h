@@ -10,6 +10,9 @@
 
 namespace kiln {
 
+/// Tells whether a pixel is wholly covered. Its coverage is a sum of sample shares, each of them rounded.
+bool is_wholly_covered(float coverage);
+
 /// Converts linear premultiplied RGBA radiance to an sRGB picture with alpha; values are clamped to 0 .. 1.
 Image<std::uint8_t> shown_radiance(const Image<float>& radiance);
 

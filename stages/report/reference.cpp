@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t batch_receivers = 16384;  // bounds the memory of transfer vectors of many bands
 
-/// Surface points that the samples of a picture see, in the order of the samples' rows.
+/// Surface points that samples of a picture see.
 struct VisiblePoints {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
@@ -24,7 +24,9 @@ struct VisiblePoints {
   std::vector<std::size_t> pixels;  // pixel of each sample, j * width + i
 };
 
-VisiblePoints visible_points(const RayScene& scene, const TriangleMesh& mesh, const ReferenceView& view) {
+/// Finds the points that samples see, in the order of rows: element s of the result holds those of the samples at place
+/// s of their pixels, of which there are supersample^2.
+std::vector<VisiblePoints> visible_points(const RayScene& scene, const TriangleMesh& mesh, const ReferenceView& view) {
   const int columns = view.width * view.supersample, rows = view.height * view.supersample;
   std::vector<SurfacePoint> hits(static_cast<std::size_t>(columns) * rows);
   tbb::parallel_for(tbb::blocked_range<int>(0, rows), [&](const tbb::blocked_range<int>& range) {
@@ -34,17 +36,26 @@ VisiblePoints visible_points(const RayScene& scene, const TriangleMesh& mesh, co
             scene.first_hit(view.camera.position, view.camera.pixel_direction(column, row, columns, rows), 0,
                             std::numeric_limits<float>::infinity());
   });
-  VisiblePoints points;
+  std::vector<VisiblePoints> places(static_cast<std::size_t>(view.supersample) * view.supersample);
   for (std::size_t k = 0; k < hits.size(); ++k) {
     const SurfacePoint& hit = hits[k];
     if (!hit.found()) continue;
+    const std::size_t row = k / columns, column = k % columns;
+    VisiblePoints& points = places[row % view.supersample * view.supersample + column % view.supersample];
     points.positions.push_back(position_at(mesh, hit));
     points.normals.push_back(normal_at(mesh, hit));
     points.albedos.emplace_back(view.albedo * view.surface_albedo.at(hit.triangle, hit.u, hit.v));
-    const std::size_t row = k / columns / view.supersample, column = k % columns / view.supersample;
-    points.pixels.push_back(row * view.width + column);
+    points.pixels.push_back(row / view.supersample * view.width + column / view.supersample);
   }
-  return points;
+  return places;
+}
+
+/// Returns every `step`-th direction from the `first` on.
+std::vector<Eigen::Vector3f> every_nth(std::span<const Eigen::Vector3f> directions, std::size_t first,
+                                       std::size_t step) {
+  std::vector<Eigen::Vector3f> chosen;
+  for (std::size_t k = first; k < directions.size(); k += step) chosen.push_back(directions[k]);
+  return chosen;
 }
 
 /// Computes the radiance that receivers send out under one light, at an albedo of 1.
@@ -71,39 +82,49 @@ std::vector<Eigen::Vector3f> radiance_of(const TransferVectors& transfer, const 
   return radiance;
 }
 
+/// Adds samples from the `begin`-th on, of `share` of a pixel each, to a picture.
+void add_samples(Image<float>& picture, const VisiblePoints& points, std::size_t begin,
+                 const std::vector<Eigen::Vector3f>& radiance, float share) {
+  for (std::size_t r = 0; r < radiance.size(); ++r) {
+    const std::size_t pixel = points.pixels[begin + r];
+    const std::span<float> values =
+        picture.pixel(static_cast<int>(pixel % picture.width()), static_cast<int>(pixel / picture.width()));
+    for (int c = 0; c < 3; ++c) values[c] += share * points.albedos[begin + r][c] * radiance[r][c];
+    values[3] += share;
+  }
+}
+
 }  // namespace
 
 std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
                                              std::span<const LightSpec> lights,
                                              std::span<const Eigen::Vector3f> directions,
                                              const ProgressFunction& progress) {
-  const VisiblePoints points = visible_points(RayScene(mesh), mesh, view);
+  std::vector<Image<float>> pictures(lights.size(), Image<float>(view.width, view.height, 4));
+  if (lights.empty()) return pictures;
+  const std::vector<VisiblePoints> places = visible_points(RayScene(mesh), mesh, view);
+  std::size_t count = 0, done = 0;
+  for (const VisiblePoints& points : places) count += points.positions.size();
+
   TriangleMesh occluders{mesh.positions, mesh.triangles, {}, {}};
   append(occluders, view.surroundings);
   const RayScene scene(occluders);  // Embree's, not the beams that make bakes, so that the two do not share a fault
   const float ray_offset = rounding_offset(occluders.positions);  // as in kiln-bake
-  const float share =
-      1.f / static_cast<float>(view.supersample * view.supersample);  // share of one sample in its pixel
-  std::vector<Image<float>> pictures(lights.size(), Image<float>(view.width, view.height, 4));
-  if (lights.empty()) return pictures;
-
-  const std::size_t count = points.positions.size();
-  for (std::size_t begin = 0; begin < count; begin += batch_receivers) {
-    const std::size_t size = std::min(batch_receivers, count - begin);
-    const Receivers receivers{std::span(points.positions).subspan(begin, size),
-                              std::span(points.normals).subspan(begin, size)};
-    const TransferVectors transfer = transfer_by_rays(scene, receivers, directions, view.bands, ray_offset);
-    for (std::size_t light = 0; light < lights.size(); ++light) {
-      const std::vector<Eigen::Vector3f> radiance = radiance_of(transfer, lights[light], view, receivers);
-      for (std::size_t r = 0; r < size; ++r) {
-        const std::size_t pixel = points.pixels[begin + r];
-        const std::span<float> values =
-            pictures[light].pixel(static_cast<int>(pixel % view.width), static_cast<int>(pixel / view.width));
-        for (int c = 0; c < 3; ++c) values[c] += share * points.albedos[begin + r][c] * radiance[r][c];
-        values[3] += share;
-      }
+  const std::size_t groups = std::min(places.size(), directions.size());
+  for (std::size_t place = 0; place < places.size(); ++place) {
+    const VisiblePoints& points = places[place];
+    const std::vector<Eigen::Vector3f> own = every_nth(directions, place % groups, groups);
+    for (std::size_t begin = 0; begin < points.positions.size(); begin += batch_receivers) {
+      const std::size_t size = std::min(batch_receivers, points.positions.size() - begin);
+      const Receivers receivers{std::span(points.positions).subspan(begin, size),
+                                std::span(points.normals).subspan(begin, size)};
+      const TransferVectors transfer = transfer_by_rays(scene, receivers, own, view.bands, ray_offset);
+      for (std::size_t light = 0; light < lights.size(); ++light)
+        add_samples(pictures[light], points, begin, radiance_of(transfer, lights[light], view, receivers),
+                    1.f / static_cast<float>(places.size()));
+      done += size;
+      progress(static_cast<double>(done) / static_cast<double>(count));
     }
-    progress(static_cast<double>(begin + size) / static_cast<double>(count));
   }
   return pictures;
 }

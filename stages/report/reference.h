@@ -29,7 +29,9 @@ struct ReferenceView {
 
 /// Draws pictures of a mesh under each of `lights`: the first hit of each sample's ray is shaded by the transfer
 /// integral over `directions` (rays against the mesh, with interpolated normals, and its surroundings), projected on
-/// the view's bands. A light near the mesh is evaluated at every point. Without atlas, textures or rasteriser, this is
+/// the view's bands. The samples of a pixel share the directions among them: sample s of n takes every n-th from the
+/// s-th on, so the pixel's mean is over all of them at the price of one sample (interleaved sampling,
+/// [Keller 2001]). A light near the mesh is evaluated at every point. Without atlas, textures or rasteriser, this is
 /// what the baked asset approximates. RGBA in linear radiance; alpha is coverage and colours are multiplied by it.
 std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
                                              std::span<const LightSpec> lights,

@@ -21,7 +21,7 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 template <class T>
-using Few = boost::container::small_vector<T, 24>;
+using Fan = boost::container::small_vector<T, 24>;
 
 /// Quadric v'Av + 2b'v + c: the sum of squared distances to planes times triangles' areas; A has xx, yy, zz, xy, xz,
 /// yz.
@@ -259,7 +259,7 @@ class QuickCollapser {
     const Quadric both = quadrics_[a] + quadrics_[b];
     if (both.mean_square(both(place.position)) > largest_mean_square_) return;
 
-    Few<Triangle> at_a, at_b;
+    Fan<Triangle> at_a, at_b;
     for_each_around(a, [&](const Triangle& t) { at_a.push_back(t); });
     for_each_around(b, [&](const Triangle& t) { at_b.push_back(t); });
     std::uint32_t opposite[2] = {};
@@ -299,7 +299,7 @@ class QuickCollapser {
     }
     if (on_edge != 2 || size_[opposite[0]] <= 3 || size_[opposite[1]] <= 3) return false;
     // Look through the neighbours: they are so few that marking them takes longer.
-    Few<std::uint32_t> neighbours;
+    Fan<std::uint32_t> neighbours;
     for (const Triangle& t : at_a)
       for (const std::uint32_t vertex : t)
         if (vertex != opposite[0] && vertex != opposite[1] && vertex != a && vertex != b) neighbours.push_back(vertex);

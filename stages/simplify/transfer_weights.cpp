@@ -5,6 +5,7 @@
 
 #include "raycast/surface_transfer.h"
 #include "sh/basis.h"
+#include "sh/light_prior.h"
 
 namespace kiln {
 

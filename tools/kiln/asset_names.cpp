@@ -6,6 +6,9 @@
 #include <glob.h>
 
 #include "base/file_names.h"
+#include "kiln/gate/comparison_page.h"
+#include "kiln/gate/junit.h"
+#include "kiln/gate/markdown.h"
 
 namespace kiln {
 
@@ -29,7 +32,12 @@ bool has_wide_control(const std::string& name) {
 }
 
 /// Tests whether a name is taken by a file beside the assets' folders.
-bool is_taken(const std::string& name) { return name == "Makefile" || name == "index.html"; }
+bool is_taken(const std::string& name) {
+  for (const char* file : {"Makefile", "index.html", junit_file, summary_file, comparison_file, comparison_data_file,
+                           comparison_folder})
+    if (name == file) return true;
+  return false;
+}
 
 }  // namespace
 

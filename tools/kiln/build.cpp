@@ -19,6 +19,7 @@
 #include "kiln/index_page.h"
 #include "kiln/make_process.h"
 #include "kiln/output_lock.h"
+#include "kiln/report_command.h"
 #include "kiln/summary.h"
 #include "kiln/text_file.h"
 #include "report/judging.h"
@@ -62,6 +63,10 @@ class Build {
       std::fprintf(stderr, "kiln: nothing to do, all is up to date\n");
     judge_all();
     write_index(pipeline_);
+    if (settings_.until.empty())
+      write_gate_files(pipeline_, outcomes_);
+    else
+      remove_gate_files(pipeline_);  // they would tell of an earlier build
     return finish();
   }
 

@@ -8,6 +8,9 @@
 
 #include "base/errors.h"
 #include "kiln/build.h"
+#include "kiln/gate/comparison_page.h"
+#include "kiln/gate/junit.h"
+#include "kiln/gate/markdown.h"
 #include "kiln/output_lock.h"
 #include "kiln/stage_state.h"
 
@@ -54,7 +57,9 @@ class Cleaner {
 
   void remove_own_files() {
     std::error_code error;
-    for (const char* name : {"Makefile", "index.html"}) removed_ += fs::remove(folder_ / output_ / name, error) ? 1 : 0;
+    for (const char* name : {"Makefile", "index.html", junit_file, summary_file, comparison_file, comparison_data_file})
+      removed_ += fs::remove(folder_ / output_ / name, error) ? 1 : 0;
+    fs::remove_all(folder_ / output_ / comparison_folder, error);
     fs::remove_all(folder_ / notes_, error);
     fs::remove(folder_ / output_, error);  // removes the folder only if it is empty
   }

@@ -17,8 +17,10 @@
 #include "kiln/init.h"
 #include "kiln/makefile.h"
 #include "kiln/pipeline.h"
+#include "kiln/report_command.h"
 #include "kiln/schema.h"
 #include "kiln/step.h"
+#include "kiln/sweep/sweep.h"
 
 namespace kiln {
 
@@ -28,6 +30,8 @@ struct Commands::Values {
   int status = 0;
   std::vector<std::string> words;  ///< a pipeline file and assets
   BuildSettings build;
+  ReportCommand report;
+  SweepSettings sweep;
   std::vector<fs::path> meshes;
   fs::path file = "pipeline.yaml";
   fs::path plan, archive, mesh;
@@ -137,6 +141,50 @@ Commands::Commands(CLI::App& app) : values_(std::make_unique<Values>()) {
       throw WrongUsage(
           fmt::format("until: found '{}'; expected one of {}", v.build.until, fmt::join(stage_names(), ", ")));
     v.status = run_build(v.words, v.build);
+  });
+
+  CLI::App& report = *app.add_subcommand("report", "Compare what was built with a baseline, for CI");
+  add_words(report, v.words, "all that are not on request");
+  report
+      .add_option("--baseline", v.report.baseline,
+                  "An earlier build: a metrics.json, its folder, or an output folder with one for each asset")
+      ->type_name("PATH");
+  report.add_flag("--same-run", v.report.same_run,
+                  "The baseline was built on this machine just now: compare times and memory, too");
+  report.add_flag("--always", v.report.always, "Write summary.md also where all is well");
+  report.add_flag("--json", v.report.json, "Print the comparison as one JSON object on stdout");
+  report.add_flag("--quiet", v.report.quiet, "Print what fails only");
+  report.callback([&v] {
+    const Pipeline pipeline = take_pipeline(v.words);
+    v.status = report_on(pipeline, select_assets(pipeline, v.words), v.report);
+  });
+
+  CLI::App& sweep_command = *app.add_subcommand("sweep", "Measure cost and error over combinations of settings");
+  add_words(sweep_command, v.words, "all that are not on request");
+  sweep_command
+      .add_option("--set", v.sweep.axes,
+                  "A setting and its values, as in bake.directions=256,1024; any number of --set")
+      ->expected(1)
+      ->take_all()
+      ->type_name("STAGE.SETTING=VALUE,...");
+  sweep_command.add_flag("--historic", v.sweep.historic,
+                         "Measure the settings of Chapter's thesis and of US patent 7,948,490, too");
+  sweep_command
+      .add_option("--until", v.sweep.until,
+                  fmt::format("The last stage of every point: {}", fmt::join(stage_names(), ", ")))
+      ->type_name("STAGE");
+  sweep_command
+      .add_option("-o,--output", v.sweep.output,
+                  "Folder of the results (default sweep/ in the pipeline's output folder)")
+      ->type_name("FOLDER");
+  sweep_command
+      .add_option("-j,--jobs", v.sweep.jobs, "Stages at a time; more than 1 spoils the times (default 1; 1 to 1024)")
+      ->check(CLI::Range(1, 1024));
+  sweep_command.add_flag("--json", v.sweep.json, "Print all results as one JSON object on stdout");
+  sweep_command.add_flag("--quiet", v.sweep.quiet, "Print errors only");
+  sweep_command.callback([&v] {
+    const Pipeline pipeline = take_pipeline(v.words);
+    v.status = sweep(pipeline, select_assets(pipeline, v.words), v.sweep);
   });
 
   CLI::App& list_command = *app.add_subcommand("list", "Print the assets of a pipeline");

@@ -9,7 +9,7 @@ namespace kiln {
 namespace {
 
 /// Metrics of every stage, separated by blanks.
-constexpr const char* of_every_stage = "seconds peak_memory_bytes";
+constexpr const char* of_every_stage = "seconds cpu_seconds peak_memory_bytes";
 
 void add(std::vector<std::string>& metrics, const std::string& stage, std::string_view names) {
   while (!names.empty()) {
@@ -25,7 +25,7 @@ std::vector<std::string> metrics_of(const AssetSettings& settings) {
   std::vector<std::string> metrics;
   for (const StageInfo* stage : all_stages()) {
     if (!settings.contains(stage->name)) continue;
-    // The report's own memory is not yet known when it judges.
+    // The report's own CPU time and memory are not yet known when it judges.
     if (stage->name != "report") add(metrics, stage->name, of_every_stage);
     for (const MetricGroup& group : stage->metrics)
       if (group.is_written == nullptr || group.is_written(settings)) add(metrics, stage->name, group.names);

@@ -17,9 +17,9 @@ constexpr int coarsest_side = 8;
 constexpr std::size_t most_held_out = 2048;
 constexpr int most_rounds = 8;
 constexpr double first_bound_over_target = 4;
-constexpr float least_cosine = 0.707f;        // least cosine between the normals of a texel and a corner
+constexpr float least_likeness = 0.707f;      // least cosine between the normals of a texel and a corner
 constexpr float largest_misplacement = 0.5f;  // distance of a texel from its place in the square, over the longest side
-constexpr std::uint32_t none = ~0u;
+constexpr std::uint32_t no_receiver = ~0u;
 
 /// Square of texels: its lower left corner (i, j), and the distance to the next corner, `side` texels.
 struct Square {
@@ -35,7 +35,7 @@ class AdaptiveBake {
         bake_some_(bake_some),
         transfer_(transfer),
         progress_(progress),
-        receiver_at_(static_cast<std::size_t>(receivers.width) * receivers.height, none),
+        receiver_at_(static_cast<std::size_t>(receivers.width) * receivers.height, no_receiver),
         square_of_(receivers.slots.size()),
         basis_(band_of(transfer.coefficients - 1) + 1),
         width_(static_cast<std::size_t>(transfer.coefficients)),
@@ -86,7 +86,7 @@ class AdaptiveBake {
  private:
   std::uint32_t receiver(int i, int j) const {
     const bool inside = i < receivers_.width && j < receivers_.height;
-    return inside ? receiver_at_[static_cast<std::size_t>(j) * receivers_.width + i] : none;
+    return inside ? receiver_at_[static_cast<std::size_t>(j) * receivers_.width + i] : no_receiver;
   }
 
   std::array<std::uint32_t, 4> corners(const Square& square) const {
@@ -103,7 +103,7 @@ class AdaptiveBake {
 
   /// Bakes the receivers among `wanted` that are not known.
   void bake(std::vector<std::uint32_t> wanted) {
-    std::erase_if(wanted, [&](std::uint32_t r) { return r == none || known_[r] != 0; });
+    std::erase_if(wanted, [&](std::uint32_t r) { return r == no_receiver || known_[r] != 0; });
     std::sort(wanted.begin(), wanted.end());
     wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
     if (wanted.empty()) return;
@@ -128,14 +128,14 @@ class AdaptiveBake {
 
   /// Tells whether all texels of the square are covered and stand where its corners say.
   bool is_one_piece(const Square& square, const std::array<std::uint32_t, 4>& at) const {
-    if (std::find(at.begin(), at.end(), none) != at.end()) return false;
+    if (std::find(at.begin(), at.end(), no_receiver) != at.end()) return false;
     const auto& p = receivers_.positions;
     const float longest = std::max({(p[at[1]] - p[at[0]]).norm(), (p[at[3]] - p[at[2]]).norm(),
                                     (p[at[2]] - p[at[0]]).norm(), (p[at[3]] - p[at[1]]).norm()});
     for (int b = 0; b <= square.side; ++b)
       for (int a = 0; a <= square.side; ++a) {
         const std::uint32_t r = receiver(square.i + a, square.j + b);
-        if (r == none) return false;
+        if (r == no_receiver) return false;
         const float s = static_cast<float>(a) / static_cast<float>(square.side),
                     t = static_cast<float>(b) / static_cast<float>(square.side);
         const Eigen::Vector3f expected =
@@ -160,7 +160,7 @@ class AdaptiveBake {
 
   bool faces_as_corners_do(std::uint32_t r, const std::array<std::uint32_t, 4>& at) const {
     return std::all_of(at.begin(), at.end(), [&](std::uint32_t corner) {
-      return receivers_.normals[r].dot(receivers_.normals[corner]) >= least_cosine;
+      return receivers_.normals[r].dot(receivers_.normals[corner]) >= least_likeness;
     });
   }
 

@@ -71,7 +71,7 @@ std::uint32_t BundleLists::draw_once(std::span<const Eigen::Vector3f> directions
   glUniform1i(uniform_location(program_, "size"), size_);
   glUniform1ui(uniform_location(program_, "capacity"), static_cast<GLuint>(capacity_));
   const auto count = static_cast<GLsizei>(directions.size());
-  const GLsizei step = 3 * std::max<GLsizei>(1, most_draw_triangles / count);
+  const GLsizei step = 3 * std::max<GLsizei>(1, most_bundle_triangles / count);
   for (GLsizei begin = 0; begin < indices_; begin += step) {
     glUniform1ui(uniform_location(program_, "first_triangle"), static_cast<GLuint>(begin / 3));
     glDrawElementsInstanced(GL_TRIANGLES, std::min(step, indices_ - begin), GL_UNSIGNED_INT,

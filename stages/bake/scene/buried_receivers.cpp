@@ -19,7 +19,7 @@ namespace kiln {
 
 namespace {
 
-constexpr std::uint32_t none = ~0u;
+constexpr std::uint32_t no_chart = ~0u;
 
 /// Places that are tried in a texel whose centre is buried: offsets from it in texels, the nearest first.
 constexpr std::array<std::array<float, 2>, 16> places = {{{-.125f, -.125f},
@@ -199,7 +199,7 @@ BuriedReport set_aside_buried(ReceiverSet& receivers, const TriangleMesh& atlas,
   receivers.buried = open;
   const Components charts = find_components(atlas);
   const auto chart_of = [&](std::uint32_t texel) {
-    return raster.texels[texel].covered() ? charts.of_triangle[raster.texels[texel].triangle] : none;
+    return raster.texels[texel].covered() ? charts.of_triangle[raster.texels[texel].triangle] : no_chart;
   };
   receivers.fills = plan_fills(std::move(open), std::move(known), [&](std::uint32_t texel, const auto& visit) {
     for_each_neighbour(texel, receivers.width, receivers.height, [&](std::uint32_t neighbour) {

@@ -31,7 +31,7 @@ constexpr int row_lanes = 4;
 float radius_of(float area) { return std::sqrt(area * 0.318309886f); }
 
 /// Sample of the surface as a disc, along the octree's order.
-struct Sample {
+struct OrderedSample {
   Eigen::Vector3f position;
   Eigen::Vector3f normal;
   float area = 0;
@@ -112,7 +112,7 @@ class WeightedSum {
 /// row_lanes, row after row along the octree's order.
 class KernelSums {
  public:
-  KernelSums(const SampleOctree& tree, const std::vector<Sample>& samples, const KernelTables& kernels)
+  KernelSums(const SampleOctree& tree, const std::vector<OrderedSample>& samples, const KernelTables& kernels)
       : tree_(tree), samples_(samples), kernels_(kernels), channels_(kernels.channels()) {}
 
   /// Keeps references to both. `gains` scale the vectors, by sample and channel; empty for 1.
@@ -156,7 +156,7 @@ class KernelSums {
 
   /// Returns what arrives at sample `p`: channels times width numbers, which stay in `scratch` until its next use.
   const std::vector<float>& evaluate(std::uint32_t p, float solid_angle, Scratch& scratch) const {
-    const Sample& to = samples_[p];
+    const OrderedSample& to = samples_[p];
     const float near_distance = KernelTables::near_reach * to.radius;
     scratch.all.clear();
     scratch.near.clear();
@@ -193,8 +193,8 @@ class KernelSums {
   /// Returns the distance from one channel's vector to the next's.
   std::size_t stride(std::size_t channels) const { return channels == 1 ? 0 : width_; }
 
-  void add_sample(const Sample& to, std::uint32_t q, float near_distance, Scratch& scratch) const {
-    const Sample& from = samples_[q];
+  void add_sample(const OrderedSample& to, std::uint32_t q, float near_distance, Scratch& scratch) const {
+    const OrderedSample& from = samples_[q];
     const float squared = (from.position - to.position).squaredNorm();
     const float distance = std::sqrt(squared);
     const bool same_side = from.normal.dot(to.normal) > same_side_cosine;
@@ -221,7 +221,7 @@ class KernelSums {
   }
 
   const SampleOctree& tree_;
-  const std::vector<Sample>& samples_;
+  const std::vector<OrderedSample>& samples_;
   const KernelTables& kernels_;
   std::size_t channels_;
   const float* rows_ = nullptr;
@@ -246,9 +246,9 @@ void evaluate_all(const KernelSums& sums, std::size_t samples, float solid_angle
   }
 }
 
-std::vector<Sample> ordered_samples(const SurfaceSamples& samples, const SampleOctree& tree) {
+std::vector<OrderedSample> ordered_samples(const SurfaceSamples& samples, const SampleOctree& tree) {
   const float largest = radius_of(*std::max_element(samples.areas.begin(), samples.areas.end()));
-  std::vector<Sample> ordered;
+  std::vector<OrderedSample> ordered;
   ordered.reserve(samples.size());
   for (std::uint32_t index : tree.order) {
     const float area = samples.areas[index];
@@ -289,9 +289,10 @@ void check(const SurfaceSamples& samples, const std::vector<TransferVectors>& in
 
 /// Makes kernels for all distances between the samples of a tree.
 KernelTables make_kernels(std::span<const ScatterProfile> profiles, const SampleOctree& tree,
-                          const std::vector<Sample>& ordered) {
-  const auto [least, most] = std::minmax_element(ordered.begin(), ordered.end(),
-                                                 [](const Sample& a, const Sample& b) { return a.radius < b.radius; });
+                          const std::vector<OrderedSample>& ordered) {
+  const auto [least, most] =
+      std::minmax_element(ordered.begin(), ordered.end(),
+                          [](const OrderedSample& a, const OrderedSample& b) { return a.radius < b.radius; });
   const SampleOctree::Node& root = tree.nodes.front();
   const double farthest = (root.upper - root.lower).norm() + KernelTables::near_reach * most->radius;
   return KernelTables(profiles, least->radius, most->radius, farthest);
@@ -300,7 +301,7 @@ KernelTables make_kernels(std::span<const ScatterProfile> profiles, const Sample
 /// Returns gains, by sample and channel, that scale down samples which would send out more than they get; empty if none
 /// does. A sample sends out, by the kernel's symmetry, what it would get from a surface that sends 1 everywhere. Sets
 /// largest_gain and capped_area of `result`.
-std::vector<float> find_gains(KernelSums& sums, const std::vector<Sample>& ordered, std::size_t channels,
+std::vector<float> find_gains(KernelSums& sums, const std::vector<OrderedSample>& ordered, std::size_t channels,
                               float solid_angle, const ProgressFunction& progress, Scattering& result) {
   const std::size_t count = ordered.size();
   const std::vector<float> ones(count * row_lanes, 1.f);
@@ -398,7 +399,7 @@ Scattering scatter_transfer(const SurfaceSamples& samples, const std::vector<Tra
   constexpr double gains_share = 0.2;  // share of the progress
   const auto solid_angle = static_cast<float>(settings.solid_angle);
   const SampleOctree tree(samples);
-  const std::vector<Sample> ordered = ordered_samples(samples, tree);
+  const std::vector<OrderedSample> ordered = ordered_samples(samples, tree);
   const KernelTables kernels = make_kernels(profiles, tree, ordered);
   KernelSums sums(tree, ordered, kernels);
 

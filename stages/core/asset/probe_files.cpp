@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* remedy = "make the probes again with kiln-probes";
+constexpr const char* probe_again = "make the probes again with kiln-probes";
 constexpr int stored_bits = 16;
 
 /// Finds the range of every matrix entry over all valid points.
@@ -109,7 +109,7 @@ std::vector<std::uint8_t> read_valid(const Fields& fields, std::size_t count) {
 void read_matrices(const fs::path& file, const std::vector<PlaneRange>& ranges, ProbeSet& probes) {
   const std::size_t count = probes.positions.size(), entries = probes.entries();
   const Image<std::uint16_t> stored =
-      read_grey<std::uint16_t>(file, static_cast<int>(entries), static_cast<int>(count), remedy);
+      read_grey<std::uint16_t>(file, static_cast<int>(entries), static_cast<int>(count), probe_again);
   probes.matrices.resize(count * entries);
   for (std::size_t k = 0; k < count; ++k)
     for (std::size_t e = 0; e < entries; ++e)
@@ -176,8 +176,8 @@ void save_probes(OutputSet& outputs, const ProbeSet& probes) {
 std::pair<ProbeSet, int> read_probes(const fs::path& folder, Faults& faults) {
   const fs::path file = folder / probes_json_name;
   Json document;
-  if (!faults.guard([&] { document = parse_json(file, "kiln-probes", remedy); })) return {};
-  const Fields fields(file.string(), "", document, remedy, &faults);
+  if (!faults.guard([&] { document = parse_json(file, "kiln-probes", probe_again); })) return {};
+  const Fields fields(file.string(), "", document, probe_again, &faults);
   const int version = read_head(fields, probes_format, {}).version;
   return {read_set(folder, document, fields, faults), version};
 }

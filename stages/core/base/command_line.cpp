@@ -20,6 +20,7 @@
 #include "base/file_names.h"
 #include "base/help_pages.h"
 #include "base/json.h"
+#include "base/process.h"
 #include "base/stopwatch.h"
 
 namespace kiln {
@@ -198,8 +199,13 @@ Json CommandLine::result(double seconds, const Json& metrics) const {
   for (const auto* list : input_lists_)
     for (const fs::path& path : *list) add(path);
   for (const fs::path& path : also_read_) add(path);
-  Json result = {{"stage", stage_},      {"version", KILN_VERSION}, {"settings", settings},
-                 {"inputs", inputs},     {"seconds", seconds},      {"peak_memory_bytes", peak_memory_bytes()},
+  Json result = {{"stage", stage_},
+                 {"version", KILN_VERSION},
+                 {"settings", settings},
+                 {"inputs", inputs},
+                 {"seconds", seconds},
+                 {"cpu_seconds", cpu_seconds()},
+                 {"peak_memory_bytes", peak_memory_bytes()},
                  {"warnings", warnings_}};
   result.update(metrics);
   return result;

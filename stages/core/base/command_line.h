@@ -72,8 +72,8 @@ class CommandLine {
   /// with --quiet; those among `said` were printed by an earlier stage and are not repeated.
   void warn(const std::vector<std::string>& warnings, const std::vector<std::string>& said = {});
 
-  /// Returns the result: stage, version, settings, inputs' hashes, seconds, peak_memory_bytes, warnings, then `metrics`
-  /// at the same level. `seconds` is the stage's own work, without reading and writing files.
+  /// Returns the result: stage, version, settings, inputs' hashes, seconds, cpu_seconds, peak_memory_bytes, warnings,
+  /// then `metrics` at the same level. `seconds` is the stage's own work, without reading and writing files.
   Json result(double seconds, const Json& metrics) const;
 
   /// Writes `result`, and under "outputs" the hash of each of `outputs`, to `<stage>.json`; commits them all, and

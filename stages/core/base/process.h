@@ -29,6 +29,9 @@ struct ProcessEnd {
 /// Throws MachineLacks where the program cannot be started.
 ProcessEnd run_process(const std::vector<std::string>& arguments, const ProcessSettings& settings = {});
 
+/// Returns the CPU time, in seconds, of this process and of children that it has waited for.
+double cpu_seconds();
+
 /// Returns the folder of this process's executable, which also holds the other programs.
 std::filesystem::path program_folder();
 

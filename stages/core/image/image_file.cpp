@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "image/image_file.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <array>
 #include <cctype>
-#include <iomanip>
 #include <memory>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -16,48 +12,32 @@
 
 #include "base/errors.h"
 #include "base/outputs.h"
+#include "image/picture_codec.h"
 
 namespace kiln {
 
 namespace {
 
-/// Keeps OpenImageIO and OpenEXR from adding threads to the stages' own, which are TBB's and limited by --threads.
-void keep_to_one_thread() {
-  [[maybe_unused]] static const bool done = [] {
-    OIIO::attribute("threads", 1);
-    OIIO::attribute("exr_threads", -1);
-    return true;
-  }();
-}
+template <class T>
+constexpr SampleType sample_type = SampleType::float32;
+template <>
+constexpr SampleType sample_type<std::uint8_t> = SampleType::uint8;
+template <>
+constexpr SampleType sample_type<std::uint16_t> = SampleType::uint16;
 
 template <class T>
-OIIO::TypeDesc type_of() {
-  return OIIO::TypeDesc(OIIO::BaseTypeFromC<T>::value);
-}
-
-template <class T>
-void write_image(const std::filesystem::path& file, const Image<T>& image, const char* format, OIIO::ImageSpec spec) {
-  keep_to_one_thread();
+void write_image(const std::filesystem::path& file, const Image<T>& image, const char* format) {
   if (image.values().empty()) throw std::invalid_argument("write_image: a picture without pixels");
-  const auto fail = [&](const std::string& reason) { fail_to_write(file, reason); };
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
-  if (!output) throw std::runtime_error("OpenImageIO cannot write " + std::string(format) + ": " + OIIO::geterror());
-  if (!output->open(file.string(), spec)) fail(output->geterror());
-  // Files start with the top row.
-  const auto row_bytes = static_cast<OIIO::stride_t>(sizeof(T)) * image.width() * image.channels();
-  const auto* bytes = reinterpret_cast<const char*>(image.values().data());
-  if (!output->write_image(type_of<T>(), bytes + row_bytes * (image.height() - 1), OIIO::AutoStride, -row_bytes))
-    fail(output->geterror());
-  if (!output->close()) fail(output->geterror());
+  const PictureShape shape{image.width(), image.height(), image.channels()};
+  const std::string fault = picture_codec().write(file.string(), format, shape, sample_type<T>, image.values().data());
+  if (!fault.empty()) fail_to_write(file, fault);
 }
 
 template <class T>
 void write_png_of(const std::filesystem::path& file, const Image<T>& image) {
   if (image.channels() != 1 && image.channels() != 3 && image.channels() != 4)
     throw std::invalid_argument("write_png: 1, 3 or 4 channels");
-  OIIO::ImageSpec spec(image.width(), image.height(), image.channels(), type_of<T>());
-  spec.attribute("oiio:UnassociatedAlpha", 1);
-  write_image(file, image, "png", spec);
+  write_image(file, image, "png");
 }
 
 struct PngHeader {
@@ -153,29 +133,12 @@ void check_jpeg(const std::string& bytes, const std::string& name) {
   fail_reading(name, "a truncated JPEG", expected);
 }
 
-/// Opens an image: `memory`, whose format is known, or, without it, the file `name`. `name` appears in messages.
-std::unique_ptr<OIIO::ImageInput> open_image(const std::string& name, const std::string& expected,
-                                             const std::string& format, OIIO::Filesystem::IOProxy* memory) {
-  keep_to_one_thread();
-  OIIO::ImageSpec configuration, spec;
-  configuration.attribute("oiio:UnassociatedAlpha", 1);
-  std::unique_ptr<OIIO::ImageInput> input;
-  if (memory == nullptr) {
-    input = OIIO::ImageInput::open(name, &configuration);
-    if (!input) fail_reading(name, "cannot be understood (" + OIIO::geterror() + ")", expected);
-  } else {
-    input = OIIO::ImageInput::create(format);
-    if (!input) fail_reading(name, "cannot be understood (" + OIIO::geterror() + ")", expected);
-    configuration.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &memory);
-    if (!input->open(format, spec, configuration))
-      fail_reading(name, "cannot be understood (" + input->geterror() + ")", expected);
-  }
-  if (input->spec().depth > 1 || input->spec().deep) fail_reading(name, "not a flat picture", expected);
+/// Opens the picture `name`.
+std::unique_ptr<PictureInput> open_image(const std::string& name, const std::string& expected) {
+  std::string fault;
+  std::unique_ptr<PictureInput> input = picture_codec().open(name, fault);
+  if (!input) fail_reading(name, fault, expected);
   return input;
-}
-
-std::unique_ptr<OIIO::ImageInput> open_image(const std::string& name, const std::string& expected) {
-  return open_image(name, expected, "", nullptr);
 }
 
 /// Returns OpenImageIO's name of the format that the first bytes indicate, whatever the file's name; empty for unknown
@@ -192,14 +155,11 @@ std::string format_of(std::string_view bytes) {
 
 /// Reads all pixels as T, bottom row first.
 template <class T>
-Image<T> read_pixels(const std::string& name, OIIO::ImageInput& input, const std::string& expected) {
-  const OIIO::ImageSpec& spec = input.spec();
-  Image<T> image(spec.width, spec.height, spec.nchannels);
-  const auto row_bytes = static_cast<OIIO::stride_t>(sizeof(T)) * spec.width * spec.nchannels;
-  auto* bytes = reinterpret_cast<char*>(image.values().data());
-  if (!input.read_image(0, 0, 0, spec.nchannels, type_of<T>(), bytes + row_bytes * (spec.height - 1), OIIO::AutoStride,
-                        -row_bytes))
-    fail_reading(name, "damaged (" + input.geterror() + ")", expected);
+Image<T> read_pixels(const std::string& name, PictureInput& input, const std::string& expected) {
+  const PictureShape shape = input.shape();
+  Image<T> image(shape.width, shape.height, shape.channels);
+  const std::string fault = input.read(sample_type<T>, image.values().data());
+  if (!fault.empty()) fail_reading(name, fault, expected);
   return image;
 }
 
@@ -238,22 +198,7 @@ void write_png(const std::filesystem::path& file, const Image<std::uint8_t>& ima
 
 void write_png(const std::filesystem::path& file, const Image<std::uint16_t>& image) { write_png_of(file, image); }
 
-void write_exr(const std::filesystem::path& file, const Image<float>& image) {
-  OIIO::ImageSpec spec(image.width(), image.height(), image.channels(), OIIO::TypeDesc::FLOAT);
-  spec.attribute("compression", "zip");
-  spec.attribute("DateTime", "");  // otherwise OpenImageIO notes the time of writing
-  if (image.channels() > 4) {
-    // OpenEXR sorts channels by name.
-    spec.channelnames.clear();
-    for (int c = 0; c < image.channels(); ++c) {
-      std::ostringstream name;
-      name << 'c' << std::setw(5) << std::setfill('0') << c;
-      spec.channelnames.push_back(name.str());
-    }
-    spec.alpha_channel = spec.z_channel = -1;
-  }
-  write_image(file, image, "openexr", spec);
-}
+void write_exr(const std::filesystem::path& file, const Image<float>& image) { write_image(file, image, "openexr"); }
 
 Image<std::uint8_t> read_png8(const std::filesystem::path& file) { return read_png_of<std::uint8_t>(file); }
 
@@ -273,10 +218,10 @@ namespace {
 
 constexpr char expected_picture[] = "a PNG, JPEG, OpenEXR or other picture";
 
-ColorPicture color_picture_of(const std::string& name, OIIO::ImageInput& input) {
+ColorPicture color_picture_of(const std::string& name, PictureInput& input) {
   ColorPicture picture;
-  picture.is_float = input.spec().format.is_floating_point();
-  if (input.spec().format == OIIO::TypeDesc::UINT8)
+  picture.is_float = input.is_floating_point();
+  if (input.is_uint8())
     picture.pixels = three_channels(read_pixels<std::uint8_t>(name, input, expected_picture));
   else
     picture.pixels = three_channels(read_pixels<float>(name, input, expected_picture));
@@ -289,8 +234,10 @@ std::optional<ColorPicture> color_picture_of_bytes(const std::string& bytes, con
   if (format.empty()) return std::nullopt;
   if (format == "png") check_png(bytes, name);
   if (format == "jpeg") check_jpeg(bytes, name);
-  OIIO::Filesystem::IOMemReader memory(const_cast<char*>(bytes.data()), bytes.size());
-  return color_picture_of(name, *open_image(name, expected_picture, format, &memory));
+  std::string fault;
+  const std::unique_ptr<PictureInput> input = picture_codec().open(bytes, format, fault);
+  if (!input) fail_reading(name, fault, expected_picture);
+  return color_picture_of(name, *input);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace kiln {
 
 namespace {
 
-constexpr char remedy[] = "encode the mesh again, or run the stage that writes it";
+constexpr char encode_again[] = "encode the mesh again, or run the stage that writes it";
 
 /// Calls `take` with the numbers of every point in turn: `components` of them, 0 where the attribute has fewer.
 template <int components, class Take>
@@ -59,7 +59,7 @@ void read_attributes(const draco::Mesh& source, SourceMesh& mesh) {
 void require_finite(const SourceMesh& mesh, const std::string& name) {
   const auto fail = [&name](const char* what, std::uint32_t point) {
     throw BadInput(name, std::string(what) + " of point " + std::to_string(point) + " is not finite", "finite numbers",
-                   remedy);
+                   encode_again);
   };
   for (const SourceMesh::Corner& corner : mesh.corners) {
     if (!mesh.places[corner.place].allFinite()) fail("the position", corner.place);
@@ -73,19 +73,20 @@ void require_finite(const SourceMesh& mesh, const std::string& name) {
 SourceMesh read_drc(const std::filesystem::path& file) {
   const std::string bytes = read_text(file);
   const std::string name = file.string();
-  const auto source = decode_draco({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, name, remedy);
+  const auto source =
+      decode_draco({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, name, encode_again);
   SourceMesh mesh;
   mesh.is_unwelded = true;
   read_attributes(*source, mesh);
   if (mesh.places.empty() || source->num_faces() == 0)
-    throw BadInput(name, "has no triangles", "a Draco mesh of triangles", remedy);
+    throw BadInput(name, "has no triangles", "a Draco mesh of triangles", encode_again);
   for (std::uint32_t i = 0; i < source->num_faces(); ++i) {
     mesh.faces.push_back({3 * i, 3, -1, 0, 0});
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const std::uint32_t point = source->face(draco::FaceIndex(i))[corner].value();
       if (point >= source->num_points())
         throw BadInput(name, "triangle " + std::to_string(i) + " names point " + std::to_string(point),
-                       "one of " + std::to_string(source->num_points()) + " points", remedy);
+                       "one of " + std::to_string(source->num_points()) + " points", encode_again);
       mesh.corners.push_back(
           {point, mesh.uvs.empty() ? SourceMesh::none : point, mesh.normals.empty() ? SourceMesh::none : point});
     }

@@ -21,8 +21,8 @@ namespace kiln {
 namespace {
 
 constexpr std::string_view binary_magic{"Kaydara FBX Binary  \0", 21};
-constexpr std::size_t header_size = 27;
-constexpr int deepest = 50;  // levels; FBX files have about six
+constexpr std::size_t fbx_header_size = 27;
+constexpr int deepest_record = 50;  // levels; FBX files have about six
 
 template <class Number>
 Number read_at(std::string_view bytes, std::size_t at) {
@@ -38,7 +38,7 @@ class BinaryParser {
       : document_(document), bytes_(bytes), wide_(read_at<std::uint32_t>(bytes, 23) >= 7500) {}
 
   void parse(FbxRecord& root) {
-    at_ = header_size;
+    at_ = fbx_header_size;
     while (parse_record(root, bytes_.size(), 0)) {
     }
   }
@@ -74,8 +74,8 @@ class BinaryParser {
     if (end > bytes_.size()) truncated();
     if (end < at_ || end > parent_end || values_size > end - at_ || count > values_size)
       document_.fail("has a record at byte " + std::to_string(begin) + " of sizes that do not fit", "an FBX file");
-    if (depth > deepest)
-      document_.fail("has records deeper than " + std::to_string(deepest) + " levels", "an FBX file");
+    if (depth > deepest_record)
+      document_.fail("has records deeper than " + std::to_string(deepest_record) + " levels", "an FBX file");
     FbxRecord record;
     record.name = name;
     record.place = begin;
@@ -215,7 +215,8 @@ FbxDocument::FbxDocument(const std::filesystem::path& file) : file_(file), bytes
 }
 
 void FbxDocument::parse_binary() {
-  if (bytes_.size() < header_size) fail("is truncated: it ends within its header", "a whole FBX file", "copy it again");
+  if (bytes_.size() < fbx_header_size)
+    fail("is truncated: it ends within its header", "a whole FBX file", "copy it again");
   const auto version = read_at<std::uint32_t>(bytes_, 23);
   if (version < 7000 || version >= 8000)
     fail("is FBX of version " + std::to_string(version), "version 7000 to 7999", "export it as FBX 2011 or later");

@@ -14,7 +14,7 @@ namespace kiln {
 
 namespace {
 
-constexpr int deepest = 50;
+constexpr int deepest_block = 50;
 
 class TextParser {
  public:
@@ -52,7 +52,7 @@ class TextParser {
   }
 
   void parse_list(FbxRecord& parent, int depth) {
-    if (depth > deepest) fail("records deeper than " + std::to_string(deepest) + " levels", "an FBX file");
+    if (depth > deepest_block) fail("records deeper than " + std::to_string(deepest_block) + " levels", "an FBX file");
     for (skip_blanks(true); !is_end() && here() != '}'; skip_blanks(true)) parse_record(parent, depth);
   }
 

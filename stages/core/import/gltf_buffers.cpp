@@ -17,7 +17,6 @@ namespace kiln {
 
 namespace {
 
-using Json = GltfDocument::Json;
 namespace fs = std::filesystem;
 
 std::string number_text(std::size_t number) { return std::to_string(number); }
@@ -225,7 +224,7 @@ std::vector<std::uint8_t> GltfBuffers::load(const std::string& uri, const std::s
 
 std::span<const std::uint8_t> GltfBuffers::buffer(std::size_t index, const std::string& user) {
   const std::string place = "buffer " + number_text(index);
-  const Json& object = document_.element("buffers", index, user);
+  const GltfJson& object = document_.element("buffers", index, user);
   const std::size_t length = document_.required_index(object, "byteLength", place);
   const std::string uri = document_.text(object, "uri", place);
   std::span<const std::uint8_t> bytes;
@@ -250,7 +249,7 @@ std::span<const std::uint8_t> GltfBuffers::buffer(std::size_t index, const std::
   return bytes.first(length);
 }
 
-std::span<const std::uint8_t> GltfBuffers::range(const Json& object, const std::string& place) {
+std::span<const std::uint8_t> GltfBuffers::range(const GltfJson& object, const std::string& place) {
   const std::span<const std::uint8_t> bytes = buffer(document_.required_index(object, "buffer", place), place);
   const std::size_t offset = document_.index(object, "byteOffset", place).value_or(0);
   const std::size_t length = document_.required_index(object, "byteLength", place);
@@ -261,7 +260,7 @@ std::span<const std::uint8_t> GltfBuffers::range(const Json& object, const std::
   return bytes.subspan(offset, length);
 }
 
-const std::vector<std::uint8_t>& GltfBuffers::unpacked(const Json& packed, const std::string& place) {
+const std::vector<std::uint8_t>& GltfBuffers::unpacked(const GltfJson& packed, const std::string& place) {
   const auto known = unpacked_.find(&packed);
   if (known != unpacked_.end()) return known->second;
   const std::span<const std::uint8_t> bytes = range(packed, place + " (EXT_meshopt_compression)");
@@ -278,15 +277,15 @@ const std::vector<std::uint8_t>& GltfBuffers::unpacked(const Json& packed, const
 
 std::span<const std::uint8_t> GltfBuffers::view(std::size_t index, const std::string& user) {
   const std::string place = "bufferView " + number_text(index);
-  const Json& object = document_.element("bufferViews", index, user);
-  if (const Json* packed = document_.extension(object, "EXT_meshopt_compression", place))
+  const GltfJson& object = document_.element("bufferViews", index, user);
+  if (const GltfJson* packed = document_.extension(object, "EXT_meshopt_compression", place))
     return unpacked(*packed, place);
   return range(object, place);
 }
 
 GltfAccessor GltfBuffers::description(std::size_t index, const std::string& user) const {
   const std::string place = "accessor " + number_text(index);
-  const Json& object = document_.element("accessors", index, user);
+  const GltfJson& object = document_.element("accessors", index, user);
   GltfAccessor accessor;
   accessor.count = document_.required_index(object, "count", place);
   accessor.components = component_count(document_.text(object, "type", place));
@@ -300,14 +299,14 @@ GltfAccessor GltfBuffers::description(std::size_t index, const std::string& user
   return accessor;
 }
 
-std::shared_ptr<const GltfAccessor::Replacements> GltfBuffers::replacements(const Json& sparse,
+std::shared_ptr<const GltfAccessor::Replacements> GltfBuffers::replacements(const GltfJson& sparse,
                                                                             const GltfAccessor& accessor,
                                                                             const std::string& place) {
   const std::string where = place + " (sparse)";
-  const Json* indices = document_.object(sparse, "indices", where);
-  const Json* values = document_.object(sparse, "values", where);
+  const GltfJson* indices = document_.object(sparse, "indices", where);
+  const GltfJson* values = document_.object(sparse, "values", where);
   if (indices == nullptr || values == nullptr) document_.fail(where + " lacks indices or values", "both");
-  const auto part = [&](const Json& object, std::size_t element_size, std::size_t count) {
+  const auto part = [&](const GltfJson& object, std::size_t element_size, std::size_t count) {
     const auto bytes = view(document_.required_index(object, "bufferView", where), where);
     const std::size_t offset = document_.index(object, "byteOffset", where).value_or(0);
     if (offset > bytes.size() || count > (bytes.size() - offset) / element_size)
@@ -338,12 +337,12 @@ std::shared_ptr<const GltfAccessor::Replacements> GltfBuffers::replacements(cons
 GltfAccessor GltfBuffers::accessor(std::size_t index, const std::string& user) {
   const std::string place = "accessor " + number_text(index);
   GltfAccessor accessor = description(index, user);
-  const Json& object = document_.element("accessors", index, user);
+  const GltfJson& object = document_.element("accessors", index, user);
   const std::size_t size = accessor.stride;
   if (const auto view_index = document_.index(object, "bufferView", place)) {
     const std::span<const std::uint8_t> bytes = view(*view_index, place);
     const std::size_t offset = document_.index(object, "byteOffset", place).value_or(0);
-    const Json& view_object = document_.element("bufferViews", *view_index, place);
+    const GltfJson& view_object = document_.element("bufferViews", *view_index, place);
     const std::size_t stride = document_.index(view_object, "byteStride", place).value_or(0);
     if (stride != 0) accessor.stride = stride;
     if (accessor.stride < size)
@@ -357,7 +356,7 @@ GltfAccessor GltfBuffers::accessor(std::size_t index, const std::string& user) {
                      "elements within it");
     accessor.bytes = bytes.data() + offset;
   }
-  if (const Json* sparse = document_.object(object, "sparse", place))
+  if (const GltfJson* sparse = document_.object(object, "sparse", place))
     accessor.replacements = replacements(*sparse, accessor, place);
   return accessor;
 }

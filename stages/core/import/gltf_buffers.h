@@ -86,15 +86,14 @@ class GltfBuffers {
  private:
   std::span<const std::uint8_t> buffer(std::size_t index, const std::string& user);
   std::vector<std::uint8_t> load(const std::string& uri, const std::string& place);
-  std::span<const std::uint8_t> range(const GltfDocument::Json& object, const std::string& place);
-  const std::vector<std::uint8_t>& unpacked(const GltfDocument::Json& packed, const std::string& place);
-  std::shared_ptr<const GltfAccessor::Replacements> replacements(const GltfDocument::Json& sparse,
-                                                                 const GltfAccessor& accessor,
+  std::span<const std::uint8_t> range(const GltfJson& object, const std::string& place);
+  const std::vector<std::uint8_t>& unpacked(const GltfJson& packed, const std::string& place);
+  std::shared_ptr<const GltfAccessor::Replacements> replacements(const GltfJson& sparse, const GltfAccessor& accessor,
                                                                  const std::string& place);
 
   const GltfDocument& document_;
   std::map<std::size_t, std::vector<std::uint8_t>> buffers_;
-  std::map<const GltfDocument::Json*, std::vector<std::uint8_t>> unpacked_;
+  std::map<const GltfJson*, std::vector<std::uint8_t>> unpacked_;
   std::vector<std::filesystem::path> files_;
   std::size_t read_bytes_ = 0;
 };

@@ -91,25 +91,25 @@ void GltfDocument::split_chunks() {
 void GltfDocument::parse(std::string_view text) {
   while (!text.empty() && text.back() == '\0') text.remove_suffix(1);  // wrong padding by exporters
   // Excessive nesting takes memory out of proportion: end the parse.
-  const auto limit_depth = [this](int depth, Json::parse_event_t, Json&) {
+  const auto limit_depth = [this](int depth, GltfJson::parse_event_t, GltfJson&) {
     if (depth > deepest_json) fail("is nested deeper than " + std::to_string(deepest_json) + " levels", "glTF's JSON");
     return true;
   };
   try {
-    json_ = Json::parse(text, limit_depth);
-  } catch (const Json::parse_error& fault) {
+    json_ = GltfJson::parse(text, limit_depth);
+  } catch (const GltfJson::parse_error& fault) {
     if (fault.byte > text.size())
       fail("is truncated: its JSON ends too early, at byte " + std::to_string(text.size()), "a whole glTF file",
            "copy it again");
     fail("is no JSON at byte " + std::to_string(fault.byte) + " of it", "a glTF file");
-  } catch (const Json::exception& fault) {
+  } catch (const GltfJson::exception& fault) {
     fail(std::string("has JSON that cannot be read (") + fault.what() + ")", "a glTF file");
   }
   if (!json_.is_object()) fail("holds JSON that is no object", "a glTF file");
 }
 
 void GltfDocument::check_version() const {
-  const Json* asset = object(json_, "asset", "the file");
+  const GltfJson* asset = object(json_, "asset", "the file");
   if (asset == nullptr) fail("has no \"asset\", so it is no glTF file", "a glTF 2.0 file");
   const std::string version = text(*asset, "version", "asset");
   const std::string needed = text(*asset, "minVersion", "asset");
@@ -123,7 +123,7 @@ void GltfDocument::check_extensions() {
   };
   const auto names = [this](const char* key) {
     std::vector<std::string> result;
-    for (const Json& name : array(json_, key, "the file")) {
+    for (const GltfJson& name : array(json_, key, "the file")) {
       if (!name.is_string()) fail(std::string(key) + " holds something that is no name", "names of extensions");
       if (const auto& known = name.get_ref<const std::string&>();
           std::find(result.begin(), result.end(), known) == result.end())
@@ -140,9 +140,8 @@ void GltfDocument::check_extensions() {
 
 std::size_t GltfDocument::count(const char* array_name) const { return array(json_, array_name, "the file").size(); }
 
-const GltfDocument::Json& GltfDocument::element(const char* array_name, std::size_t index,
-                                                const std::string& user) const {
-  const Json& elements = array(json_, array_name, "the file");
+const GltfJson& GltfDocument::element(const char* array_name, std::size_t index, const std::string& user) const {
+  const GltfJson& elements = array(json_, array_name, "the file");
   if (index >= elements.size())
     fail(user + " refers to element " + std::to_string(index) + " of \"" + array_name + "\"",
          "one of the " + std::to_string(elements.size()) + " that there are, counted from 0");
@@ -151,28 +150,27 @@ const GltfDocument::Json& GltfDocument::element(const char* array_name, std::siz
   return elements[index];
 }
 
-const GltfDocument::Json* GltfDocument::object(const Json& object, const char* key, const std::string& place) const {
+const GltfJson* GltfDocument::object(const GltfJson& object, const char* key, const std::string& place) const {
   const auto found = object.find(key);
   if (found == object.end()) return nullptr;
   if (!found->is_object()) fail("\"" + std::string(key) + "\" of " + place + " is no JSON object", "an object");
   return &*found;
 }
 
-const GltfDocument::Json& GltfDocument::array(const Json& object, const char* key, const std::string& place) const {
-  static const Json none = Json::array();
+const GltfJson& GltfDocument::array(const GltfJson& object, const char* key, const std::string& place) const {
+  static const GltfJson none = GltfJson::array();
   const auto found = object.find(key);
   if (found == object.end()) return none;
   if (!found->is_array()) fail("\"" + std::string(key) + "\" of " + place + " is no JSON array", "an array");
   return *found;
 }
 
-const GltfDocument::Json* GltfDocument::extension(const Json& holder, const char* name,
-                                                  const std::string& place) const {
-  const Json* extensions = object(holder, "extensions", place);
+const GltfJson* GltfDocument::extension(const GltfJson& holder, const char* name, const std::string& place) const {
+  const GltfJson* extensions = object(holder, "extensions", place);
   return extensions == nullptr ? nullptr : object(*extensions, name, place);
 }
 
-std::size_t GltfDocument::whole(const Json& value, const std::string& place) const {
+std::size_t GltfDocument::whole(const GltfJson& value, const std::string& place) const {
   constexpr double largest = 9007199254740992.0;  // 2^53
   const double number = value.is_number() ? value.get<double>() : -1;
   if (!(number >= 0 && number <= largest) || number != std::floor(number))
@@ -180,19 +178,20 @@ std::size_t GltfDocument::whole(const Json& value, const std::string& place) con
   return static_cast<std::size_t>(number);
 }
 
-std::optional<std::size_t> GltfDocument::index(const Json& object, const char* key, const std::string& place) const {
+std::optional<std::size_t> GltfDocument::index(const GltfJson& object, const char* key,
+                                               const std::string& place) const {
   const auto found = object.find(key);
   if (found == object.end()) return std::nullopt;
   return whole(*found, "\"" + std::string(key) + "\" of " + place);
 }
 
-std::size_t GltfDocument::required_index(const Json& object, const char* key, const std::string& place) const {
+std::size_t GltfDocument::required_index(const GltfJson& object, const char* key, const std::string& place) const {
   const std::optional<std::size_t> found = index(object, key, place);
   if (!found) fail(place + " has no \"" + key + "\"", "one");
   return *found;
 }
 
-bool GltfDocument::flag(const Json& object, const char* key, const std::string& place) const {
+bool GltfDocument::flag(const GltfJson& object, const char* key, const std::string& place) const {
   const auto found = object.find(key);
   if (found == object.end()) return false;
   if (!found->is_boolean())
@@ -200,7 +199,7 @@ bool GltfDocument::flag(const Json& object, const char* key, const std::string& 
   return found->get<bool>();
 }
 
-double GltfDocument::number(const Json& object, const char* key, double absent, const std::string& place) const {
+double GltfDocument::number(const GltfJson& object, const char* key, double absent, const std::string& place) const {
   const auto found = object.find(key);
   if (found == object.end()) return absent;
   if (!found->is_number() || !std::isfinite(found->get<double>()))
@@ -208,19 +207,19 @@ double GltfDocument::number(const Json& object, const char* key, double absent, 
   return found->get<double>();
 }
 
-std::string GltfDocument::text(const Json& object, const char* key, const std::string& place) const {
+std::string GltfDocument::text(const GltfJson& object, const char* key, const std::string& place) const {
   const auto found = object.find(key);
   if (found == object.end()) return {};
   if (!found->is_string()) fail("\"" + std::string(key) + "\" of " + place + " is no text", "a string");
   return found->get<std::string>();
 }
 
-std::vector<double> GltfDocument::numbers(const Json& object, const char* key, std::size_t count,
+std::vector<double> GltfDocument::numbers(const GltfJson& object, const char* key, std::size_t count,
                                           const std::string& place) const {
   std::vector<double> result;
   if (!object.contains(key)) return result;
   const std::string name = "\"" + std::string(key) + "\" of " + place;
-  for (const Json& value : array(object, key, place)) {
+  for (const GltfJson& value : array(object, key, place)) {
     if (!value.is_number() || !std::isfinite(value.get<double>()))
       fail(name + " holds something that is no number", "numbers");
     result.push_back(value.get<double>());
@@ -230,9 +229,10 @@ std::vector<double> GltfDocument::numbers(const Json& object, const char* key, s
   return result;
 }
 
-std::vector<std::size_t> GltfDocument::indices(const Json& object, const char* key, const std::string& place) const {
+std::vector<std::size_t> GltfDocument::indices(const GltfJson& object, const char* key,
+                                               const std::string& place) const {
   std::vector<std::size_t> result;
-  for (const Json& value : array(object, key, place))
+  for (const GltfJson& value : array(object, key, place))
     result.push_back(whole(value, "an entry of \"" + std::string(key) + "\" of " + place));
   return result;
 }

@@ -11,12 +11,12 @@
 
 namespace kiln {
 
+using GltfJson = nlohmann::json;
+
 /// Checked JSON of a glTF 2.0 file: every requested member exists and has its type, or BadInput names the place that
 /// the caller gives, such as "accessor 3" or "mesh 2, primitive 0".
 class GltfDocument {
  public:
-  using Json = nlohmann::json;
-
   /// Reads a .gltf or .glb file, distinguished by its first bytes. Throws BadInput for other files and versions, and
   /// where the file requires an unknown extension.
   explicit GltfDocument(const std::filesystem::path& file);
@@ -34,27 +34,28 @@ class GltfDocument {
   std::size_t count(const char* array) const;
 
   /// Returns an element of such an array, an object. `user` names in messages what refers to it.
-  const Json& element(const char* array, std::size_t index, const std::string& user) const;
+  const GltfJson& element(const char* array, std::size_t index, const std::string& user) const;
 
   /// Returns the root object.
-  const Json& root_object() const { return json_; }
+  const GltfJson& root_object() const { return json_; }
 
   // The functions below return members of `object`, which messages call `place`. Absent ones are null, nothing or
   // empty.
-  const Json* object(const Json& object, const char* key, const std::string& place) const;
-  const Json& array(const Json& object, const char* key, const std::string& place) const;
-  const Json* extension(const Json& object, const char* name, const std::string& place) const;
-  std::optional<std::size_t> index(const Json& object, const char* key, const std::string& place) const;
-  std::size_t required_index(const Json& object, const char* key, const std::string& place) const;
-  bool flag(const Json& object, const char* key, const std::string& place) const;
-  double number(const Json& object, const char* key, double absent, const std::string& place) const;
-  std::string text(const Json& object, const char* key, const std::string& place) const;
+  const GltfJson* object(const GltfJson& object, const char* key, const std::string& place) const;
+  const GltfJson& array(const GltfJson& object, const char* key, const std::string& place) const;
+  const GltfJson* extension(const GltfJson& object, const char* name, const std::string& place) const;
+  std::optional<std::size_t> index(const GltfJson& object, const char* key, const std::string& place) const;
+  std::size_t required_index(const GltfJson& object, const char* key, const std::string& place) const;
+  bool flag(const GltfJson& object, const char* key, const std::string& place) const;
+  double number(const GltfJson& object, const char* key, double absent, const std::string& place) const;
+  std::string text(const GltfJson& object, const char* key, const std::string& place) const;
 
   /// Returns finite numbers; exactly `count` of them where that is not 0.
-  std::vector<double> numbers(const Json& object, const char* key, std::size_t count, const std::string& place) const;
+  std::vector<double> numbers(const GltfJson& object, const char* key, std::size_t count,
+                              const std::string& place) const;
 
   /// Returns the whole numbers of an array.
-  std::vector<std::size_t> indices(const Json& object, const char* key, const std::string& place) const;
+  std::vector<std::size_t> indices(const GltfJson& object, const char* key, const std::string& place) const;
 
   /// Returns the extensions that the file uses and Kiln ignores, in the file's order.
   const std::vector<std::string>& unused_extensions() const { return unused_extensions_; }
@@ -64,13 +65,13 @@ class GltfDocument {
   void parse(std::string_view text);
   void check_version() const;
   void check_extensions();
-  std::size_t whole(const Json& value, const std::string& place) const;
+  std::size_t whole(const GltfJson& value, const std::string& place) const;
 
   std::filesystem::path file_;
   std::string bytes_;
   std::string_view text_;
   std::span<const std::uint8_t> binary_;
-  Json json_;
+  GltfJson json_;
   std::vector<std::string> unused_extensions_;
 };
 

@@ -36,7 +36,7 @@ std::optional<GltfAccessor> GltfDraco::attribute(const std::string& name, const 
 }
 
 std::optional<GltfDraco> decode_gltf_draco(const GltfDocument& document, GltfBuffers& buffers,
-                                           const GltfDocument::Json& primitive, const std::string& place) {
+                                           const GltfJson& primitive, const std::string& place) {
   const auto* extension = document.extension(primitive, "KHR_draco_mesh_compression", place);
   if (extension == nullptr) return std::nullopt;
   const auto bytes = buffers.view(document.required_index(*extension, "bufferView", place), place);

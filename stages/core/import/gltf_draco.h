@@ -22,7 +22,7 @@ class GltfDraco {
 
  private:
   friend std::optional<GltfDraco> decode_gltf_draco(const GltfDocument& document, GltfBuffers& buffers,
-                                                    const GltfDocument::Json& primitive, const std::string& place);
+                                                    const GltfJson& primitive, const std::string& place);
   struct Attribute {
     std::string name;
     int components = 0;
@@ -37,6 +37,6 @@ class GltfDraco {
 
 /// Decodes a packed primitive; nothing where it is not packed. Throws BadInput.
 std::optional<GltfDraco> decode_gltf_draco(const GltfDocument& document, GltfBuffers& buffers,
-                                           const GltfDocument::Json& primitive, const std::string& place);
+                                           const GltfJson& primitive, const std::string& place);
 
 }  // namespace kiln

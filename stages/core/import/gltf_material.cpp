@@ -15,7 +15,6 @@ namespace kiln {
 
 namespace {
 
-using Json = GltfDocument::Json;
 using Wrap = SourceMaterial::Wrap;
 
 /// Extensions that give a texture's picture in another format as well.
@@ -27,16 +26,16 @@ class MaterialReader {
   MaterialReader(const GltfDocument& document, GltfBuffers& buffers) : document_(document), buffers_(buffers) {}
 
   GltfMaterial read(std::size_t index) {
-    const Json& object = document_.element("materials", index, "the file");
+    const GltfJson& object = document_.element("materials", index, "the file");
     GltfMaterial result;
     place_ = "material " + std::to_string(index);
     result.material.name = document_.text(object, "name", place_);
     result.material.place = document_.file().string() + ", " + place_;
     result.material.has_diffuse = true;
     result.material.linear_diffuse = true;
-    if (const Json* glossy = document_.extension(object, "KHR_materials_pbrSpecularGlossiness", place_))
+    if (const GltfJson* glossy = document_.extension(object, "KHR_materials_pbrSpecularGlossiness", place_))
       read_color(*glossy, "diffuseFactor", "diffuseTexture", result);
-    else if (const Json* metallic = document_.object(object, "pbrMetallicRoughness", place_))
+    else if (const GltfJson* metallic = document_.object(object, "pbrMetallicRoughness", place_))
       read_metallic(*metallic, result);
     count_what_is_passed_by(object);
     return result;
@@ -58,35 +57,35 @@ class MaterialReader {
   }
 
  private:
-  void read_metallic(const Json& metallic, GltfMaterial& result) {
+  void read_metallic(const GltfJson& metallic, GltfMaterial& result) {
     read_color(metallic, "baseColorFactor", "baseColorTexture", result);
     metallic_ += document_.number(metallic, "metallicFactor", 1, place_) > 0;
   }
 
-  void read_color(const Json& holder, const char* factor_key, const char* texture_key, GltfMaterial& result) {
+  void read_color(const GltfJson& holder, const char* factor_key, const char* texture_key, GltfMaterial& result) {
     if (const std::vector<double> factor = document_.numbers(holder, factor_key, 4, place_); !factor.empty())
       result.material.diffuse = Eigen::Vector3d(factor[0], factor[1], factor[2]).cast<float>().cwiseMax(0).cwiseMin(1);
-    if (const Json* info = document_.object(holder, texture_key, place_)) read_texture(*info, result);
+    if (const GltfJson* info = document_.object(holder, texture_key, place_)) read_texture(*info, result);
   }
 
-  void read_texture(const Json& info, GltfMaterial& result) {
+  void read_texture(const GltfJson& info, GltfMaterial& result) {
     const std::size_t index = document_.required_index(info, "index", place_);
-    const Json& texture = document_.element("textures", index, place_);
+    const GltfJson& texture = document_.element("textures", index, place_);
     const std::string place = "texture " + std::to_string(index);
     result.material.texture = picture(texture, place);
     result.material.texture_place = document_.file().string() + ", " + place;
     result.uv_set = document_.index(info, "texCoord", place_).value_or(0);
     if (const auto sampler = document_.index(texture, "sampler", place)) read_sampler(*sampler, place, result.material);
-    if (const Json* transform = document_.extension(info, "KHR_texture_transform", place_)) {
+    if (const GltfJson* transform = document_.extension(info, "KHR_texture_transform", place_)) {
       result.uv_set = document_.index(*transform, "texCoord", place_).value_or(result.uv_set);
       result.material.texture_transform = read_transform(*transform);
     }
   }
 
-  std::optional<SourcePicture> picture(const Json& texture, const std::string& place) {
+  std::optional<SourcePicture> picture(const GltfJson& texture, const std::string& place) {
     const auto plain = document_.index(texture, "source", place);
     for (const auto& [extension, format] : other_formats) {
-      const Json* other = document_.extension(texture, extension, place);
+      const GltfJson* other = document_.extension(texture, extension, place);
       if (other == nullptr) continue;
       if (plain) {
         ++fallbacks_;
@@ -103,7 +102,7 @@ class MaterialReader {
 
   SourcePicture image(std::size_t index, const std::string& user) {
     const std::string place = "image " + std::to_string(index);
-    const Json& object = document_.element("images", index, user);
+    const GltfJson& object = document_.element("images", index, user);
     SourcePicture picture{document_.file(), nullptr, place + " of " + document_.file().filename().string()};
     if (const auto view = document_.index(object, "bufferView", place)) {
       const std::span<const std::uint8_t> bytes = buffers_.view(*view, place);
@@ -132,7 +131,7 @@ class MaterialReader {
 
   void read_sampler(std::size_t index, const std::string& user, SourceMaterial& material) const {
     const std::string place = "sampler " + std::to_string(index);
-    const Json& object = document_.element("samplers", index, user);
+    const GltfJson& object = document_.element("samplers", index, user);
     const auto wrap = [&](const char* key) {
       switch (const std::size_t mode = document_.index(object, key, place).value_or(10497)) {
         case 10497:
@@ -150,7 +149,7 @@ class MaterialReader {
   }
 
   /// Converts a transform of glTF's coordinates, whose v points down, to one of coordinates whose v points up.
-  Eigen::Matrix<float, 2, 3> read_transform(const Json& transform) const {
+  Eigen::Matrix<float, 2, 3> read_transform(const GltfJson& transform) const {
     std::vector<double> offset = document_.numbers(transform, "offset", 2, place_);
     std::vector<double> scale = document_.numbers(transform, "scale", 2, place_);
     const double angle = document_.number(transform, "rotation", 0, place_);
@@ -164,7 +163,7 @@ class MaterialReader {
     return (flip * down * flip).topRows<2>().cast<float>();
   }
 
-  void count_what_is_passed_by(const Json& object) {
+  void count_what_is_passed_by(const GltfJson& object) {
     const std::string alpha = document_.text(object, "alphaMode", place_);
     see_through_ += alpha == "BLEND" || alpha == "MASK";
     const std::vector<double> emissive = document_.numbers(object, "emissiveFactor", 3, place_);

@@ -14,14 +14,12 @@ namespace kiln {
 
 namespace {
 
-using Json = GltfDocument::Json;
-
 enum class Mode { points, lines, line_loop, line_strip, triangles, strip, fan };
 
 /// Reader of one primitive.
 class PrimitiveReader {
  public:
-  PrimitiveReader(const GltfDocument& document, GltfBuffers& buffers, const Json& primitive, std::string place,
+  PrimitiveReader(const GltfDocument& document, GltfBuffers& buffers, const GltfJson& primitive, std::string place,
                   const std::vector<GltfMaterial>& materials)
       : document_(document), buffers_(buffers), primitive_(primitive), materials_(materials) {
     result_.place = std::move(place);
@@ -30,7 +28,7 @@ class PrimitiveReader {
   /// Reads the primitive; nothing where there are no triangles.
   std::optional<GltfPrimitive> read(const std::vector<double>& morph_weights, std::size_t triangles_so_far,
                                     GltfPassedBy& passed_by) {
-    const Json* attributes = document_.object(primitive_, "attributes", result_.place);
+    const GltfJson* attributes = document_.object(primitive_, "attributes", result_.place);
     if (!is_drawn(attributes, passed_by)) return std::nullopt;
     read_material();
     draco_ = decode_gltf_draco(document_, buffers_, primitive_, result_.place);
@@ -47,7 +45,7 @@ class PrimitiveReader {
   }
 
  private:
-  bool is_drawn(const Json* attributes, GltfPassedBy& passed_by) {
+  bool is_drawn(const GltfJson* attributes, GltfPassedBy& passed_by) {
     const std::size_t mode = document_.index(primitive_, "mode", result_.place).value_or(4);
     if (mode > 6) document_.fail(result_.place + " has the mode " + std::to_string(mode), "0 to 6");
     mode_ = static_cast<Mode>(mode);
@@ -77,7 +75,7 @@ class PrimitiveReader {
            name.starts_with("WEIGHTS_");
   }
 
-  GltfAccessor attribute(const Json& attributes, const std::string& name) {
+  GltfAccessor attribute(const GltfJson& attributes, const std::string& name) {
     const std::string user = name + " of " + result_.place;
     const std::size_t index = document_.required_index(attributes, name.c_str(), result_.place);
     const GltfAccessor description = buffers_.description(index, user);
@@ -225,7 +223,7 @@ class PrimitiveReader {
   }
 
   void add_morph_targets(const std::vector<double>& weights) {
-    const Json& targets = document_.array(primitive_, "targets", result_.place);
+    const GltfJson& targets = document_.array(primitive_, "targets", result_.place);
     for (std::size_t i = 0; i < std::min(targets.size(), weights.size()); ++i) {
       if (weights[i] == 0) continue;
       const std::string place = "target " + std::to_string(i) + " of " + result_.place;
@@ -235,7 +233,7 @@ class PrimitiveReader {
     }
   }
 
-  void add_morph(const Json& target, const char* name, const std::string& place, double weight,
+  void add_morph(const GltfJson& target, const char* name, const std::string& place, double weight,
                  std::vector<Eigen::Vector3d>& values) {
     const auto index = document_.index(target, name, place);
     if (!index) return;
@@ -263,7 +261,7 @@ class PrimitiveReader {
 
   const GltfDocument& document_;
   GltfBuffers& buffers_;
-  const Json& primitive_;
+  const GltfJson& primitive_;
   const std::vector<GltfMaterial>& materials_;
   Mode mode_ = Mode::triangles;
   std::optional<GltfDraco> draco_;
@@ -280,8 +278,8 @@ std::vector<GltfPrimitive> read_gltf_mesh(const GltfDocument& document, GltfBuff
                                           const std::vector<GltfMaterial>& materials, std::size_t triangles_so_far,
                                           GltfPassedBy& passed_by) {
   const std::string mesh_place = "mesh " + std::to_string(mesh);
-  const Json& object = document.element("meshes", mesh, "a node");
-  const Json& primitives = document.array(object, "primitives", mesh_place);
+  const GltfJson& object = document.element("meshes", mesh, "a node");
+  const GltfJson& primitives = document.array(object, "primitives", mesh_place);
   std::vector<GltfPrimitive> result;
   for (std::size_t i = 0; i < primitives.size(); ++i) {
     const std::string place = mesh_place + ", primitive " + std::to_string(i);

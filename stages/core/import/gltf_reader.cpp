@@ -12,6 +12,7 @@
 #include "import/gltf_scene.h"
 #include "import/mesh_transform.h"
 #include "import/readers.h"
+#include "import/text_lines.h"
 
 // All meshes are placed as in the scene, in double. Coordinates are metres, +Y up, as in glTF.
 
@@ -113,10 +114,6 @@ class SceneAssembler {
   std::size_t expected_triangles_ = 0;
   std::uint32_t first_place_ = 0, first_normal_ = 0;
 };
-
-std::string counted(std::size_t count, const std::string& thing) {
-  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
-}
 
 void add_warnings(const GltfDocument& document, const GltfPassedBy& passed_by, std::vector<std::string>& warnings) {
   if (passed_by.points + passed_by.lines > 0)

@@ -13,9 +13,7 @@ namespace kiln {
 
 namespace {
 
-using Json = GltfDocument::Json;
-
-constexpr std::size_t none = ~std::size_t{0};
+constexpr std::size_t no_node = ~std::size_t{0};
 constexpr std::size_t most_weights = 4096;  // every node may have its own
 
 /// Composes translation, rotation (a quaternion x, y, z, w of any length) and scale; absent ones are empty.
@@ -41,7 +39,7 @@ class SceneReader {
     compute_worlds();
     walk(roots);
     const bool has_placed_meshes =
-        std::any_of(nodes_.begin(), nodes_.end(), [](const Node& node) { return node.mesh != none; });
+        std::any_of(nodes_.begin(), nodes_.end(), [](const Node& node) { return node.mesh != no_node; });
     if (!has_placed_meshes) {
       for (std::size_t mesh = 0; mesh < document_.count("meshes"); ++mesh) place(mesh, Eigen::Matrix4d::Identity(), {});
       if (!placements_.empty()) warnings.push_back("No node places a mesh, so all meshes are read as they are");
@@ -56,7 +54,7 @@ class SceneReader {
   struct Node {
     Eigen::Matrix4d local = Eigen::Matrix4d::Identity(), world = Eigen::Matrix4d::Identity();
     std::vector<std::size_t> children;
-    std::size_t parent = none, mesh = none, skin = none;
+    std::size_t parent = no_node, mesh = no_node, skin = no_node;
     std::vector<double> weights;
   };
 
@@ -65,7 +63,7 @@ class SceneReader {
   void read_nodes() {
     nodes_.resize(document_.count("nodes"));
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      const Json& object = document_.element("nodes", i, "the file");
+      const GltfJson& object = document_.element("nodes", i, "the file");
       const std::string place = name_of(i);
       Node& node = nodes_[i];
       const std::vector<double> matrix = document_.numbers(object, "matrix", 16, place);
@@ -73,16 +71,16 @@ class SceneReader {
                                              document_.numbers(object, "rotation", 4, place),
                                              document_.numbers(object, "scale", 3, place))
                                   : Eigen::Matrix4d(Eigen::Map<const Eigen::Matrix4d>(matrix.data()));
-      node.mesh = document_.index(object, "mesh", place).value_or(none);
-      node.skin = document_.index(object, "skin", place).value_or(none);
+      node.mesh = document_.index(object, "mesh", place).value_or(no_node);
+      node.skin = document_.index(object, "skin", place).value_or(no_node);
       node.weights = document_.numbers(object, "weights", 0, place);
       node.children = document_.indices(object, "children", place);
-      if (node.mesh != none) document_.element("meshes", node.mesh, place);
+      if (node.mesh != no_node) document_.element("meshes", node.mesh, place);
     }
     for (std::size_t i = 0; i < nodes_.size(); ++i)
       for (const std::size_t child : nodes_[i].children) {
         document_.element("nodes", child, name_of(i));
-        if (nodes_[child].parent != none)
+        if (nodes_[child].parent != no_node)
           document_.fail(name_of(child) + " is a child of " + name_of(nodes_[child].parent) + " and of " + name_of(i),
                          "nodes of one parent each");
         nodes_[child].parent = i;
@@ -92,7 +90,7 @@ class SceneReader {
   std::vector<std::size_t> all_roots() const {
     std::vector<std::size_t> roots;
     for (std::size_t i = 0; i < nodes_.size(); ++i)
-      if (nodes_[i].parent == none) roots.push_back(i);
+      if (nodes_[i].parent == no_node) roots.push_back(i);
     return roots;
   }
 
@@ -108,7 +106,7 @@ class SceneReader {
     std::vector<std::size_t> roots = document_.indices(document_.element("scenes", scene, "the file"), "nodes", place);
     for (const std::size_t root : roots) {
       document_.element("nodes", root, place);
-      if (nodes_[root].parent != none)
+      if (nodes_[root].parent != no_node)
         document_.fail(place + " names " + name_of(root) + ", which is a child of " + name_of(nodes_[root].parent),
                        "nodes without a parent");
     }
@@ -134,7 +132,7 @@ class SceneReader {
     for_each(all_roots(), [&](std::size_t i) {
       Node& node = nodes_[i];
       is_reached[i] = true;
-      node.world = node.parent == none ? node.local : Eigen::Matrix4d(nodes_[node.parent].world * node.local);
+      node.world = node.parent == no_node ? node.local : Eigen::Matrix4d(nodes_[node.parent].world * node.local);
     });
     // Every node has one parent, so nodes that no root reaches form a ring.
     const auto ring = std::find(is_reached.begin(), is_reached.end(), false);
@@ -146,16 +144,16 @@ class SceneReader {
   void walk(const std::vector<std::size_t>& roots) {
     for_each(roots, [this](std::size_t i) {
       const Node& node = nodes_[i];
-      if (node.mesh == none) return;
+      if (node.mesh == no_node) return;
       const std::string place_name = name_of(i);
-      if (node.skin != none) {
+      if (node.skin != no_node) {
         place(node.mesh, node.world, node.weights);
         placements_.back().joints = joints(node.skin, place_name);
         ++skinned_;
         return;
       }
-      const Json& object = document_.element("nodes", i, "the file");
-      const Json* instancing = document_.extension(object, "EXT_mesh_gpu_instancing", place_name);
+      const GltfJson& object = document_.element("nodes", i, "the file");
+      const GltfJson* instancing = document_.extension(object, "EXT_mesh_gpu_instancing", place_name);
       if (instancing == nullptr)
         place(node.mesh, node.world, node.weights);
       else
@@ -165,7 +163,7 @@ class SceneReader {
   }
 
   void place(std::size_t mesh, const Eigen::Matrix4d& world, std::vector<double> weights) {
-    const Json& object = document_.element("meshes", mesh, "a node");
+    const GltfJson& object = document_.element("meshes", mesh, "a node");
     if (weights.empty()) weights = document_.numbers(object, "weights", 0, "mesh " + std::to_string(mesh));
     if (weights.size() > most_weights)
       document_.fail("mesh " + std::to_string(mesh) + " has " + std::to_string(weights.size()) + " morph weights",
@@ -184,7 +182,7 @@ class SceneReader {
 
   std::vector<Eigen::Matrix4d> read_joints(std::size_t skin, const std::string& user) {
     const std::string place_name = "skin " + std::to_string(skin);
-    const Json& object = document_.element("skins", skin, user);
+    const GltfJson& object = document_.element("skins", skin, user);
     std::vector<Eigen::Matrix4d> result;
     for (const std::size_t joint : document_.indices(object, "joints", place_name)) {
       document_.element("nodes", joint, place_name);
@@ -205,9 +203,9 @@ class SceneReader {
     return result;
   }
 
-  std::vector<Eigen::Matrix4d> instances(const Json& instancing, const std::string& place_name) {
+  std::vector<Eigen::Matrix4d> instances(const GltfJson& instancing, const std::string& place_name) {
     const std::string where = place_name + " (EXT_mesh_gpu_instancing)";
-    const Json* attributes = document_.object(instancing, "attributes", where);
+    const GltfJson* attributes = document_.object(instancing, "attributes", where);
     if (attributes == nullptr) document_.fail(where + " has no attributes", "TRANSLATION, ROTATION or SCALE");
     std::optional<std::size_t> count;
     const auto read = [&](const char* name, int components) {

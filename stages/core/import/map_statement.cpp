@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "import/named_file.h"
+#include "import/text_words.h"
 #include "import/wavefront_lines.h"
 
 namespace kiln {
@@ -75,14 +76,14 @@ class OptionReader {
 
   /// Reads one option; false if it is unknown, or its words are not what it takes.
   bool read_known(std::string_view option) {
-    if (is_keyword(option, "-s")) return read_numbers(state_.map.scale);
-    if (is_keyword(option, "-o")) return read_numbers(state_.map.offset);
-    if (is_keyword(option, "-t")) return read_turbulence();
-    if (is_keyword(option, "-mm")) return read_range();
-    if (is_keyword(option, "-clamp")) return read_switch(state_.map.clamp);
-    if (is_keyword(option, "-colorspace")) return is_keyword(next_word(state_.rest), "srgb");
+    if (same_word(option, "-s")) return read_numbers(state_.map.scale);
+    if (same_word(option, "-o")) return read_numbers(state_.map.offset);
+    if (same_word(option, "-t")) return read_turbulence();
+    if (same_word(option, "-mm")) return read_range();
+    if (same_word(option, "-clamp")) return read_switch(state_.map.clamp);
+    if (same_word(option, "-colorspace")) return same_word(next_word(state_.rest), "srgb");
     for (const PlainOption& plain : plain_options)
-      if (is_keyword(option, plain.name)) return pass(plain.kind);
+      if (same_word(option, plain.name)) return pass(plain.kind);
     return false;
   }
 
@@ -95,8 +96,8 @@ class OptionReader {
 
   bool read_switch(bool& value) {
     const std::string_view word = next_word(state_.rest);
-    value = is_keyword(word, "on");
-    return value || is_keyword(word, "off");
+    value = same_word(word, "on");
+    return value || same_word(word, "off");
   }
 
   /// Reads one to three numbers, of which the first two are for u and v.

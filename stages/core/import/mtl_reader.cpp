@@ -9,6 +9,7 @@
 
 #include "base/outputs.h"
 #include "import/map_statement.h"
+#include "import/text_words.h"
 #include "import/wavefront_lines.h"
 
 namespace kiln {
@@ -24,7 +25,7 @@ class LibraryReader {
   std::vector<LibraryMaterial> read() {
     for (std::string_view statement; lines_.next(statement);) {
       const std::string_view keyword = next_word(statement);
-      if (is_keyword(keyword, "newmtl")) {
+      if (same_word(keyword, "newmtl")) {
         begin_material(statement);
       } else if (!materials_.empty() && !keyword.empty()) {
         read_statement(keyword, statement);
@@ -42,14 +43,14 @@ class LibraryReader {
 
   void read_statement(std::string_view keyword, std::string_view rest) {
     LibraryMaterial& material = materials_.back();
-    if (is_keyword(keyword, "kd")) return read_diffuse(rest);
-    if (is_keyword(keyword, "map_kd")) return read_map(rest);
-    if (is_keyword(keyword, "d")) return read_dissolve(rest);
-    if (is_keyword(keyword, "tr")) return read_transparency(rest);
-    if (is_keyword(keyword, "ke")) return read_emission(rest);
-    if (is_keyword(keyword, "map_d")) {
+    if (same_word(keyword, "kd")) return read_diffuse(rest);
+    if (same_word(keyword, "map_kd")) return read_map(rest);
+    if (same_word(keyword, "d")) return read_dissolve(rest);
+    if (same_word(keyword, "tr")) return read_transparency(rest);
+    if (same_word(keyword, "ke")) return read_emission(rest);
+    if (same_word(keyword, "map_d")) {
       material.is_transparent = true;
-    } else if (is_keyword(keyword, "map_ke")) {
+    } else if (same_word(keyword, "map_ke")) {
       material.is_emissive = true;
     } else if (is_other_map(keyword)) {
       std::vector<std::string>& maps = material.other_maps;
@@ -60,7 +61,7 @@ class LibraryReader {
   static bool is_other_map(std::string_view keyword) {
     for (const char* name : {"map_ka", "map_ks", "map_ns", "map_bump", "map_pr", "map_pm", "map_ps", "map_refl",
                              "map_tr", "map_disp", "map_norm", "map_orm", "bump", "disp", "decal", "refl", "norm"})
-      if (is_keyword(keyword, name)) return true;
+      if (same_word(keyword, name)) return true;
     return false;
   }
 
@@ -68,9 +69,9 @@ class LibraryReader {
 
   /// Records the first fault of a material.
   void fault(const std::string& found, const std::string& expected,
-             const std::string& remedy = "change the material, or give --albedo a number") {
+             const std::string& help = "change the material, or give --albedo a number") {
     std::optional<BadInput>& kept = materials_.back().fault;
-    if (!kept) kept.emplace(place(), found, expected, remedy);
+    if (!kept) kept.emplace(place(), found, expected, help);
   }
 
   void read_diffuse(std::string_view rest) {
@@ -78,8 +79,8 @@ class LibraryReader {
     const std::string found = "Kd " + shown(text);
     std::string_view words = text;
     const std::string_view first = next_word(words);
-    if (is_keyword(first, "spectral")) return fault(found, "red, green and blue, not the file of a spectrum");
-    if (is_keyword(first, "xyz")) return fault(found, "red, green and blue, not CIE XYZ");
+    if (same_word(first, "spectral")) return fault(found, "red, green and blue, not the file of a spectrum");
+    if (same_word(first, "xyz")) return fault(found, "red, green and blue, not CIE XYZ");
     const auto values = numbers(text);
     if (!values || (values->size() != 1 && values->size() != 3))
       return fault(found, "one or three finite numbers, red, green and blue");
@@ -115,7 +116,7 @@ class LibraryReader {
   /// Reads `d`, opacity: 1 is fully opaque. -halo makes the middle of a shape more opaque than its rim.
   void read_dissolve(std::string_view rest) {
     std::string_view word = next_word(rest);
-    if (is_keyword(word, "-halo")) word = next_word(rest);
+    if (same_word(word, "-halo")) word = next_word(rest);
     const std::optional<double> value = parse_number(word);
     if (!value) return;
     materials_.back().is_transparent = *value < 1;

@@ -7,6 +7,7 @@
 #include "base/errors.h"
 #include "import/mtl_reader.h"
 #include "import/named_file.h"
+#include "import/text_words.h"
 #include "import/wavefront_lines.h"
 
 namespace kiln {
@@ -25,7 +26,7 @@ std::vector<std::string> split_names(std::string_view text) {
     const std::string name(next_name(text));
     if (name.empty()) continue;
     begun += (begun.empty() ? "" : " ") + name;
-    const bool is_whole = name.size() > 4 && is_keyword(std::string_view(name).substr(name.size() - 4), ".mtl");
+    const bool is_whole = name.size() > 4 && same_word(std::string_view(name).substr(name.size() - 4), ".mtl");
     if (!is_whole && !is_quoted) continue;
     names.push_back(std::move(begun));
     begun.clear();

@@ -13,6 +13,7 @@
 #include "import/obj_materials.h"
 #include "import/obj_vertices.h"
 #include "import/readers.h"
+#include "import/text_words.h"
 #include "import/wavefront_lines.h"
 
 namespace kiln {
@@ -79,25 +80,25 @@ class ObjReader {
       if (initial == 'f' || initial == 'F') return read_face(statement);
       if (initial == 's' || initial == 'S') return read_smoothing(statement);
     } else if (keyword.size() == 2) {
-      if (is_keyword(keyword, "vt")) return read_uv(statement);
-      if (is_keyword(keyword, "vn")) return read_normal(statement);
-      if (is_keyword(keyword, "fo")) return read_face(statement);  // of version 2.11
+      if (same_word(keyword, "vt")) return read_uv(statement);
+      if (same_word(keyword, "vn")) return read_normal(statement);
+      if (same_word(keyword, "fo")) return read_face(statement);  // of version 2.11
     }
     read_rare(keyword, statement);
   }
 
   void read_rare(std::string_view keyword, std::string_view rest) {
-    if (is_keyword(keyword, "usemtl")) {
+    if (same_word(keyword, "usemtl")) {
       material_ = materials_.use(rest);
-    } else if (is_keyword(keyword, "mtllib")) {
+    } else if (same_word(keyword, "mtllib")) {
       materials_.add_library(rest, lines_.line());
-    } else if (is_keyword(keyword, "#mrgb")) {
+    } else if (same_word(keyword, "#mrgb")) {
       vertices_.colors().add_polypaint(rest, mesh_.places.size());
     } else {
-      lines_of_shape_ += is_keyword(keyword, "l");
-      points_of_shape_ += is_keyword(keyword, "p");
-      surfaces_ += is_keyword(keyword, "surf");
-      calls_ += is_keyword(keyword, "call");
+      lines_of_shape_ += same_word(keyword, "l");
+      points_of_shape_ += same_word(keyword, "p");
+      surfaces_ += same_word(keyword, "surf");
+      calls_ += same_word(keyword, "call");
     }
   }
 
@@ -137,7 +138,7 @@ class ObjReader {
     if (group)
       smoothing_group_ = static_cast<std::uint32_t>(std::clamp<std::int64_t>(*group, 0, SourceMesh::none));
     else
-      smoothing_group_ = is_keyword(word, "on") ? 1 : 0;
+      smoothing_group_ = same_word(word, "on") ? 1 : 0;
   }
 
   /// Reads numbers up to a comment or the end. Returns their count; the first ones are in `numbers`.
@@ -314,7 +315,7 @@ class ObjReader {
     WavefrontLines lines(text_);
     for (std::string_view statement; lines.next(statement);) {
       std::string_view rest = statement;
-      if (is_keyword(next_word(rest), "v") && index-- == 0)
+      if (same_word(next_word(rest), "v") && index-- == 0)
         throw BadInput(place(lines.line()), "vertex " + shown(trimmed(rest)) + " " + found, expected, export_again);
     }
     throw BadInput(file_.string(), "a vertex " + found, expected, export_again);
@@ -323,7 +324,7 @@ class ObjReader {
   std::size_t count_statements(const Kind& kind) const {
     WavefrontLines lines(text_);
     std::size_t count = 0;
-    for (std::string_view statement; lines.next(statement);) count += is_keyword(next_word(statement), kind.keyword);
+    for (std::string_view statement; lines.next(statement);) count += same_word(next_word(statement), kind.keyword);
     return count;
   }
 

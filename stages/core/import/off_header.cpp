@@ -15,10 +15,10 @@ namespace kiln {
 
 namespace {
 
-class HeaderReader {
+class OffHeaderReader {
  public:
-  HeaderReader(const std::string& file, std::string_view text)
-      : file_(file), text_(text), words_(file, without_mark(text), 1, '#') {}
+  OffHeaderReader(const std::string& file, std::string_view text)
+      : file_(file), text_(text), words_(file, without_byte_order_mark(text), 1, '#') {}
 
   OffHeader read() {
     if (!words_.to_word()) throw BadInput(file_, "is empty", "an OFF file", "check what file it is");
@@ -34,10 +34,6 @@ class HeaderReader {
   }
 
  private:
-  static std::string_view without_mark(std::string_view text) {
-    return text.starts_with(byte_order_mark) ? text.substr(byte_order_mark.size()) : text;
-  }
-
   /// Reads the keyword; returns the word after it on the same line, or the number attached to it.
   std::string_view read_keyword(std::string_view word) {
     const auto end = std::ranges::search(word, std::string_view("OFF"), [](char a, char b) {
@@ -127,6 +123,6 @@ class HeaderReader {
 
 }  // namespace
 
-OffHeader read_off_header(const std::string& file, std::string_view text) { return HeaderReader(file, text).read(); }
+OffHeader read_off_header(const std::string& file, std::string_view text) { return OffHeaderReader(file, text).read(); }
 
 }  // namespace kiln

@@ -32,9 +32,9 @@ std::optional<PlyType> type_of(std::string_view name) {
   return found == names.end() ? std::nullopt : std::optional(found->second);
 }
 
-class HeaderReader {
+class PlyHeaderReader {
  public:
-  HeaderReader(const std::string& file, std::string_view text) : file_(file), text_(text), lines_(text) {}
+  PlyHeaderReader(const std::string& file, std::string_view text) : file_(file), text_(text), lines_(text) {}
 
   PlyHeader read() {
     check_first_line();
@@ -198,6 +198,6 @@ std::vector<std::size_t> PlyElement::find_group(std::initializer_list<std::vecto
   return {};
 }
 
-PlyHeader read_ply_header(const std::string& file, std::string_view text) { return HeaderReader(file, text).read(); }
+PlyHeader read_ply_header(const std::string& file, std::string_view text) { return PlyHeaderReader(file, text).read(); }
 
 }  // namespace kiln

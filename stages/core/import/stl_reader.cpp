@@ -23,8 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char expected_mesh[] = "a mesh of triangles";
-constexpr std::size_t header_size = 84, record_size = 50;
+constexpr char expected_triangles[] = "a mesh of triangles";
+constexpr std::size_t stl_header_size = 84, record_size = 50;
 
 /// Tells whether a text begins with a word, in any case of letters.
 bool has_word(std::string_view text, std::string_view word) {
@@ -155,7 +155,7 @@ class StlText {
   }
 
   void check_places() {
-    if (mesh_.faces.empty()) throw BadInput(file_, "has no facets", expected_mesh, export_again);
+    if (mesh_.faces.empty()) throw BadInput(file_, "has no facets", expected_triangles, export_again);
     mesh_.is_unwelded = true;
     const double largest = largest_used_coordinate(file_, mesh_, [&](std::uint32_t place) {
       const auto after = std::ranges::upper_bound(mesh_.faces, place, {}, &SourceMesh::Face::first_corner);
@@ -199,7 +199,7 @@ class StlBinary {
     mesh_.corners.resize(3 * count_);
     mesh_.faces.resize(count_);
     for (std::size_t i = 0; i < count_; ++i) {
-      const char* const record = text_.data() + header_size + i * record_size;
+      const char* const record = text_.data() + stl_header_size + i * record_size;
       for (std::size_t k = 0; k < 3; ++k) {
         const char* const vertex = record + 12 * (k + 1);  // after the normal
         mesh_.places[3 * i + k] = Eigen::Vector3f(little_endian<float>(vertex), little_endian<float>(vertex + 4),
@@ -210,7 +210,7 @@ class StlBinary {
       mesh_.faces[i].first_corner = static_cast<std::uint32_t>(3 * i);
       mesh_.faces[i].corner_count = 3;
     }
-    if (count_ == 0) throw BadInput(file_, "has no triangles", expected_mesh, export_again);
+    if (count_ == 0) throw BadInput(file_, "has no triangles", expected_triangles, export_again);
     mesh_.is_unwelded = true;
     mesh_.precision = float_precision(
         largest_used_coordinate(file_, mesh_, [&](std::uint32_t place) { return triangle_name(place / 3, count_); }));
@@ -221,13 +221,13 @@ class StlBinary {
  private:
   /// Returns the number of triangles by the header, or by the file's size where the two differ.
   std::size_t number_of_triangles() {
-    if (text_.size() < header_size)
+    if (text_.size() < stl_header_size)
       throw BadInput(
           file_, "is truncated: it has " + std::to_string(text_.size()) + " bytes",
           "84 bytes of header and 50 for each triangle of a binary STL file, or a text that begins with 'solid'",
           export_again);
     const std::uint64_t counted_there = little_endian<std::uint32_t>(text_.data() + 80);
-    const std::size_t data = text_.size() - header_size, records = data / record_size;
+    const std::size_t data = text_.size() - stl_header_size, records = data / record_size;
     const std::string numbers = "its header counts " + counted(counted_there, "triangle", "triangles") +
                                 ", and it holds " + std::to_string(records) +
                                 (data % record_size == 0 ? "" : " and " + counted(data % record_size, "byte", "bytes"));
@@ -248,7 +248,7 @@ class StlBinary {
   }
 
   std::uint16_t attribute(std::size_t triangle) const {
-    return little_endian<std::uint16_t>(text_.data() + header_size + triangle * record_size + 48);
+    return little_endian<std::uint16_t>(text_.data() + stl_header_size + triangle * record_size + 48);
   }
 
   /// Reads colours from the attribute bytes. Materialise's, which the header announces, have red in the lowest bits,
@@ -291,8 +291,8 @@ class StlBinary {
 };
 
 bool is_binary(const std::string& file, std::string_view text) {
-  if (text.size() > header_size &&
-      text.size() == header_size + record_size * std::size_t{little_endian<std::uint32_t>(text.data() + 80)})
+  if (text.size() > stl_header_size &&
+      text.size() == stl_header_size + record_size * std::size_t{little_endian<std::uint32_t>(text.data() + 80)})
     return true;
   const std::string_view beginning = text.substr(0, 65536);
   const std::string_view first = trimmed(beginning.substr(0, beginning.find_first_of("\r\n")));
@@ -300,7 +300,8 @@ bool is_binary(const std::string& file, std::string_view text) {
   const bool has_facets = has_word(beginning, "facet") && has_word(beginning, "vertex");
   const bool is_solid = first.size() >= 5 && same_word(first.substr(0, 5), "solid");
   if (has_facets || (!has_zeros && is_solid)) return false;
-  if (!has_zeros && std::ranges::all_of(beginning.substr(0, header_size), [](char c) { return c >= '\t' && c < 0x7f; }))
+  if (!has_zeros &&
+      std::ranges::all_of(beginning.substr(0, stl_header_size), [](char c) { return c >= '\t' && c < 0x7f; }))
     throw BadInput(file, "begins with " + in_quotes(first), "an STL file, ASCII or binary", "check what file it is");
   return true;
 }
@@ -309,11 +310,10 @@ bool is_binary(const std::string& file, std::string_view text) {
 
 SourceMesh read_stl(const fs::path& file) {
   const std::string name = file.string(), bytes = read_text(file);
-  if (bytes.empty()) throw BadInput(name, "is empty", expected_mesh, export_again);
+  if (bytes.empty()) throw BadInput(name, "is empty", expected_triangles, export_again);
   std::string_view text = bytes;
-  if (is_binary(name, text.starts_with(byte_order_mark) ? text.substr(byte_order_mark.size()) : text))
-    return StlBinary(file, name, text).read();
-  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+  if (is_binary(name, without_byte_order_mark(text))) return StlBinary(file, name, text).read();
+  text = without_byte_order_mark(text);
   return StlText(name, text).read();
 }
 

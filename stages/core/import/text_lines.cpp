@@ -18,10 +18,12 @@ std::string_view without_plus(std::string_view word) {
 
 }  // namespace
 
-TextLines::TextLines(std::string_view text) : rest_(text) {
-  if (rest_.starts_with(byte_order_mark)) rest_.remove_prefix(byte_order_mark.size());
-  find_feed();
+std::string_view without_byte_order_mark(std::string_view text) {
+  constexpr std::string_view mark = "\xef\xbb\xbf";
+  return text.starts_with(mark) ? text.substr(mark.size()) : text;
 }
+
+TextLines::TextLines(std::string_view text) : rest_(without_byte_order_mark(text)) { find_feed(); }
 
 void TextLines::find_feed() {
   const std::size_t feed = rest_.find('\n');

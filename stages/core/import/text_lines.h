@@ -8,8 +8,8 @@
 
 namespace kiln {
 
-/// Bytes that some programs write before a text in UTF-8.
-inline constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+/// Returns a text without the byte order mark of UTF-8 that may precede it.
+std::string_view without_byte_order_mark(std::string_view text);
 
 /// Lines of a text, ended by a line feed, a carriage return or both. A byte order mark is skipped.
 class TextLines {

@@ -15,19 +15,22 @@ namespace kiln {
 
 namespace {
 
-constexpr char remedy[] = "export the mesh again, with its texture coordinates, or leave --keep-uv out to make them";
+constexpr char export_with_uvs[] =
+    "export the mesh again, with its texture coordinates, or leave --keep-uv out to make them";
 
 void require_uvs(const std::string& name, const SourceMesh& source) {
-  if (source.uvs.empty()) throw BadInput(name, "has no texture coordinates", "a mesh with uvs", remedy);
+  if (source.uvs.empty()) throw BadInput(name, "has no texture coordinates", "a mesh with uvs", export_with_uvs);
   for (std::size_t f = 0; f < source.faces.size(); ++f) {
     const SourceMesh::Face& face = source.faces[f];
     const std::string place = face.line > 0 ? name + ":" + std::to_string(face.line) : name;
     const std::string found = face.line > 0 ? "a face" : "face " + std::to_string(f + 1);
     for (const SourceMesh::Corner& corner : source.corners_of(face)) {
       if (corner.uv == SourceMesh::none)
-        throw BadInput(place, found + " without texture coordinates", "texture coordinates at every corner", remedy);
+        throw BadInput(place, found + " without texture coordinates", "texture coordinates at every corner",
+                       export_with_uvs);
       if (!source.uvs[corner.uv].allFinite())
-        throw BadInput(place, found + " with a texture coordinate that is not a finite number", "finite uvs", remedy);
+        throw BadInput(place, found + " with a texture coordinate that is not a finite number", "finite uvs",
+                       export_with_uvs);
     }
   }
 }

@@ -45,11 +45,6 @@ void WavefrontLines::join(std::string_view& statement) {
   statement = joined_;
 }
 
-bool is_keyword(std::string_view word, std::string_view lower_case) {
-  return word.size() == lower_case.size() &&
-         std::equal(word.begin(), word.end(), lower_case.begin(), [](char a, char b) { return in_lower_case(a) == b; });
-}
-
 std::string_view without_comment(std::string_view numbers) {
   std::size_t position = numbers.find('#');
   while (position != std::string_view::npos && is_no_number(numbers, position))

@@ -33,9 +33,6 @@ class WavefrontLines {
   bool ends_in_line_end_ = false;
 };
 
-/// Tells whether a word is a keyword, given in lower case, in any case of letters.
-bool is_keyword(std::string_view word, std::string_view lower_case);
-
 /// Returns a statement of numbers without the comment after it. A # within "1.#QNAN" and the like, which Windows writes
 /// for NaN, does not begin a comment.
 std::string_view without_comment(std::string_view numbers);

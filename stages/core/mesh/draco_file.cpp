@@ -21,7 +21,7 @@ namespace kiln {
 
 namespace {
 
-constexpr char remedy[] = "run the stage that writes it again";
+constexpr char write_again[] = "run the stage that writes it again";
 constexpr char name_entry[] = "name";  // key in an attribute's metadata
 
 template <class Vector>
@@ -145,7 +145,7 @@ void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
 
 /// Decodes a mesh; `name` appears in messages.
 std::unique_ptr<draco::Mesh> decode(const std::string& bytes, const std::string& name) {
-  return decode_draco({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, name, remedy);
+  return decode_draco({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, name, write_again);
 }
 
 TriangleMesh mesh_of(const draco::Mesh& source, const std::string& name) {
@@ -159,10 +159,10 @@ TriangleMesh mesh_of(const draco::Mesh& source, const std::string& name) {
     for (int corner = 0; corner < 3; ++corner)
       mesh.triangles[i][corner] = source.face(draco::FaceIndex(i))[corner].value();
   if (mesh.triangles.empty() || mesh.positions.empty())
-    throw BadInput(name, "has no faces", "a Draco mesh of triangles", remedy);
+    throw BadInput(name, "has no faces", "a Draco mesh of triangles", write_again);
   for (const Eigen::Vector3f& position : mesh.positions)
     if (!position.allFinite())
-      throw BadInput(name, "has a coordinate that is not a finite number", "finite coordinates", remedy);
+      throw BadInput(name, "has a coordinate that is not a finite number", "finite coordinates", write_again);
   mesh.frame.origin = draco_origin(source);
   normalise_size(mesh);
   for (Eigen::Vector3f& normal : mesh.normals)
@@ -237,7 +237,7 @@ AttributedMesh load_attributed_draco(const std::filesystem::path& file) {
     if (metadata == nullptr || !metadata->GetEntryString(name_entry, &attribute.name) || !is_integer ||
         source.num_components() > 4)
       throw BadInput(file.string(), "has a generic attribute without a name or not of unsigned integers",
-                     "a mesh of kiln-bake --per-vertex", remedy);
+                     "a mesh of kiln-bake --per-vertex", write_again);
     attribute.components = source.num_components();
     attribute.bits = source.data_type() == draco::DT_UINT8 ? 8 : 16;
     attribute.unique_id = source.unique_id();

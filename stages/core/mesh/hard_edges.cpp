@@ -16,14 +16,14 @@ namespace {
 constexpr double radians_per_degree = 3.14159265358979323846 / 180;
 
 /// Edge that two triangles share, and their sides along it, which run in opposite directions.
-struct SharedEdge {
+struct ManifoldEdge {
   EdgeKey key;
   std::uint32_t first, second;
 };
 
 /// Finds the shared edges, in the order of their keys. Edges of one triangle, and of more than two, are left out.
-std::vector<SharedEdge> shared_edges(const TriangleMesh& mesh) {
-  std::vector<SharedEdge> shared;
+std::vector<ManifoldEdge> shared_edges(const TriangleMesh& mesh) {
+  std::vector<ManifoldEdge> shared;
   TriangleEdges(mesh.triangles).for_each([&](std::span<const std::uint32_t> sides) {
     if (sides.size() == 2 && run_opposite(mesh.triangles, sides[0], sides[1]))
       shared.push_back({edge_at(mesh.triangles, sides[0]), sides[0], sides[1]});
@@ -34,7 +34,7 @@ std::vector<SharedEdge> shared_edges(const TriangleMesh& mesh) {
 template <class IsHard>
 HardEdges edges_where(const TriangleMesh& mesh, const IsHard& is_hard) {
   HardEdges hard;
-  for (const SharedEdge& edge : shared_edges(mesh))
+  for (const ManifoldEdge& edge : shared_edges(mesh))
     if (is_hard(edge)) hard.push_back(edge.key);
   return hard;
 }
@@ -63,7 +63,7 @@ Eigen::Vector3f unit_or(const Eigen::Vector3d& sum, const Eigen::Vector3f& other
 
 HardEdges hard_edges_by_angle(const TriangleMesh& mesh, double degrees) {
   const double least_cosine = std::cos(degrees * radians_per_degree);
-  return edges_where(mesh, [&](const SharedEdge& edge) {
+  return edges_where(mesh, [&](const ManifoldEdge& edge) {
     const Eigen::Vector3f a = face_normal(mesh, edge.first / 3), b = face_normal(mesh, edge.second / 3);
     return a.cast<double>().dot(b.cast<double>()) < least_cosine;
   });
@@ -73,14 +73,14 @@ HardEdges hard_edges_of_normals(const TriangleMesh& mesh, double degrees) {
   if (mesh.corner_normals.empty()) return {};
   const auto least_cosine = static_cast<float>(std::cos(degrees * radians_per_degree));
   const auto normal = [&](std::uint32_t corner) { return corner_normal(mesh, corner / 3, corner % 3); };
-  return edges_where(mesh, [&](const SharedEdge& edge) {
+  return edges_where(mesh, [&](const ManifoldEdge& edge) {
     return normal(edge.first).dot(normal(next_corner(edge.second))) < least_cosine ||
            normal(next_corner(edge.first)).dot(normal(edge.second)) < least_cosine;
   });
 }
 
 HardEdges hard_edges_of_groups(const TriangleMesh& mesh, const std::vector<std::uint32_t>& group_of_triangle) {
-  return edges_where(mesh, [&](const SharedEdge& edge) {
+  return edges_where(mesh, [&](const ManifoldEdge& edge) {
     const std::uint32_t a = group_of_triangle[edge.first / 3], b = group_of_triangle[edge.second / 3];
     return a != b || a == 0;
   });
@@ -90,7 +90,7 @@ void compute_normals_between(TriangleMesh& mesh, const HardEdges& hard_edges) {
   if (hard_edges.empty()) return compute_vertex_normals(mesh);
   // Corners that are connected across smooth edges form one sector of their vertex.
   DisjointSets sectors(3 * mesh.triangles.size());
-  for (const SharedEdge& edge : shared_edges(mesh)) {
+  for (const ManifoldEdge& edge : shared_edges(mesh)) {
     if (std::binary_search(hard_edges.begin(), hard_edges.end(), edge.key)) continue;
     sectors.join(edge.first, next_corner(edge.second));
     sectors.join(next_corner(edge.first), edge.second);

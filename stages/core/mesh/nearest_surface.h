@@ -51,6 +51,9 @@ class NearestSurface {
 
  private:
   struct Hierarchy;
+  template <class Number, class Counts, class MayCount>
+  void search(const Eigen::Vector3d& point, std::uint32_t hint, double within, Hit& hit, const Counts& counts,
+              const MayCount& may_count) const;
   template <class Counts, class MayCount>
   void search(const Eigen::Vector3d& point, std::uint32_t hint, double within, Hit& hit, const Counts& counts,
               const MayCount& may_count) const;

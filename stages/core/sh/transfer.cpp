@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sh/basis.h"
+#include "sh/light_prior.h"
 
 namespace kiln {
 
@@ -89,12 +90,6 @@ SampledError sampled_relative_l2(std::span<const TransferVectors> a, std::span<c
 SampledError sampled_relighting_error(std::span<const TransferVectors> a, std::span<const TransferVectors> b,
                                       std::size_t population) {
   return sampled_error(a, b, lighting_prior(bands_of(b.front())), population);
-}
-
-std::vector<double> lighting_prior(int bands) {
-  std::vector<double> prior(bands);
-  for (int l = 0; l < bands; ++l) prior[l] = 1.0 / ((l + 1.0) * (l + 1.0));
-  return prior;
 }
 
 }  // namespace kiln

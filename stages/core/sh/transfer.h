@@ -36,7 +36,8 @@ double relative_l2(const TransferVectors& a, const TransferVectors& b);
 /// Returns relative_l2 over all channels together.
 double relative_l2(std::span<const TransferVectors> a, std::span<const TransferVectors> b);
 
-/// Returns the expected relighting error sqrt(sum d'Sd / sum t'St) with d = a - b, t = b and S = lighting_prior.
+/// Returns E, the expected relighting error sqrt(sum d'Sd / sum t'St) with d = a - b, t = b and S = lighting_prior
+/// (sh/light_prior.h; docs/error.md says what it predicts).
 double expected_relighting_error(const TransferVectors& a, const TransferVectors& b);
 
 /// Returns expected_relighting_error over all channels together.
@@ -58,10 +59,5 @@ SampledError sampled_relative_l2(std::span<const TransferVectors> a, std::span<c
 /// Estimates expected_relighting_error of `population` receivers likewise.
 SampledError sampled_relighting_error(std::span<const TransferVectors> a, std::span<const TransferVectors> b,
                                       std::size_t population);
-
-/// Returns the diagonal of the second moment of lighting coefficients, by band: (l + 1)^-2. The power spectra of
-/// photographed environments fall about as the square of the frequency ([Dror 2004], section 4); only the ratios
-/// between bands matter.
-std::vector<double> lighting_prior(int bands);
 
 }  // namespace kiln

@@ -19,7 +19,6 @@ const char* const script_grammar =
 
 namespace {
 
-using Kind = ScriptStep::Kind;
 using Words = std::vector<std::string>;
 
 /// Reads a number within a range, or nothing.
@@ -43,7 +42,7 @@ bool read_numbers(const Words& words, std::size_t first, double lowest, double h
 
 bool read_keys(const Words& words, std::vector<ScriptStep>& steps) {
   for (std::size_t k = 1; k < words.size(); ++k) {
-    ScriptStep step{.kind = Kind::key, .key = key_named(words[k]), .file = {}};
+    ScriptStep step{.kind = ScriptStep::Kind::key, .key = key_named(words[k]), .file = {}};
     if (step.key == 0) return false;
     steps.push_back(step);
   }
@@ -56,25 +55,25 @@ bool read_step(const Words& words, std::vector<ScriptStep>& steps) {
   ScriptStep step;
   bool good = false;
   if (words[0] == "drag" && words.size() == 4) {
-    step.kind = Kind::drag;
+    step.kind = ScriptStep::Kind::drag;
     step.what = words[1] == "left" ? Drag::orbit : words[1] == "middle" ? Drag::pan : Drag::light;
     good = (words[1] == "left" || words[1] == "middle" || words[1] == "right") &&
            read_numbers(words, 2, -10000, 10000, step.x, &step.y);
   } else if (words[0] == "wheel") {
-    step.kind = Kind::wheel;
+    step.kind = ScriptStep::Kind::wheel;
     good = read_numbers(words, 1, -1000, 1000, step.x, nullptr);
   } else if (words[0] == "resize") {
-    step.kind = Kind::resize;
+    step.kind = ScriptStep::Kind::resize;
     good = read_numbers(words, 1, 64, 8192, step.x, &step.y);
   } else if (words[0] == "frames") {
-    step.kind = Kind::frames;
+    step.kind = ScriptStep::Kind::frames;
     good = read_numbers(words, 1, 1, 100000, step.x, nullptr);
   } else if (words[0] == "screenshot" || words[0] == "window") {
-    step.kind = words[0] == "window" ? Kind::window : Kind::screenshot;
+    step.kind = words[0] == "window" ? ScriptStep::Kind::window : ScriptStep::Kind::screenshot;
     good = words.size() == 2 && words[1].ends_with(".png");
     step.file = words.back();
   } else if (words[0] == "reload") {
-    step.kind = Kind::reload;
+    step.kind = ScriptStep::Kind::reload;
     good = words.size() == 1;
   }
   if (good) steps.push_back(step);

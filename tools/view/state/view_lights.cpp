@@ -15,11 +15,9 @@ namespace kiln {
 
 namespace {
 
-using Kind = LightSpec::Kind;
-
 constexpr double degree = std::numbers::pi / 180;
 
-bool has_direction(const LightSpec& spec) { return spec.kind != Kind::ambient; }
+bool has_direction(const LightSpec& spec) { return spec.kind != LightSpec::Kind::ambient; }
 
 Eigen::Vector3d from_centre(const LightSpec& ball, const BoundingBox& box) {
   return Eigen::Vector3d(ball.position.data()) - box.centre().cast<double>();
@@ -29,7 +27,7 @@ Eigen::Vector3d from_centre(const LightSpec& ball, const BoundingBox& box) {
 void move_light(LightSpec& spec, double azimuth_degrees, double elevation_degrees, const BoundingBox& box) {
   spec.azimuth_degrees = azimuth_degrees;
   spec.elevation_degrees = elevation_degrees;
-  if (spec.kind != Kind::sphere) return;
+  if (spec.kind != LightSpec::Kind::sphere) return;
   const Eigen::Vector3d centre = box.centre().cast<double>();
   // Keeps the ball's own radiance: `colour` is the radiance of a white surface at the origin, which is now nearer or
   // farther.
@@ -48,7 +46,7 @@ LightSpec preset_light(const LightChoice& choice, const BoundingBox& box) {
   spec.elevation_degrees = choice.elevation_degrees;
   switch (choice.preset) {
     case LightPreset::ball: {
-      spec.kind = Kind::sphere;
+      spec.kind = LightSpec::Kind::sphere;
       const double distance = 0.8 * static_cast<double>(box.diagonal());
       const Eigen::Vector3d place =
           box.centre().cast<double>() +
@@ -61,12 +59,12 @@ LightSpec preset_light(const LightChoice& choice, const BoundingBox& box) {
       break;
     }
     case LightPreset::hemisphere:
-      spec.kind = Kind::hemisphere;
+      spec.kind = LightSpec::Kind::hemisphere;
       spec.colour = {0.75f, 0.9f, 1.1f};
       spec.ground = {0.3f, 0.22f, 0.15f};
       break;
     case LightPreset::ambient:
-      spec.kind = Kind::ambient;
+      spec.kind = LightSpec::Kind::ambient;
       break;
     default:
       break;
@@ -80,13 +78,13 @@ std::vector<LightSpec>::const_iterator main_light(const std::vector<LightSpec>& 
 
 std::string light_name(const LightSpec& spec) {
   switch (spec.kind) {
-    case Kind::cone:
+    case LightSpec::Kind::cone:
       return "cone";
-    case Kind::sphere:
+    case LightSpec::Kind::sphere:
       return "ball";
-    case Kind::hemisphere:
+    case LightSpec::Kind::hemisphere:
       return "hemisphere";
-    case Kind::ambient:
+    case LightSpec::Kind::ambient:
       return "ambient";
     default:
       return "directional";
@@ -101,7 +99,7 @@ LightChoice given_choice(const GivenLights& given, LightWindow window) {
   choice.environment = given.environment.has_value();
   const auto light = main_light(given.specs);
   if (light == given.specs.end()) return choice;
-  if (light->kind == Kind::sphere) {
+  if (light->kind == LightSpec::Kind::sphere) {
     const Eigen::Vector3d place = from_centre(*light, given.box);
     choice.azimuth_degrees = std::atan2(place.x(), place.z()) / degree;
     choice.elevation_degrees = std::atan2(place.y(), std::hypot(place.x(), place.z())) / degree;
