@@ -68,6 +68,12 @@ for stage in $stages; do
 done
 grep -rnE '^#include' "$source_folder/runtime/include" | grep -vE '#include (<[a-z_]+>|"kiln/)' && fault "installed headers include the house"
 
+# The house has one namespace: no two headers define a type of the same name, or a program that links both is wrong.
+types=$(cd "$source_folder" && grep -rhoE '^(struct|class|enum class) [A-Za-z]+[^;]*\{' stages runtime tools --include=*.h --exclude-dir=include |
+  sed -E 's/alignas\([0-9]+\) //' | awk '{ print $1 == "enum" ? $3 : $2 }' | sort)
+[ "$(wc -l <<< "$types")" -gt 200 ] || fault "found few types in headers"
+for type in $(uniq -d <<< "$types"); do fault "two headers define $type"; done
+
 # Lists the headers that files include, and those that the house's own include in turn, as "HEADER FILE": FILE includes it.
 reached_headers() {
   local level=("$@") next header file root

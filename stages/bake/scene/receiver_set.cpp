@@ -45,7 +45,7 @@ void FillPlan::apply(std::span<float> plane) const {
 
 std::vector<std::uint8_t> ReceiverSet::covered() const {
   std::vector<std::uint8_t> flags(static_cast<std::size_t>(width) * height, 0);
-  for (std::uint32_t texel : texels) flags[texel] = 1;
+  for (const std::uint32_t slot : slots) flags[slot] = 1;
   return flags;
 }
 
