@@ -252,11 +252,16 @@ ErrorSplit error_causes(const SplitInput& input, const ProgressFunction& progres
     beyond += tail;
     whole += sums.difference(compressed.of(s), seen.of(s), length) + tail;
     geometry += sums.difference(stood.of(s), seen.of(s), length);
+    compression += sums.difference(compressed.of(s), stored.of(s), length);
+    if (samples.lookups[s].at_border) {
+      // Gutters are filled and both sides made equal, which mends part of what the texels there cost.
+      seams += sums.difference(stored.of(s), stood.of(s), length);
+      continue;
+    }
     filtering += sums.difference(at_texels.of(s), stood.of(s), length);
     directions += sums.difference(with_directions.of(s), at_texels.of(s), length);
     bits += sums.difference(with_bits.of(s), with_directions.of(s), length);
-    (samples.lookups[s].at_border ? seams : visibility) += sums.difference(stored.of(s), with_bits.of(s), length);
-    compression += sums.difference(compressed.of(s), stored.of(s), length);
+    visibility += sums.difference(stored.of(s), with_bits.of(s), length);
   }
   const auto error = [&](double sum) { return norm > 0 ? std::sqrt(sum / norm) : 0; };
   split.total = error(whole);

@@ -54,8 +54,8 @@ struct SplitInput {
 /// - `texels`: there, or looked up bilinearly between the texels' points;
 /// - `directions`: by the reference's directions, or by the bake's;
 /// - `bits`: as computed, or rounded to the planes' ranges;
-/// - `visibility`: by rays, or as stored, at points whose texels lie inside charts;
-/// - `seams`: the same at the borders of charts, where seams are made equal;
+/// - `visibility`: by rays, or as stored;
+/// - `seams`: in place of those four, from the point to what is stored, where texels reach over the border of a chart;
 /// - `compression`: as baked, or as compressed;
 /// - `bands`: what bands beyond the asset's would add, up to those of the result.
 /// Rays are Embree's. Throws BadInput where a texture of the asset cannot be looked up.

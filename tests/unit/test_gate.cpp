@@ -6,6 +6,7 @@
 #include <random>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "image/image_file.h"
 #include "kiln/gate/comparison_page.h"
 #include "kiln/gate/gate.h"

@@ -341,8 +341,11 @@ TEST(Reference, LightBouncesAsOftenAsTheViewSays) {
   ReferenceView view;
   view.width = view.height = 4;
   view.supersample = 2;
-  view.camera = make_camera(std::vector<Eigen::Vector3f>{{0.5f, 0, 0.5f}, {1.5f, 0, 1.5f}, {1, 0.1f, 1}},
-                            {.azimuth_degrees = 90, .elevation_degrees = 85}, view.width, view.height);
+  CameraSettings from_above;
+  from_above.azimuth_degrees = 90;
+  from_above.elevation_degrees = 85;
+  view.camera = make_camera(std::vector<Eigen::Vector3f>{{0.5f, 0, 0.5f}, {1.5f, 0, 1.5f}, {1, 0.1f, 1}}, from_above,
+                            view.width, view.height);
   view.albedo = 1;
   view.bands = 2;
   const LightSpec lights[] = {{.kind = LightSpec::Kind::ambient}};

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.h"
+#include "base/json.h"
 #include "kiln/sweep/sweep_grid.h"
 #include "kiln/sweep/sweep_page.h"
 #include "kiln/sweep/sweep_result.h"

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "base/command_line.h"
+#include "base/json.h"
 #include "base/stopwatch.h"
 #include "lights/light_command.h"
 #include "view/viewer.h"

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/json.h"
 #include "kiln/gate/metric_changes.h"
 #include "kiln/gate/picture_change.h"
 

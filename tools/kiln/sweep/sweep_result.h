@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/json.h"
 #include "kiln/sweep/sweep_grid.h"
 
 namespace kiln {
