@@ -308,6 +308,11 @@ Image<std::uint8_t> cover_picture(const Report& report) {
   return cropped(shown_radiance(light.asset), crop_of(light));
 }
 
+std::array<int, 4> cover_place(const Report& report) {
+  const Crop crop = crop_of(report.comparison.lights.front());
+  return {crop.left, crop.bottom, crop.width, crop.height};
+}
+
 std::string page_html(const AssetFolder& asset, const Report& report, const Json& metrics,
                       const fs::path& scratch_folder) {
   const fs::path scratch = scratch_folder / "picture.png";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 
@@ -18,5 +19,8 @@ std::string page_html(const AssetFolder& asset, const Report& report, const Json
 
 /// Returns the asset under the report's first light, cropped to it, for an index of assets.
 Image<std::uint8_t> cover_picture(const Report& report);
+
+/// Returns where that lies in the whole picture: left and bottom pixel, width, height.
+std::array<int, 4> cover_place(const Report& report);
 
 }  // namespace kiln

@@ -33,6 +33,7 @@ bool holds(const Json& record, const fs::path& folder, const std::vector<std::st
 Json save_report(OutputSet& outputs, const std::string& page_name, const AssetFolder& asset, const Report& report,
                  Json result) {
   add_records(result, asset);
+  result["cover"] = cover_place(report);  // left, bottom, width, height: where report.png lies in the whole picture
   const Json metrics = all_metrics(asset, result);
   outputs.add_text(page_name, page_html(asset, report, metrics, outputs.staging()));
   write_png(outputs.add(report_cover), cover_picture(report));

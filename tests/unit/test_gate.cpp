@@ -87,6 +87,22 @@ Image<std::uint8_t> grey_noise(double mean, double sigma, int seed) {
   return image;
 }
 
+TEST(MetricChanges, BelowOnePercentAreSmall) {
+  const Json was = metrics_with(0.0100, 0.02, 0);
+  EXPECT_EQ(kind_of(compare_metrics(was, metrics_with(0.01009, 0.02, 0), {}), "simplify.hausdorff"), ChangeKind::small);
+  EXPECT_EQ(kind_of(compare_metrics(was, metrics_with(0.01011, 0.02, 0), {}), "simplify.hausdorff"), ChangeKind::worse);
+}
+
+TEST(PictureChanges, AlignCroppedPictures) {
+  Image<std::uint8_t> was(4, 4, 4, 100), now(5, 4, 4, 100);
+  const PicturePlace was_place{10, 20, 4, 4}, now_place{9, 20, 5, 4}, place = box_around(was_place, now_place);
+  EXPECT_EQ(place, (PicturePlace{9, 20, 5, 4}));
+  const Image<std::uint8_t> larger = enlarged_to(was, was_place, place);
+  EXPECT_EQ(larger.at(0, 0, 3), 0);
+  EXPECT_EQ(larger.at(1, 0, 3), 100);
+  EXPECT_EQ(measure_change(larger, enlarged_to(now, now_place, place)).largest, 100);  // the column that only one has
+}
+
 TEST(PictureChanges, TellDriftFromNoise) {
   const Image<std::uint8_t> was = grey_noise(120, 2, 1);
   EXPECT_TRUE(measure_change(was, was).is_same());

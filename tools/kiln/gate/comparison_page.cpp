@@ -46,8 +46,8 @@ struct KindName {
 };
 constexpr KindName kinds[] = {{ChangeKind::worse, "worse", "bad"},  {ChangeKind::better, "better", "good"},
                               {ChangeKind::gone, "gone", ""},       {ChangeKind::added, "added", ""},
-                              {ChangeKind::changed, "changed", ""}, {ChangeKind::noise, "noise", "note"},
-                              {ChangeKind::same, "same", "note"}};
+                              {ChangeKind::changed, "changed", ""}, {ChangeKind::small, "small", "note"},
+                              {ChangeKind::noise, "noise", "note"}, {ChangeKind::same, "same", "note"}};
 
 const KindName& named(ChangeKind kind) {
   return *std::ranges::find_if(kinds, [&](const KindName& each) { return each.kind == kind; });
@@ -64,7 +64,7 @@ std::string change_row(const AssetGate& asset, const MetricChange& change) {
   const bool has_was = change.kind != ChangeKind::added, has_now = change.kind != ChangeKind::gone;
   const std::string stage = change.metric.substr(0, change.metric.find('.'));
   return fmt::format(
-      "<tr><td title='{}'>{}: {}<td class=number>{}<td class=number>{}<td class=number>{}<td class='{}'>{}<td>{}\n",
+      "<tr title='{}'><td>{}: {}<td class=number>{}<td class=number>{}<td class=number>{}<td class='{}'>{}<td>{}\n",
       html_escaped(change.metric), html_escaped(stage), metric_label(change.metric),
       has_was ? metric_value(change.metric, Json(change.was)) : "",
       has_now ? metric_value(change.metric, Json(change.now)) : "",
@@ -75,10 +75,15 @@ std::string change_row(const AssetGate& asset, const MetricChange& change) {
 std::string rows_of(const AssetGate& asset, bool quiet_ones) {
   std::string rows;
   for (const KindName& kind : kinds) {
-    const bool is_quiet = kind.kind == ChangeKind::same || kind.kind == ChangeKind::noise;
+    const bool is_quiet =
+        kind.kind == ChangeKind::same || kind.kind == ChangeKind::noise || kind.kind == ChangeKind::small;
     if (is_quiet != quiet_ones) continue;
-    for (const MetricChange& change : asset.changes)
-      if (change.kind == kind.kind) rows += change_row(asset, change);
+    std::vector<MetricChange> changes;
+    std::ranges::copy_if(asset.changes, std::back_inserter(changes),
+                         [&](const MetricChange& change) { return change.kind == kind.kind; });
+    std::ranges::stable_sort(changes, std::greater<>(),
+                             [](const MetricChange& change) { return std::abs(change.relative()); });
+    for (const MetricChange& change : changes) rows += change_row(asset, change);
   }
   return rows;
 }
@@ -129,7 +134,8 @@ std::string section(const AssetGate& asset) {
   if (!asset.has_baseline) return html + "<p class=note>Not in the baseline: new.</p></section>\n";
   const std::string loud = rows_of(asset, false), quiet = rows_of(asset, true);
   html += loud.empty() ? "<p class=note>No metric changed.</p>\n" : table_of(loud);
-  if (!quiet.empty()) html += "<details><summary>Unchanged, or noise</summary>\n" + table_of(quiet) + "</details>\n";
+  if (!quiet.empty())
+    html += "<details><summary>Unchanged, small changes, and noise</summary>\n" + table_of(quiet) + "</details>\n";
   return html + "</section>\n";
 }
 

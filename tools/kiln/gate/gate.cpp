@@ -30,6 +30,22 @@ Json read_metrics(const fs::path& file) {
   return metrics;
 }
 
+Json whole_picture(const Json& metrics) {
+  return metrics.value("report", Json::object()).value("settings", Json::object()).value("picture-size", Json());
+}
+
+/// Returns where a picture lies in the whole one; nothing where its metrics do not say, or of another picture.
+std::optional<PicturePlace> place_of(const Json& metrics, const Image<std::uint8_t>& picture) {
+  const Json place = metrics.value("report", Json::object()).value("cover", Json());
+  if (!place.is_array() || place.size() != 4 || !std::ranges::all_of(place, [](const Json& each) {
+        return each.is_number_integer() && each.get<std::int64_t>() >= 0 && each.get<std::int64_t>() < 65536;
+      }))
+    return std::nullopt;
+  const auto box = place.get<PicturePlace>();
+  if (box[2] != picture.width() || box[3] != picture.height()) return std::nullopt;
+  return box;
+}
+
 void compare_pictures(AssetGate& asset, const fs::path& now_file, const fs::path& was_file, const fs::path& pictures) {
   if (!is_file(now_file)) {
     asset.picture_fault = "there is no picture of this build, " + std::string(report_cover);
@@ -39,7 +55,14 @@ void compare_pictures(AssetGate& asset, const fs::path& now_file, const fs::path
     asset.picture_fault = "the baseline has no picture, " + std::string(report_cover);
     return;
   }
-  const Image<std::uint8_t> was = read_png8(was_file), now = read_png8(now_file);
+  Image<std::uint8_t> was = read_png8(was_file), now = read_png8(now_file);
+  // Pictures are cropped to what they show, so their places in the whole picture may differ a little.
+  if (const auto was_place = place_of(asset.baseline, was), now_place = place_of(asset.metrics, now);
+      was_place && now_place && whole_picture(asset.baseline) == whole_picture(asset.metrics)) {
+    const PicturePlace place = box_around(*was_place, *now_place);
+    was = enlarged_to(was, *was_place, place);
+    now = enlarged_to(now, *now_place, place);
+  }
   if (was.width() != now.width() || was.height() != now.height() || was.channels() != now.channels()) {
     asset.picture_fault =
         fmt::format("the baseline's picture has {} x {} pixels of {} channels, this one {} x {} of {}", was.width(),

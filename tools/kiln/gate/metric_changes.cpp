@@ -51,6 +51,7 @@ ChangeKind kind_of(const MetricChange& change, const ChangeSettings& settings) {
   const bool is_cost = is_machine_cost(change.metric);
   if (is_cost && std::abs(change.relative()) < settings.time_change) return ChangeKind::noise;
   if (!is_cost && std::abs(change.now - change.was) <= change.uncertainty) return ChangeKind::noise;
+  if (std::abs(change.relative()) < settings.least_change) return ChangeKind::small;
   switch (better_direction(change.metric)) {
     case Better::lower:
       return change.now < change.was ? ChangeKind::better : ChangeKind::worse;

@@ -14,6 +14,7 @@ namespace kiln {
 enum class ChangeKind {
   same,     ///< equal to nine digits
   noise,    ///< both lie within each other's measured uncertainty
+  small,    ///< changed by less than ChangeSettings::least_change
   better,   ///< changed in the direction that is better
   worse,    ///< changed in the direction that is worse
   changed,  ///< a fact of which neither direction is better, such as a number of triangles
@@ -33,8 +34,9 @@ struct MetricChange {
 };
 
 struct ChangeSettings {
-  bool same_run = false;     ///< whether both builds ran on one machine in one run, so that their times compare
-  double time_change = 0.1;  ///< least relative change of a time that counts; below it is noise
+  bool same_run = false;       ///< whether both builds ran on one machine in one run, so that their times compare
+  double least_change = 0.01;  ///< least relative change of other metrics that counts; below it is small
+  double time_change = 0.1;    ///< least relative change of a time that counts; below it is noise
 };
 
 /// Returns every number and boolean of `metrics` (content of metrics.json) as "STAGE.METRIC", in the file's order;

@@ -63,6 +63,20 @@ PictureChange measure_change(const Image<std::uint8_t>& was, const Image<std::ui
   return change;
 }
 
+Image<std::uint8_t> enlarged_to(const Image<std::uint8_t>& picture, const PicturePlace& own,
+                                const PicturePlace& place) {
+  Image<std::uint8_t> larger(place[2], place[3], picture.channels());
+  for (int j = 0; j < picture.height(); ++j)
+    for (int i = 0; i < picture.width(); ++i)
+      std::ranges::copy(picture.pixel(i, j), larger.pixel(own[0] - place[0] + i, own[1] - place[1] + j).begin());
+  return larger;
+}
+
+PicturePlace box_around(const PicturePlace& a, const PicturePlace& b) {
+  const int left = std::min(a[0], b[0]), bottom = std::min(a[1], b[1]);
+  return {left, bottom, std::max(a[0] + a[2], b[0] + b[2]) - left, std::max(a[1] + a[3], b[1] + b[3]) - bottom};
+}
+
 Image<std::uint8_t> enlarged_difference(const Image<std::uint8_t>& was, const Image<std::uint8_t>& now) {
   constexpr int gain = 8;
   Image<std::uint8_t> picture(now.width(), now.height(), 3, 255);
