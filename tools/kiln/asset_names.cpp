@@ -33,8 +33,8 @@ bool has_wide_control(const std::string& name) {
 
 /// Tests whether a name is taken by a file beside the assets' folders.
 bool is_taken(const std::string& name) {
-  for (const char* file : {"Makefile", "index.html", junit_file, summary_file, comparison_file, comparison_data_file,
-                           comparison_folder})
+  for (const char* file :
+       {"Makefile", "index.html", junit_file, summary_file, comparison_file, comparison_data_file, comparison_folder})
     if (name == file) return true;
   return false;
 }

@@ -5,8 +5,8 @@
 
 namespace kiln {
 
-/// Adds kiln's subcommands to `app`: build, report, sweep, list, clean, init and check, and those that the Makefile calls.
-/// `status` becomes the exit status. Must outlive the parsing of `app`.
+/// Adds kiln's subcommands to `app`: build, report, sweep, list, clean, init and check, and those that the Makefile
+/// calls. `status` becomes the exit status. Must outlive the parsing of `app`.
 class Commands {
  public:
   explicit Commands(CLI::App& app);

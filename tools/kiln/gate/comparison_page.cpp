@@ -106,7 +106,7 @@ std::string pictures_of(const AssetGate& asset) {
       change.is_same()
           ? "no pixel differs"
           : fmt::format("difference, 8 times: mean shift {:+.2f}, sigma {:.2f}, largest {} of 255; {}",
-                        change.mean_shift, change.sigma, change.largest, change.is_drift ? "drift" : "noise");
+                        change.mean_shift, change.sigma, change.largest, change.is_drift ? "drift" : "no drift");
   return "<div class=pictures>\n" + figure("was", "baseline") + figure("now", "this build") +
          figure("difference", words) + "</div>\n";
 }
