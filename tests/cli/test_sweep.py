@@ -61,6 +61,12 @@ with tempfile.TemporaryDirectory() as folder:
     assert json.loads(second.stdout) == results
     assert "5 measured earlier" in second.stderr, second.stderr
 
+    # What an earlier sweep has left of later stages is not of these points.
+    whole = json.loads(run("sweep", pipeline, "--set", "bake.directions=32", "--json").stdout)["results"]
+    assert "report.relative_l2" in whole[-1]["metrics"]
+    again = json.loads(run("sweep", pipeline, "--until", "bake", "--set", "bake.directions=24", "--json").stdout)["results"]
+    assert not [name for name in again[-1]["metrics"] if name.startswith("report.")], again[-1]
+
     # A point that cannot be built is noted, and the others are measured.
     result = run("sweep", pipeline, "--until", "bake", "--set", "atlas.size=32", "--set", "atlas.gutter=2,64", "--json")
     statuses = [point["status"] for point in json.loads(result.stdout)["results"]]

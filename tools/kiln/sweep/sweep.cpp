@@ -93,7 +93,7 @@ class Sweep {
     build_settings.until = settings_.until;
     const int status = build(there, select_assets(there, missing), build_settings);
     for (const std::string& name : missing) {
-      SweepResult result = read_result(name, point, there.output / name);
+      SweepResult result = read_result(name, point, there.output / name, stages_of(there, name));
       result.status = status;
       results_.push_back(result);
       statuses_.push_back(status);
@@ -101,6 +101,16 @@ class Sweep {
     }
     seconds_ += watch.seconds();
     ++built_;
+  }
+
+  /// Lists the stages that an asset passes, up to the last one asked for.
+  std::vector<std::string> stages_of(const Pipeline& there, const std::string& name) const {
+    const std::size_t last = stage_position(settings_.until).value_or(all_stages().size());
+    const auto asset = std::ranges::find(there.assets, name, &Asset::name);
+    std::vector<std::string> stages;
+    for (const std::string& stage : stage_names())
+      if (asset->settings.contains(stage) && stage_position(stage).value_or(0) <= last) stages.push_back(stage);
+    return stages;
   }
 
   /// Names the file of a result by everything that it depends on: commands, programs, and the content of the files that

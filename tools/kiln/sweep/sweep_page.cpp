@@ -149,7 +149,7 @@ std::string plot(const std::vector<SweepResult>& results, const Cost& cost) {
     if (!result.point.name.empty()) {
       const bool has_room = x < right - 60;
       svg += fmt::format("<text class=label x='{:.1f}' y='{:.1f}' text-anchor={}>{}</text>\n",
-                         x + (has_room ? 10 : -10), y + 4, has_room ? "start" : "end", result.point.name);
+                         x + (has_room ? 10 : -10), y - 8, has_room ? "start" : "end", result.point.name);
     }
   }
   return "<figure>" + svg + "</svg></figure>\n";

@@ -91,12 +91,13 @@ SweepResult sweep_result_of_json(const Json& json) {
   return result;
 }
 
-SweepResult read_result(const std::string& asset, const SweepPoint& point, const fs::path& folder) {
+SweepResult read_result(const std::string& asset, const SweepPoint& point, const fs::path& folder,
+                        const std::vector<std::string>& stages) {
   SweepResult result;
   result.asset = asset;
   result.point = point;
   result.metrics = Json::object();
-  for (const std::string& stage : stage_names()) {
+  for (const std::string& stage : stages) {
     const Json record = read_record(layout::record(folder, stage));
     if (!record.is_object()) continue;
     result.seconds += record.value("seconds", 0.0);
@@ -105,9 +106,8 @@ SweepResult read_result(const std::string& asset, const SweepPoint& point, const
     for (const auto& [name, value] : numbers_of({{stage, record}}))
       if (std::isfinite(value)) result.metrics[name] = value;
   }
-  std::error_code error;
-  const fs::path small = layout::stage_folder(folder, "compress");
-  result.bytes = bytes_of_folder(fs::is_directory(small, error) ? small : layout::stage_folder(folder, "bake"));
+  const bool is_compressed = std::ranges::find(stages, "compress") != stages.end();
+  result.bytes = bytes_of_folder(layout::stage_folder(folder, is_compressed ? "compress" : "bake"));
   return result;
 }
 

@@ -35,8 +35,9 @@ struct SweepResult {
 Json to_json(const SweepResult& result);
 SweepResult sweep_result_of_json(const Json& json);
 
-/// Reads an asset's records, after a build in its folder.
-SweepResult read_result(const std::string& asset, const SweepPoint& point, const std::filesystem::path& folder);
+/// Reads the records of `stages` of an asset, after a build in its folder: those of others may be of earlier points.
+SweepResult read_result(const std::string& asset, const SweepPoint& point, const std::filesystem::path& folder,
+                        const std::vector<std::string>& stages);
 
 /// Marks the results that no other of the same asset beats: none has both less cost and less error. `cost` gives
 /// either CPU seconds or bytes. Results without an error are never on the front.
