@@ -33,16 +33,6 @@ std::uint64_t mixed(std::uint64_t number) {
   return number ^ (number >> 31);
 }
 
-/// Returns a direction about a normal with the density cosine / pi.
-Eigen::Vector3f cosine_direction(const Eigen::Vector3f& normal, Random& random) {
-  const float squared = uniform(random), azimuth = 2 * std::numbers::pi_v<float> * uniform(random);
-  const Eigen::Vector3f across = normal.unitOrthogonal(), along = normal.cross(across);
-  const float radius = std::sqrt(squared);
-  return (radius * std::cos(azimuth) * across + radius * std::sin(azimuth) * along +
-          std::sqrt(std::max(0.f, 1 - squared)) * normal)
-      .normalized();
-}
-
 /// End of a path: the direction in which it leaves the scene, and the share of each colour that it carries.
 struct Escape {
   Eigen::Vector3f direction;
@@ -67,7 +57,8 @@ class Walker {
       throughput = throughput.cwiseProduct(surface_.albedo_at(hit.triangle, hit.u, hit.v));
       if (throughput.maxCoeff() <= 0) return std::nullopt;
       origin = position_at(surface_.mesh, hit) + ray_offset_ * normal;
-      direction = cosine_direction(normal, random);
+      const float squared_sine = uniform(random), turn = uniform(random);
+      direction = cosine_direction(normal, squared_sine, turn);
     }
   }
 
@@ -79,6 +70,14 @@ class Walker {
 };
 
 }  // namespace
+
+Eigen::Vector3f cosine_direction(const Eigen::Vector3f& normal, float squared_sine, float turn) {
+  const float azimuth = 2 * std::numbers::pi_v<float> * turn, sine = std::sqrt(squared_sine);
+  const Eigen::Vector3f across = normal.unitOrthogonal(), along = normal.cross(across);
+  return (sine * std::cos(azimuth) * across + sine * std::sin(azimuth) * along +
+          std::sqrt(std::max(0.f, 1 - squared_sine)) * normal)
+      .normalized();
+}
 
 BouncePaths::BouncePaths(const RayScene& scene, const SceneMesh& surface, int bounces, float ray_offset)
     : scene_(scene), surface_(surface), bounces_(bounces), ray_offset_(ray_offset) {

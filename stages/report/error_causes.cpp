@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <random>
 #include <span>
@@ -15,6 +14,7 @@
 #include "mesh/surface_point.h"
 #include "raycast/ray_scene.h"
 #include "raycast/ray_transfer.h"
+#include "report/bounce_paths.h"
 #include "sh/basis.h"
 #include "sh/light_prior.h"
 #include "sh/ray_offset.h"
@@ -57,17 +57,6 @@ Lookup lookup_at(const Eigen::Vector2f& uv, const DetailMaps& detail) {
   return lookup;
 }
 
-/// Returns a direction about a normal with the density cosine / pi: every part of the surface is seen as large as it
-/// is.
-Eigen::Vector3f view_direction(const Eigen::Vector3f& normal, std::mt19937& random) {
-  std::uniform_real_distribution<float> number(0, 1);
-  const float squared = number(random), azimuth = 2 * std::numbers::pi_v<float> * number(random);
-  const Eigen::Vector3f across = normal.unitOrthogonal(), along = normal.cross(across);
-  return (std::sqrt(squared) * (std::cos(azimuth) * across + std::sin(azimuth) * along) +
-          std::sqrt(1 - squared) * normal)
-      .normalized();
-}
-
 /// Returns the points of the high mesh that a point of the low one is seen as and stands for; false where a viewer from
 /// there does not see that point.
 bool add_sample(const SplitInput& input, const RayScene& high, const RayScene& low, const SurfacePoint& place,
@@ -102,7 +91,9 @@ Samples make_samples(const SplitInput& input) {
   for (std::size_t tries = 0; samples.lookups.size() < sample_count && tries < 8 * sample_count; ++tries) {
     const float root = std::sqrt(number(random)), share = number(random);
     const SurfacePoint place{triangle(random), root * (1 - share), root * share, 0};
-    add_sample(input, high, low, place, view_direction(normal_at(mesh, place), random), reach, samples);
+    // By the cosine: every part of the surface is seen as large as it is.
+    const float squared_sine = number(random), turn = number(random);
+    add_sample(input, high, low, place, cosine_direction(normal_at(mesh, place), squared_sine, turn), reach, samples);
   }
   return samples;
 }
@@ -209,8 +200,6 @@ ErrorSplit error_causes(const SplitInput& input, const ProgressFunction& progres
   split.directions = std::clamp(4 * static_cast<int>(input.bake_directions.size()), fewest_reference_directions,
                                 most_reference_directions);
   split.bands = std::max(fewest_reference_bands, 2 * input.asset.bands);
-  if (samples.lookups.empty()) return split;
-
   // Step 1: compute what stands at each station of the way from the viewer's surface to the stored planes.
   const RayScene scene(input.scene.mesh);
   const float ray_offset = rounding_offset(input.scene.mesh.positions);
@@ -263,7 +252,8 @@ ErrorSplit error_causes(const SplitInput& input, const ProgressFunction& progres
     bits += sums.difference(with_bits.of(s), with_directions.of(s), length);
     visibility += sums.difference(stored.of(s), with_bits.of(s), length);
   }
-  const auto error = [&](double sum) { return norm > 0 ? std::sqrt(sum / norm) : 0; };
+  // Without a sample, or without any light, the error is not a number, which keeps no budget.
+  const auto error = [&](double sum) { return std::sqrt(sum / norm); };
   split.total = error(whole);
   split.causes = {{"geometry", error(geometry)}, {"texels", error(filtering)},
                   {"bands", error(beyond)},      {"directions", error(directions)},

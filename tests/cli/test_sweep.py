@@ -71,6 +71,8 @@ with tempfile.TemporaryDirectory() as folder:
     result = run("sweep", pipeline, "--until", "bake", "--set", "atlas.size=32", "--set", "atlas.gutter=2,64", "--json")
     statuses = [point["status"] for point in json.loads(result.stdout)["results"]]
     assert statuses[:2] == [0, 0] and statuses[2] != 0, statuses
+    failed = json.loads(result.stdout)["results"][2]
+    assert failed["error"] is None and not failed["metrics"] and not failed["on_time_front"], failed
 
     for words, said in ((["--set", "bake.direction=3"], "directions"), (["--set", "bake.bits=9"], "bits"),
                         (["--set", "bake.bits=8", "--set", "bake.bits=16"], "twice"), (["--until", "cook"], "stage")):

@@ -158,6 +158,15 @@ TEST(ErrorCauses, WhatTheEngineDoesOtherwiseIsVisibility) {
   EXPECT_LT(cause(split, "seams"), cause(split, "visibility")) << "the floor's border is a small part of it";
 }
 
+TEST(ErrorCauses, AreNoNumbersWhereNothingIsSeen) {
+  Floor floor;
+  for (Triangle& t : floor.high.triangles) std::swap(t[1], t[2]);  // the high mesh shows its back
+  for (Eigen::Vector3f& normal : floor.high.normals) normal = -normal;
+  const ErrorSplit split = floor.split();
+  EXPECT_EQ(split.samples, 0u);
+  EXPECT_TRUE(std::isnan(split.total));  // 0 would keep every budget
+}
+
 TEST(ErrorCauses, CompressionIsWhatCompressionChanges) {
   const Floor floor;
   PrtAsset changed = floor.asset;

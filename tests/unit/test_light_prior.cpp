@@ -186,7 +186,8 @@ TEST(Measurement, BrightnessDoesNotCountAndFamiliesCountAlike) {
   EXPECT_NEAR(measured[0].weight, 0.5, 1e-12);
   EXPECT_NEAR(measured[2].weight, 0.25, 1e-12);
   EXPECT_NEAR(measured[0].share, 1, 1e-6);
-  // Of the mean square of the clamped cosine, 1/6, its mean of 1/4 has 1/16. The bands that are left out have 1e-6.
+  // The clamped cosine has a mean of 1/4, whose square, 1/16, is a part of its mean square, 1/6. The bands that are
+  // left out have 1e-6.
   for (const std::size_t k : {1, 2}) EXPECT_NEAR(measured[k].share, 6.0 / 16, 1e-5);
   const std::vector<double> mean = mean_moments(measured);
   EXPECT_EQ(mean[0], 1);

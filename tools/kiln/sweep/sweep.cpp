@@ -91,9 +91,15 @@ class Sweep {
     build_settings.quiet = true;
     build_settings.keep_going = true;
     build_settings.until = settings_.until;
-    const int status = build(there, select_assets(there, missing), build_settings);
     for (const std::string& name : missing) {
-      SweepResult result = read_result(name, point, there.output / name, stages_of(there, name));
+      // One asset at a time, so that a failure is its own.
+      const int status = build(there, select_assets(there, {name}), build_settings);
+      SweepResult result;
+      result.metrics = Json::object();
+      // Where a stage fails, records of an earlier point are still there.
+      if (status == 0) result = read_result(name, point, there.output / name, stages_of(there, name));
+      result.asset = name;
+      result.point = point;
       result.status = status;
       results_.push_back(result);
       statuses_.push_back(status);
