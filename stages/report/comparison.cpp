@@ -18,6 +18,7 @@
 #include "report/reference.h"
 #include "report/transport.h"
 #include "sh/directions.h"
+#include "sh/light_prior.h"
 #include "sh/light_spec.h"
 
 namespace kiln {
@@ -30,10 +31,10 @@ constexpr double field_of_view_degrees = 30;
 constexpr int supersample = 2;
 constexpr double split_share = 0.3;  // share of the progress
 
-std::vector<LightSpec> parse_lights(const std::vector<std::string>& texts) {
+std::vector<LightSpec> parse_lights(const std::string& option, const std::vector<std::string>& texts) {
   std::vector<LightSpec> specs;
   for (const std::string& text : texts) specs.push_back(parse_light_spec(text));
-  if (specs.empty()) throw WrongUsage("lights: found none; expected at least one, as in '45,30; ambient:1'");
+  if (specs.empty()) throw WrongUsage(option + ": found none; expected at least one, as in '45,30; ambient:1'");
   return specs;
 }
 
@@ -85,10 +86,9 @@ SceneMesh scene_of(const AssetFolder& asset, const ImportedMesh& high) {
 std::string left_out(const AssetFolder& asset) {
   const Json& bake = asset.record("bake");
   const Json settings = bake.value("settings", Json::object());
-  if (bounces_taken(bake) > 0) return "light bounces, which the split does not follow";
   if (bake.contains("subsurface")) return "light scatters beneath the surface, which the split does not follow";
   if (asset.baked.vertices > 0) return "the asset is baked per vertex";
-  if (asset.baked.channels != 1) return "the transfer has the albedo within";
+  if (settings.value("bake-albedo", false)) return "the transfer has the albedo within";
   if (settings.value("receiver", std::string("high")) != "high") return "the bake's receivers are on the low mesh";
   return {};
 }
@@ -105,14 +105,42 @@ std::vector<Eigen::Vector3f> directions_of(const Json& bake) {
                            bake.at("directions").get<int>(), settings.value("seed", std::uint64_t{1}));
 }
 
+/// Returns the moments by band of the light that the error is expected under: of several lights the mean, each scaled
+/// to the same mean square of an unshadowed surface's exit radiance, as lighting_prior's.
+std::vector<double> prior_of(const ReportSettings& settings, int bands) {
+  if (settings.error_lights == "measured") return lighting_prior(bands);
+  std::vector<double> mean(static_cast<std::size_t>(bands));
+  for (const LightSpec& light : parse_lights("error-lights", list_of_lights(settings.error_lights))) {
+    const std::vector<double> moments = band_moments(light_coefficients(light, bands));
+    const double square = unshadowed_exit_square(moments);
+    if (square > 0)
+      for (std::size_t l = 0; l < mean.size(); ++l) mean[l] += moments[l] / square;
+  }
+  if (mean[0] <= 0)
+    throw WrongUsage("error-lights: found '" + settings.error_lights + "', which are dark; expected light");
+  return mean;
+}
+
 ErrorSplit split_error(const AssetFolder& asset, const TriangleMesh& low, const TriangleMesh& high,
-                       const SceneMesh& scene, const ComparisonRun& run) {
+                       const SceneMesh& scene, const ReportSettings& settings, const ComparisonRun& run) {
   const PrtAsset plain = load_prt_asset(asset.prt());
   std::optional<PrtAsset> compressed;
   if (!asset.compressed.empty()) compressed = load_prt_asset(asset.compressed);
   const DetailMaps detail = load_detail_maps(layout::stage_folder(asset.folder, "normals"), low);
-  return error_causes({high, low, scene, plain, compressed ? &*compressed : nullptr, detail,
-                       directions_of(asset.record("bake")), static_cast<std::uint64_t>(run.seed)},
+  ErrorSampling sampling;
+  sampling.pixels = static_cast<std::size_t>(settings.error_samples);
+  if (settings.error_pixels > 0) sampling.pixel_size = bounding_box(high).sides().maxCoeff() / settings.error_pixels;
+  sampling.seed = static_cast<std::uint64_t>(run.seed);
+  return error_causes({.high = high,
+                       .low = low,
+                       .scene = scene,
+                       .asset = plain,
+                       .compressed = compressed ? &*compressed : nullptr,
+                       .detail = detail,
+                       .bake_directions = directions_of(asset.record("bake")),
+                       .bounces = static_cast<int>(bounces_taken(asset.record("bake"))),
+                       .prior = prior_of(settings, reference_bands(plain.bands)),
+                       .sampling = sampling},
                       part_of(run.progress, 1 - split_share, 1));
 }
 
@@ -221,8 +249,8 @@ double silhouette_difference(const LightComparison& comparison) {
 
 Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high_file, const ReportSettings& settings,
                                   const ComparisonRun& run) {
-  const std::vector<std::string> lights = list_of_lights(settings);
-  const std::vector<LightSpec> specs = parse_lights(lights);
+  const std::vector<std::string> lights = list_of_lights(settings.lights);
+  const std::vector<LightSpec> specs = parse_lights("lights", lights);
   Comparison comparison;
 
   const double albedo = settings.albedo_factor(has_albedo(asset));
@@ -264,7 +292,7 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   std::vector<Image<float>> references =
       reference_pictures(high, view, specs, directions, part_of(run.progress, 0, 1 - split_share));
   comparison.error_left_out = left_out(asset);
-  if (comparison.error_left_out.empty()) comparison.error = split_error(asset, atlas, high, view.scene, run);
+  if (comparison.error_left_out.empty()) comparison.error = split_error(asset, atlas, high, view.scene, settings, run);
   comparison.reference_seconds = reference_watch.seconds();
 
   for (std::size_t k = 0; k < lights.size(); ++k) {

@@ -1,21 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/error_causes.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
+#include <functional>
 #include <numeric>
-#include <random>
 #include <span>
 
 #include "base/json.h"
-#include "mesh/surface_point.h"
 #include "raycast/ray_scene.h"
 #include "raycast/ray_transfer.h"
 #include "report/bounce_paths.h"
 #include "sh/basis.h"
+#include "sh/directions.h"
 #include "sh/light_prior.h"
 #include "sh/ray_offset.h"
 
@@ -23,80 +20,10 @@ namespace kiln {
 
 namespace {
 
-constexpr std::size_t sample_count = 4096;
 constexpr int fewest_reference_directions = 4096;
 constexpr int most_reference_directions = 65536;
 constexpr int fewest_reference_bands = 16;
-
-/// Texels around a place of the texture, with their weights in a bilinear lookup.
-struct Lookup {
-  std::array<std::uint32_t, 4> texels;
-  std::array<float, 4> weights;
-  bool at_border = false;  ///< whether one of them is covered by no chart
-};
-
-/// Points at which errors are measured.
-struct Samples {
-  std::vector<Eigen::Vector3f> seen_positions, seen_normals;    ///< where the viewer's ray meets the high mesh
-  std::vector<Eigen::Vector3f> stood_positions, stood_normals;  ///< points that those of the low mesh stand for
-  std::vector<Lookup> lookups;
-};
-
-Lookup lookup_at(const Eigen::Vector2f& uv, const DetailMaps& detail) {
-  const float x = uv.x() * static_cast<float>(detail.width) - 0.5f,
-              y = uv.y() * static_cast<float>(detail.height) - 0.5f;
-  const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
-  const float s = x - static_cast<float>(i), t = y - static_cast<float>(j);
-  Lookup lookup;
-  for (int k = 0; k < 4; ++k) {
-    const int column = std::clamp(i + k % 2, 0, detail.width - 1), row = std::clamp(j + k / 2, 0, detail.height - 1);
-    lookup.texels[k] = static_cast<std::uint32_t>(row * detail.width + column);
-    lookup.weights[k] = (k % 2 == 0 ? 1 - s : s) * (k / 2 == 0 ? 1 - t : t);
-    lookup.at_border = lookup.at_border || detail.covered[lookup.texels[k]] == 0;
-  }
-  return lookup;
-}
-
-/// Returns the points of the high mesh that a point of the low one is seen as and stands for; false where a viewer from
-/// there does not see that point.
-bool add_sample(const SplitInput& input, const RayScene& high, const RayScene& low, const SurfacePoint& place,
-                const Eigen::Vector3f& view, float reach, Samples& samples) {
-  const TriangleMesh& mesh = input.low;
-  const Eigen::Vector3f position = position_at(mesh, place), normal = normal_at(mesh, place);
-  const float offset = 1e-4f * reach;
-  if (low.first_hit(position + offset * normal, view, 0, std::numeric_limits<float>::infinity()).found()) return false;
-  const SurfacePoint stood = high.closest_facing_point(position, normal, reach);
-  const SurfacePoint seen = high.first_hit(position + reach * view, -view, 0, 2 * reach);
-  if (!stood.found() || !seen.found()) return false;
-  if (normal_at(input.high, seen).dot(view) <= 0) return false;
-  samples.seen_positions.push_back(position_at(input.high, seen));
-  samples.seen_normals.push_back(normal_at(input.high, seen));
-  samples.stood_positions.push_back(position_at(input.high, stood));
-  samples.stood_normals.push_back(normal_at(input.high, stood));
-  samples.lookups.push_back(lookup_at(interpolate(mesh, mesh.uvs, place), input.detail));
-  return true;
-}
-
-Samples make_samples(const SplitInput& input) {
-  const TriangleMesh& mesh = input.low;
-  std::vector<double> areas;
-  for (const Triangle& t : mesh.triangles) areas.push_back(area_normal(mesh, t).norm());
-  std::mt19937 random(static_cast<std::mt19937::result_type>(input.seed));
-  std::discrete_distribution<std::uint32_t> triangle(areas.begin(), areas.end());
-  std::uniform_real_distribution<float> number(0, 1);
-  const RayScene high(input.high), low(mesh);
-  const float reach = 0.05f * bounding_box(input.high).sides().norm();
-  Samples samples;
-  // Some views are blocked, by a third at most on scans; give up after many.
-  for (std::size_t tries = 0; samples.lookups.size() < sample_count && tries < 8 * sample_count; ++tries) {
-    const float root = std::sqrt(number(random)), share = number(random);
-    const SurfacePoint place{triangle(random), root * (1 - share), root * share, 0};
-    // By the cosine: every part of the surface is seen as large as it is.
-    const float squared_sine = number(random), turn = number(random);
-    add_sample(input, high, low, place, cosine_direction(normal_at(mesh, place), squared_sine, turn), reach, samples);
-  }
-  return samples;
-}
+constexpr int path_directions = 1024;  // of each of two sets, where light bounces
 
 /// Transfer vectors of receivers, one after another.
 struct Vectors {
@@ -116,10 +43,10 @@ Vectors in_rows(const TransferVectors& transfer) {
   return rows;
 }
 
-/// Looks up vectors of texels at all samples. `of_texel` are vectors of `texels`, which are sorted.
-Vectors looked_up(const Samples& samples, const std::vector<std::uint32_t>& texels, const Vectors& of_texel) {
-  Vectors result{of_texel.length, std::vector<float>(samples.lookups.size() * of_texel.length)};
-  for (std::size_t s = 0; s < samples.lookups.size(); ++s)
+/// Looks up vectors of texels at all points. `of_texel` are vectors of `texels`, which are sorted.
+Vectors looked_up(const ErrorSamples& samples, const std::vector<std::uint32_t>& texels, const Vectors& of_texel) {
+  Vectors result{of_texel.length, std::vector<float>(samples.points() * of_texel.length)};
+  for (std::size_t s = 0; s < samples.points(); ++s)
     for (int k = 0; k < 4; ++k) {
       const auto at = std::ranges::lower_bound(texels, samples.lookups[s].texels[k]) - texels.begin();
       const std::span<const float> vector = of_texel.of(static_cast<std::size_t>(at));
@@ -129,40 +56,20 @@ Vectors looked_up(const Samples& samples, const std::vector<std::uint32_t>& texe
   return result;
 }
 
-/// Sums that E is made of, by the prior over light.
-class WeightedSums {
- public:
-  explicit WeightedSums(int bands) : prior_(lighting_prior(bands)) {}
-
-  /// Returns d' S d of two vectors, over the first `length` coefficients.
-  double difference(std::span<const float> a, std::span<const float> b, std::size_t length) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < length; ++i) {
-      const double d = double{a[i]} - double{b[i]};
-      sum += weight(i) * d * d;
+/// Returns the first coefficients of each vector, once for every channel.
+Vectors in_channels(const Vectors& vectors, int coefficients, int channels) {
+  Vectors result{static_cast<std::size_t>(coefficients) * static_cast<std::size_t>(channels), {}};
+  for (std::size_t k = 0; k * vectors.length < vectors.values.size(); ++k)
+    for (int c = 0; c < channels; ++c) {
+      const std::span<const float> first = vectors.of(k).first(static_cast<std::size_t>(coefficients));
+      result.values.insert(result.values.end(), first.begin(), first.end());
     }
-    return sum;
-  }
+  return result;
+}
 
-  /// Returns t' S t of coefficients `from` to `to`.
-  double square(std::span<const float> t, std::size_t from, std::size_t to) const {
-    double sum = 0;
-    for (std::size_t i = from; i < to; ++i) sum += weight(i) * double{t[i]} * double{t[i]};
-    return sum;
-  }
-
- private:
-  double weight(std::size_t i) const { return prior_[static_cast<std::size_t>(band_of(static_cast<int>(i)))]; }
-
-  std::vector<double> prior_;
-};
-
-std::vector<std::uint32_t> texels_of(const Samples& samples) {
-  std::vector<std::uint32_t> texels;
-  for (const Lookup& lookup : samples.lookups) texels.insert(texels.end(), lookup.texels.begin(), lookup.texels.end());
-  std::ranges::sort(texels);
-  texels.erase(std::unique(texels.begin(), texels.end()), texels.end());
-  return texels;
+Vectors sum_of(Vectors a, const Vectors& b) {
+  std::ranges::transform(a.values, b.values, a.values.begin(), std::plus<>());
+  return a;
 }
 
 Vectors stored_vectors(const PrtAsset& asset, const std::vector<std::uint32_t>& texels) {
@@ -177,11 +84,155 @@ Vectors rounded_to(const PrtAsset& asset, Vectors vectors) {
   for (std::size_t k = 0; k < vectors.values.size(); ++k) {
     const PlaneRange& range = asset.planes[k % vectors.length].range;
     const double step = range.step(asset.bits);
-    const double value = std::clamp<double>(vectors.values[k], range.lowest, range.highest);
-    vectors.values[k] =
-        static_cast<float>(step > 0 ? range.lowest + step * std::round((value - range.lowest) / step) : range.lowest);
+    const double steps = std::round((double{vectors.values[k]} - range.lowest) / step);
+    vectors.values[k] = static_cast<float>(step > 0 ? range.lowest + step * steps : range.lowest);
   }
   return vectors;
+}
+
+/// Two estimates of the same vectors, alike where there is no noise in them.
+struct Station {
+  Vectors first, second;
+
+  explicit Station(const Vectors& both) : first(both), second(both) {}
+  Station(Vectors one, Vectors other) : first(std::move(one)), second(std::move(other)) {}
+
+  Station operator+(const Station& other) const { return {sum_of(first, other.first), sum_of(second, other.second)}; }
+};
+
+/// Points that count for a step.
+enum class StepPoints { all, inside_charts, at_borders };
+
+/// One thing that changes on the way from what is seen to what is stored.
+struct Step {
+  std::string cause;
+  const Station& from;
+  const Station& to;
+  StepPoints points = StepPoints::all;
+};
+
+/// Sums of squares over pixels, weighted by the prior over light.
+class PixelSums {
+ public:
+  PixelSums(const ErrorSamples& samples, std::vector<double> prior) : samples_(samples), prior_(std::move(prior)) {}
+
+  /// Returns d' S d by band, in the sum over pixels; d is a step's difference in the mean over a pixel's points, and
+  /// the product is of its two estimates. Vectors hold `bands` bands of each channel.
+  BandSquares of_step(const Step& step, int bands) const {
+    return sum(bands, step.points, step.from.first.length, [&](std::size_t point, auto& first, auto& second) {
+      first += as_array(step.to.first, point) - as_array(step.from.first, point);
+      second += as_array(step.to.second, point) - as_array(step.from.second, point);
+    });
+  }
+
+  /// Returns t' S t by band, likewise.
+  BandSquares of_vectors(const Station& vectors, int bands) const {
+    return sum(bands, StepPoints::all, vectors.first.length, [&](std::size_t point, auto& first, auto& second) {
+      first += as_array(vectors.first, point);
+      second += as_array(vectors.second, point);
+    });
+  }
+
+ private:
+  static Eigen::ArrayXd as_array(const Vectors& vectors, std::size_t point) {
+    const std::span<const float> values = vectors.of(point);
+    return Eigen::Map<const Eigen::ArrayXf>(values.data(), static_cast<Eigen::Index>(values.size())).cast<double>();
+  }
+
+  bool counts(std::size_t point, StepPoints points) const {
+    return points == StepPoints::all || samples_.lookups[point].at_border == (points == StepPoints::at_borders);
+  }
+
+  template <class AddPoint>
+  BandSquares sum(int bands, StepPoints points, std::size_t length, const AddPoint& add_point) const {
+    BandSquares squares(static_cast<std::size_t>(bands));
+    const auto coefficients = static_cast<std::size_t>(coefficient_count(bands));
+    Eigen::ArrayXd first(length), second(length);
+    std::size_t begin = 0;
+    for (const std::size_t end : samples_.pixel_ends) {
+      first.setZero();
+      second.setZero();
+      for (std::size_t point = begin; point < end; ++point)
+        if (counts(point, points)) add_point(point, first, second);
+      const double share = 1 / static_cast<double>(end - begin);
+      for (std::size_t i = 0; i < length; ++i) {
+        const auto band = static_cast<std::size_t>(band_of(static_cast<int>(i % coefficients)));
+        const auto at = static_cast<Eigen::Index>(i);
+        squares[band] += prior_[band] * share * share * first[at] * second[at];
+      }
+      begin = end;
+    }
+    return squares;
+  }
+
+  const ErrorSamples& samples_;
+  const std::vector<double> prior_;
+};
+
+double total_of(const BandSquares& squares) { return std::accumulate(squares.begin(), squares.end(), 0.0); }
+
+/// Computes transfer at points of the scene, by rays and, of light that bounces, by paths.
+class Transport {
+ public:
+  Transport(const SplitInput& input, int directions)
+      : input_(input),
+        scene_(input.scene.mesh),
+        offset_(rounding_offset(input.scene.mesh.positions)),
+        directions_(sample_directions(Sampling::fibonacci, directions, input.sampling.seed + 1)) {}
+
+  Vectors direct(const Receivers& receivers, int bands) const { return direct(receivers, bands, directions_); }
+
+  Vectors direct(const Receivers& receivers, int bands, std::span<const Eigen::Vector3f> directions) const {
+    return in_rows(transfer_by_rays(scene_, receivers, directions, bands, offset_));
+  }
+
+  /// Returns the transfer of bounced light alone, in the asset's bands and channels; zeros where light does not bounce.
+  Station bounced(const Receivers& receivers) const { return {by_paths(receivers, 0), by_paths(receivers, 1)}; }
+
+ private:
+  /// Returns that by one of two sets of paths.
+  Vectors by_paths(const Receivers& receivers, int set) const {
+    Vectors result{input_.asset.vector_length(), {}};
+    if (input_.bounces == 0) {
+      result.values.assign(receivers.size() * result.length, 0.f);
+      return result;
+    }
+    const int coefficients = coefficient_count(input_.asset.bands);
+    std::vector<TransferVectors> colors(3, TransferVectors(receivers.size(), coefficients));
+    const std::uint64_t seed = input_.sampling.seed + 2 + static_cast<std::uint64_t>(set);
+    const BouncePaths paths(scene_, input_.scene, input_.bounces, offset_);
+    paths.add(receivers, sample_directions(Sampling::fibonacci, path_directions, seed), seed << 32, colors);
+    result.values.reserve(receivers.size() * result.length);
+    for (std::size_t r = 0; r < receivers.size(); ++r)
+      for (std::size_t c = 0; c < static_cast<std::size_t>(input_.asset.channels); ++c)
+        for (int i = 0; i < coefficients; ++i) result.values.push_back(colors[c].plane(i)[r]);
+    return result;
+  }
+
+  const SplitInput& input_;
+  const RayScene scene_;
+  const float offset_;
+  const std::vector<Eigen::Vector3f> directions_;
+};
+
+/// Points that texels stand for.
+struct TexelPoints {
+  std::vector<Eigen::Vector3f> positions, normals;
+
+  TexelPoints(const std::vector<std::uint32_t>& texels, const DetailMaps& detail) {
+    for (const std::uint32_t texel : texels) {
+      const int i = static_cast<int>(texel) % detail.width, j = static_cast<int>(texel) / detail.width;
+      const std::span<const float> p = detail.position.pixel(i, j), n = detail.normal_object.pixel(i, j);
+      positions.emplace_back(p[0], p[1], p[2]);
+      normals.emplace_back(n[0], n[1], n[2]);
+    }
+  }
+};
+
+ErrorSampling sampling_of(const SplitInput& input) {
+  ErrorSampling sampling = input.sampling;
+  if (input.bounces > 0) sampling.pixels = std::max<std::size_t>(1, sampling.pixels / 4);
+  return sampling;
 }
 
 }  // namespace
@@ -192,85 +243,90 @@ double ErrorSplit::root_sum() const {
   return std::sqrt(sum);
 }
 
+int reference_bands(int asset_bands) { return std::max(fewest_reference_bands, 2 * asset_bands); }
+
 ErrorSplit error_causes(const SplitInput& input, const ProgressFunction& progress) {
-  const Samples samples = make_samples(input);
-  const std::vector<std::uint32_t> texels = texels_of(samples);
+  const ErrorSamples samples = make_error_samples(input.high, input.low, input.detail, sampling_of(input));
+  const std::vector<std::uint32_t> texels = samples.texels();
+  const TexelPoints points(texels, input.detail);
+  const Receivers at_texels{points.positions, points.normals}, at_seen{samples.seen_positions, samples.seen_normals},
+      at_stood{samples.stood_positions, samples.stood_normals};
+  const int bands = input.asset.bands, channels = input.asset.channels, coefficients = coefficient_count(bands);
   ErrorSplit split;
-  split.samples = samples.lookups.size();
+  split.samples = samples.pixels();
   split.directions = std::clamp(4 * static_cast<int>(input.bake_directions.size()), fewest_reference_directions,
                                 most_reference_directions);
-  split.bands = std::max(fewest_reference_bands, 2 * input.asset.bands);
+  split.bands = reference_bands(bands);
+
   // Step 1: compute what stands at each station of the way from the viewer's surface to the stored planes.
-  const RayScene scene(input.scene.mesh);
-  const float ray_offset = rounding_offset(input.scene.mesh.positions);
-  const auto reference = sample_directions(Sampling::fibonacci, split.directions, input.seed + 1);
-  std::vector<Eigen::Vector3f> positions, normals;
-  for (const std::uint32_t texel : texels) {
-    const int i = static_cast<int>(texel) % input.detail.width, j = static_cast<int>(texel) / input.detail.width;
-    const std::span<const float> p = input.detail.position.pixel(i, j), n = input.detail.normal_object.pixel(i, j);
-    positions.emplace_back(p[0], p[1], p[2]);
-    normals.emplace_back(n[0], n[1], n[2]);
-  }
-  const auto transfer = [&](const std::vector<Eigen::Vector3f>& at, const std::vector<Eigen::Vector3f>& normals_there,
-                            std::span<const Eigen::Vector3f> directions, int bands) {
-    return in_rows(transfer_by_rays(scene, Receivers{at, normals_there}, directions, bands, ray_offset));
-  };
-  const int bands = input.asset.bands;
-  const Vectors seen = transfer(samples.seen_positions, samples.seen_normals, reference, split.bands);
+  const Transport transport(input, split.directions);
+  const auto in_all_channels = [&](const Vectors& direct) { return in_channels(direct, coefficients, channels); };
+  const Vectors seen_in_all_bands = transport.direct(at_seen, split.bands);
   progress(0.3);
-  const Vectors stood = transfer(samples.stood_positions, samples.stood_normals, reference, bands);
+  const Station direct_seen(in_all_channels(seen_in_all_bands));
+  const Station direct_stood(in_all_channels(transport.direct(at_stood, bands)));
   progress(0.4);
-  const Vectors at_texels = looked_up(samples, texels, transfer(positions, normals, reference, bands));
+  const Station filtered(in_all_channels(looked_up(samples, texels, transport.direct(at_texels, bands))));
+  progress(0.7);
+  const Vectors by_bake = transport.direct(at_texels, bands, input.bake_directions);
   progress(0.8);
-  const Vectors by_bake = transfer(positions, normals, input.bake_directions, bands);
-  progress(0.95);
-  const Vectors with_directions = looked_up(samples, texels, by_bake);
-  const Vectors with_bits = looked_up(samples, texels, rounded_to(input.asset, by_bake));
-  const Vectors stored = looked_up(samples, texels, stored_vectors(input.asset, texels));
-  const Vectors compressed =
-      input.compressed != nullptr ? looked_up(samples, texels, stored_vectors(*input.compressed, texels)) : stored;
+  const Station sampled(in_all_channels(looked_up(samples, texels, by_bake)));
+  const Station rounded(looked_up(samples, texels, rounded_to(input.asset, in_all_channels(by_bake))));
+  const Station stored(looked_up(samples, texels, stored_vectors(input.asset, texels)));
+  const Station compressed(input.compressed != nullptr
+                               ? looked_up(samples, texels, stored_vectors(*input.compressed, texels))
+                               : stored.first);
+  const Station bounced_seen = transport.bounced(at_seen);
+  const Station seen = direct_seen + bounced_seen;
+  progress(0.9);
+  // Bounced light is smooth: what arrives at the point seen arrives at the one near it, too.
+  const Station stood = direct_stood + bounced_seen;
+  const Station bounced_at_texels = transport.bounced(at_texels);
+  const Station with_paths = rounded + Station(looked_up(samples, texels, bounced_at_texels.first),
+                                               looked_up(samples, texels, bounced_at_texels.second));
+  progress(0.97);
 
   // Step 2: add up the differences from station to station.
-  const WeightedSums sums(split.bands);
-  const auto length = static_cast<std::size_t>(coefficient_count(bands));
-  double norm = 0, whole = 0, geometry = 0, filtering = 0, directions = 0, bits = 0, visibility = 0, seams = 0,
-         compression = 0, beyond = 0;
-  for (std::size_t s = 0; s < samples.lookups.size(); ++s) {
-    norm += sums.square(seen.of(s), 0, length);
-    const double tail = sums.square(seen.of(s), length, seen.length);
-    beyond += tail;
-    whole += sums.difference(compressed.of(s), seen.of(s), length) + tail;
-    geometry += sums.difference(stood.of(s), seen.of(s), length);
-    compression += sums.difference(compressed.of(s), stored.of(s), length);
-    if (samples.lookups[s].at_border) {
-      // Gutters are filled and both sides made equal, which mends part of what the texels there cost.
-      seams += sums.difference(stored.of(s), stood.of(s), length);
-      continue;
-    }
-    filtering += sums.difference(at_texels.of(s), stood.of(s), length);
-    directions += sums.difference(with_directions.of(s), at_texels.of(s), length);
-    bits += sums.difference(with_bits.of(s), with_directions.of(s), length);
-    visibility += sums.difference(stored.of(s), with_bits.of(s), length);
-  }
+  const PixelSums sums(samples, input.prior.empty() ? lighting_prior(split.bands) : input.prior);
+  const auto inside = StepPoints::inside_charts;
+  const Step steps[] = {{"geometry", direct_seen, direct_stood},
+                        {"texels", direct_stood, filtered, inside},
+                        {"directions", filtered, sampled, inside},
+                        {"bits", sampled, rounded, inside},
+                        {input.bounces > 0 ? "bounces" : "visibility", with_paths, stored, inside},
+                        // Gutters are filled and both sides made equal, which mends part of what the texels there cost.
+                        {"seams", stood, stored, StepPoints::at_borders},
+                        {"compression", stored, compressed}};
+  BandSquares seen_squares =
+      sums.of_vectors(Station(in_channels(seen_in_all_bands, coefficient_count(split.bands), channels)), split.bands);
+  const BandSquares cut = sums.of_vectors(seen, bands);
+  std::ranges::copy(cut, seen_squares.begin());
+  const double norm = total_of(cut), tail = total_of(seen_squares) - norm;
   // Without a sample, or without any light, the error is not a number, which keeps no budget.
-  const auto error = [&](double sum) { return std::sqrt(sum / norm); };
-  split.total = error(whole);
-  split.causes = {{"geometry", error(geometry)}, {"texels", error(filtering)},
-                  {"bands", error(beyond)},      {"directions", error(directions)},
-                  {"bits", error(bits)},         {"visibility", error(visibility)},
-                  {"seams", error(seams)}};
-  if (input.compressed != nullptr) split.causes.push_back({"compression", error(compression)});
+  const auto error = [&](double square) { return std::sqrt(std::max(0.0, square) / norm); };
+  const auto relative = [&](BandSquares squares) {
+    for (double& square : squares) square /= norm;
+    return squares;
+  };
+  split.seen = relative(seen_squares);
+  split.total = error(total_of(sums.of_step({"total", seen, compressed}, bands)) + tail);
+  for (const Step& step : steps) {
+    if (step.cause == "compression" && input.compressed == nullptr) continue;
+    const BandSquares squares = sums.of_step(step, bands);
+    split.causes.push_back({step.cause, error(total_of(squares)), relative(squares)});
+  }
+  split.causes.push_back({"bands", error(tail), {}});
   return split;
 }
 
 Json to_json(const ErrorSplit& split) {
-  Json causes = Json::object();
-  for (const ErrorCause& cause : split.causes) causes[cause.name] = cause.error;
-  return {{"total", split.total},
-          {"causes", causes},
-          {"root_sum_of_causes", split.root_sum()},
-          {"samples", split.samples},
-          {"reference_directions", split.directions},
+  Json causes = Json::object(), squares = {{"seen", split.seen}};
+  for (const ErrorCause& cause : split.causes) {
+    causes[cause.name] = cause.error;
+    if (!cause.squares.empty()) squares[cause.name] = cause.squares;
+  }
+  return {{"total", split.total},          {"causes", causes},         {"root_sum_of_causes", split.root_sum()},
+          {"squares_by_band", squares},    {"samples", split.samples}, {"reference_directions", split.directions},
           {"reference_bands", split.bands}};
 }
 

@@ -24,6 +24,7 @@ constexpr CauseText texts[] = {
     {"directions", "Directions: the sky is sampled", "more directions"},
     {"bits", "Bits: values are rounded", "16 bits"},
     {"visibility", "Visibility: what the bake's engine sees", "another backend, larger depth maps"},
+    {"bounces", "Bounces and visibility: light that bounces, and what the bake's engine sees", "a smaller bounce-edge"},
     {"seams", "Seams: both sides are made equal", "fewer charts, a larger atlas"},
     {"compression", "Compression", "a smaller max-error of compress"},
 };

@@ -46,13 +46,21 @@ OptionSet report_options(ReportSettings& settings) {
       "one, else 0.8",
       parse_albedo, [](const std::optional<double>& albedo) { return albedo ? numbers_text({*albedo}) : "auto"; });
   options.text("gl-device", settings.gl_device, "EGL device to draw on: auto, software, or its number");
+  options.text(
+      "error-lights", settings.error_lights,
+      "Light that the asset's error is expected under, turned evenly: measured, for the prior of docs/error.md, "
+      "or lights as above, each as likely as the others");
+  options.number("error-pixels", settings.error_pixels, 0, 1e6,
+                 "The longest side of the asset's box as viewers see it, in pixels, over which errors are averaged; 0: "
+                 "however near");
+  options.integer("error-samples", settings.error_samples, 64, 1000000, "Pixels that the error is measured at");
   return options;
 }
 
-std::vector<std::string> list_of_lights(const ReportSettings& settings) {
+std::vector<std::string> list_of_lights(const std::string& text_of_all) {
   constexpr const char* blanks = " \t";
   std::vector<std::string> lights;
-  std::istringstream text(settings.lights);
+  std::istringstream text(text_of_all);
   for (std::string light; std::getline(text, light, ';');) {
     const std::size_t first = light.find_first_not_of(blanks);
     if (first != std::string::npos) lights.push_back(light.substr(first, light.find_last_not_of(blanks) - first + 1));

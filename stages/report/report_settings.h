@@ -24,11 +24,15 @@ struct ReportSettings {
   double albedo_factor(bool asset_has_albedo) const;
 
   std::string gl_device = "auto";  ///< device that kiln-render draws on
+
+  std::string error_lights = "measured";  ///< light that E expects: "measured", or lights like `lights`
+  double error_pixels = 0;                ///< longest side of the asset as it is seen, pixels; 0: any size
+  int error_samples = 4096;               ///< pixels that the error is measured at
 };
 
 OptionSet report_options(ReportSettings& settings);
 
-/// Returns the lights one by one, blanks trimmed.
-std::vector<std::string> list_of_lights(const ReportSettings& settings);
+/// Returns the lights of `lights` or `error_lights` one by one, blanks trimmed.
+std::vector<std::string> list_of_lights(const std::string& lights);
 
 }  // namespace kiln

@@ -19,17 +19,20 @@ constexpr const char* metric_names =
 constexpr const char* error_names =
     "error.total error.root_sum_of_causes error.samples error.reference_directions error.reference_bands "
     "error.causes.geometry error.causes.texels error.causes.bands error.causes.directions error.causes.bits "
-    "error.causes.visibility error.causes.seams";
+    "error.causes.seams";
 
-/// Tells whether the report splits the error: of direct light in textures, on the high mesh's points.
-bool splits_error(const AssetSettings& all) {
+/// Tells whether a setting of the bake is left at one value.
+bool bake_has(const AssetSettings& all, const char* name, const char* value) {
   const auto bake = all.find("bake");
-  const auto is = [&](const char* name, const char* plain) {
-    if (bake == all.end()) return true;
-    const auto found = bake->second.find(name);
-    return found == bake->second.end() || found->second == plain;
-  };
-  return is("bounces", "0") && is("subsurface", "none") && is("receiver", "high") && is("bake-albedo", "false");
+  if (bake == all.end()) return true;
+  const auto found = bake->second.find(name);
+  return found == bake->second.end() || found->second == value;
+}
+
+/// Tells whether the report splits the error: of textures, on the high mesh's points.
+bool splits_error(const AssetSettings& all) {
+  return bake_has(all, "subsurface", "none") && bake_has(all, "receiver", "high") &&
+         bake_has(all, "bake-albedo", "false");
 }
 
 StageOptions options() { return StageOptions::of(report_options); }
@@ -63,7 +66,11 @@ const StageInfo& report_stage() {
       .name = "report",
       .options = options,
       .metrics = {{metric_names},
-                  {error_names, "error.", "bounces of bake", splits_error},
+                  {error_names, "error.", "subsurface of bake", splits_error},
+                  {"error.causes.visibility", "error.causes.visibility", "bounces of bake",
+                   [](const AssetSettings& all) { return splits_error(all) && bake_has(all, "bounces", "0"); }},
+                  {"error.causes.bounces", "error.causes.bounces", "bounces of bake",
+                   [](const AssetSettings& all) { return splits_error(all) && !bake_has(all, "bounces", "0"); }},
                   {"error.causes.compression", "error.causes.compression", "compress",
                    [](const AssetSettings& all) { return splits_error(all) && all.contains("compress"); }},
                   {"compressed_relative_l2", "compressed_", "compress",

@@ -8,6 +8,7 @@
 #include "raycast/ray_transfer.h"
 #include "report/error_causes.h"
 #include "sh/basis.h"
+#include "sh/directions.h"
 #include "sh/light_prior.h"
 #include "sh/ray_offset.h"
 
@@ -93,7 +94,13 @@ struct Floor {
   }
 
   ErrorSplit split(const PrtAsset* compressed = nullptr) const {
-    return error_causes({high, low, scene, asset, compressed, detail, directions});
+    return error_causes({.high = high,
+                         .low = low,
+                         .scene = scene,
+                         .asset = asset,
+                         .compressed = compressed,
+                         .detail = detail,
+                         .bake_directions = directions});
   }
 };
 

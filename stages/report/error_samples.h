@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "detail/detail_maps.h"
+#include "mesh/triangle_mesh.h"
+
+namespace kiln {
+
+/// Texels around a place of the texture, with their weights in a bilinear lookup.
+struct Lookup {
+  std::array<std::uint32_t, 4> texels;
+  std::array<float, 4> weights;
+  bool at_border = false;  ///< whether one of them is covered by no chart
+};
+
+/// Points of an asset as viewers see them, pixel after pixel.
+struct ErrorSamples {
+  std::vector<Eigen::Vector3f> seen_positions, seen_normals;    ///< where the viewer's ray meets the high mesh
+  std::vector<Eigen::Vector3f> stood_positions, stood_normals;  ///< points that those of the low mesh stand for
+  std::vector<Lookup> lookups;                                  ///< in the low mesh's texture
+  std::vector<std::size_t> pixel_ends;                          ///< for each pixel the index after its last point
+
+  std::size_t points() const { return lookups.size(); }
+  std::size_t pixels() const { return pixel_ends.size(); }
+
+  /// Lists the texels that are looked up, each once, sorted.
+  std::vector<std::uint32_t> texels() const;
+};
+
+/// Wishes for samples.
+struct ErrorSampling {
+  std::size_t pixels = 4096;  ///< pixels wanted; fewer where most of the surface hides itself
+  double pixel_size = 0;      ///< side of a pixel on the asset, object units; 0: pixels are points
+  std::uint64_t seed = 1;
+};
+
+/// Spreads pixels evenly over the low mesh, by area, each seen from a direction of its own, by the cosine. Where pixels
+/// have a size, each has several points spread over it, across the view. Points that the low mesh hides, and those
+/// behind which the high mesh is not found, are left out.
+ErrorSamples make_error_samples(const TriangleMesh& high, const TriangleMesh& low, const DetailMaps& detail,
+                                const ErrorSampling& sampling);
+
+}  // namespace kiln
