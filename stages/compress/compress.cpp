@@ -215,9 +215,10 @@ class Search {
   }
 
   /// Tries a model whose residual exceeds the target, with steps that fit its residual, to show what more error would
-  /// save.
-  void attempt_lacking(const TexelModel& model, CompressScheme scheme, double left) {
-    attempt(model, scheme, rounding_allowance * left, false);
+  /// save. Tells whether it is the cheapest so far all the same: rounded, it may keep the bounds that it missed as it
+  /// was.
+  bool attempt_lacking(const TexelModel& model, CompressScheme scheme, double left) {
+    return attempt(model, scheme, rounding_allowance * left, false);
   }
 
   void note_lacking(double error) { least_error_ = std::min(least_error_.value_or(error), error); }
@@ -292,7 +293,7 @@ class Search {
     const TexelModel model = texel_model(source_, clustered, owners_);
     if (left > reach * result_.target_error || leaves_worse(model)) {
       if (left > reach * result_.target_error) note_lacking(left);
-      attempt_lacking(model, CompressScheme::clustered_pca, left);
+      if (attempt_lacking(model, CompressScheme::clustered_pca, left)) best_clusters_ = std::move(clustered);
       return {Outcome::lacks, left};
     }
     if (!attempt(model, CompressScheme::clustered_pca)) return {Outcome::worse, left};

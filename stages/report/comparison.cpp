@@ -58,15 +58,14 @@ MaterialSettings material_of(const Json& record) {
   return material;
 }
 
-/// Returns the high mesh and the bake's surroundings, with the albedos that the bake took where light bounces.
-SceneMesh scene_of(const AssetFolder& asset, const ImportedMesh& high) {
+/// Returns the high mesh and the bake's surroundings, with the albedos of the bake's settings where light bounces.
+SceneMesh scene_of(const AssetFolder& asset, const ImportedMesh& high, bool bounces) {
   const Json& bake = asset.record("bake");
   Surroundings surroundings;
   OptionSet options;
   add_surroundings_options(options, surroundings);
   take_settings(options, bake);
   surroundings.neighbours = bake.value("neighbours", surroundings.neighbours);
-  const bool bounces = bounces_taken(bake) > 0;
   const MaterialSettings material = material_of(bake);
   SceneMesh scene;
   const auto add = [&](const TriangleMesh& mesh, const SurfaceAlbedo& albedo) {
@@ -80,6 +79,11 @@ SceneMesh scene_of(const AssetFolder& asset, const ImportedMesh& high) {
        load_surroundings(surroundings, bounding_box(high.mesh), material, bounces, high.mesh.frame))
     add(placed.mesh, placed.material.albedo);
   return scene;
+}
+
+/// Returns how often light bounces in what the error is measured against.
+int error_bounces(const AssetFolder& asset, const ReportSettings& settings) {
+  return settings.error_bounces.value_or(static_cast<int>(bounces_taken(asset.record("bake"))));
 }
 
 /// Returns why the causes of the error are not measured; empty if they are.
@@ -110,7 +114,7 @@ std::vector<Eigen::Vector3f> directions_of(const Json& bake) {
 std::vector<double> prior_of(const ReportSettings& settings, int bands) {
   if (settings.error_lights == "measured") return lighting_prior(bands);
   std::vector<double> mean(static_cast<std::size_t>(bands));
-  for (const LightSpec& light : parse_lights("error-lights", list_of_lights(settings.error_lights))) {
+  for (const LightSpec& light : parse_lights("error-lights", list_of(settings.error_lights))) {
     const std::vector<double> moments = band_moments(light_coefficients(light, bands));
     const double square = unshadowed_exit_square(moments);
     if (square > 0)
@@ -138,7 +142,7 @@ ErrorSplit split_error(const AssetFolder& asset, const TriangleMesh& low, const 
                        .compressed = compressed ? &*compressed : nullptr,
                        .detail = detail,
                        .bake_directions = directions_of(asset.record("bake")),
-                       .bounces = static_cast<int>(bounces_taken(asset.record("bake"))),
+                       .bounces = error_bounces(asset, settings),
                        .prior = prior_of(settings, reference_bands(plain.bands)),
                        .sampling = sampling},
                       part_of(run.progress, 1 - split_share, 1));
@@ -249,7 +253,7 @@ double silhouette_difference(const LightComparison& comparison) {
 
 Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high_file, const ReportSettings& settings,
                                   const ComparisonRun& run) {
-  const std::vector<std::string> lights = list_of_lights(settings.lights);
+  const std::vector<std::string> lights = list_of(settings.lights);
   const std::vector<LightSpec> specs = parse_lights("lights", lights);
   Comparison comparison;
 
@@ -283,8 +287,8 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   view.supersample = supersample;
   view.albedo = static_cast<float>(albedo);
   view.surface_albedo = load_albedo(imported, material_of(asset.record("normals"))).albedo;
-  view.scene = scene_of(asset, imported);
   view.bounces = static_cast<int>(bounces_taken(asset.record("bake")));
+  view.scene = scene_of(asset, imported, view.bounces > 0 || error_bounces(asset, settings) > 0);
   view.bands = asset.baked.bands;
   // Take other directions than the bake, so that an error of the bake's does not cancel.
   const std::vector<Eigen::Vector3f> directions =
@@ -293,6 +297,7 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
       reference_pictures(high, view, specs, directions, part_of(run.progress, 0, 1 - split_share));
   comparison.error_left_out = left_out(asset);
   if (comparison.error_left_out.empty()) comparison.error = split_error(asset, atlas, high, view.scene, settings, run);
+  comparison.predicted = settings.predictions();
   comparison.reference_seconds = reference_watch.seconds();
 
   for (std::size_t k = 0; k < lights.size(); ++k) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,8 +35,9 @@ struct Comparison {
   bool software_renderer = false;
   double render_seconds = 0;
   double reference_seconds = 0;
-  std::optional<ErrorSplit> error;  ///< E of what is seen, and its causes
-  std::string error_left_out;       ///< why that was not measured
+  std::optional<ErrorSplit> error;          ///< E of what is seen, and its causes
+  std::string error_left_out;               ///< why that was not measured
+  std::map<std::string, double> predicted;  ///< what a plan predicted, by name
 };
 
 /// Context of a comparison beyond the settings.

@@ -23,7 +23,7 @@ namespace {
 constexpr int fewest_reference_directions = 4096;
 constexpr int most_reference_directions = 65536;
 constexpr int fewest_reference_bands = 16;
-constexpr int path_directions = 1024;  // of each of two sets, where light bounces
+constexpr int path_directions = 512;  // of each of two sets, where light bounces
 
 /// Transfer vectors of receivers, one after another.
 struct Vectors {
@@ -111,14 +111,34 @@ struct Step {
   StepPoints points = StepPoints::all;
 };
 
-/// Sums of squares over pixels, weighted by the prior over light.
+/// Squares, weighted by the prior over light.
+struct Squares {
+  BandSquares by_band;           ///< sums over pixels
+  std::vector<double> by_pixel;  ///< sums over bands
+
+  double total() const { return std::accumulate(by_band.begin(), by_band.end(), 0.0); }
+};
+
+/// Returns the half-width of the 95 % confidence interval of sqrt(a / b + more), for sums over pixels as they happened
+/// to fall ([Cochran 1977], section 6.4).
+double uncertainty_of_root(const Squares& a, const Squares& b, double more) {
+  const double norm = b.total(), ratio = a.total() / norm;
+  double sum = 0;
+  for (std::size_t k = 0; k < a.by_pixel.size(); ++k) {
+    const double residual = a.by_pixel[k] - ratio * b.by_pixel[k];
+    sum += residual * residual;
+  }
+  return 1.96 * std::sqrt(sum) / norm / (2 * std::sqrt(ratio + more));
+}
+
+/// Sums squares over pixels.
 class PixelSums {
  public:
   PixelSums(const ErrorSamples& samples, std::vector<double> prior) : samples_(samples), prior_(std::move(prior)) {}
 
   /// Returns d' S d by band, in the sum over pixels; d is a step's difference in the mean over a pixel's points, and
   /// the product is of its two estimates. Vectors hold `bands` bands of each channel.
-  BandSquares of_step(const Step& step, int bands) const {
+  Squares of_step(const Step& step, int bands) const {
     return sum(bands, step.points, step.from.first.length, [&](std::size_t point, auto& first, auto& second) {
       first += as_array(step.to.first, point) - as_array(step.from.first, point);
       second += as_array(step.to.second, point) - as_array(step.from.second, point);
@@ -126,7 +146,7 @@ class PixelSums {
   }
 
   /// Returns t' S t by band, likewise.
-  BandSquares of_vectors(const Station& vectors, int bands) const {
+  Squares of_vectors(const Station& vectors, int bands) const {
     return sum(bands, StepPoints::all, vectors.first.length, [&](std::size_t point, auto& first, auto& second) {
       first += as_array(vectors.first, point);
       second += as_array(vectors.second, point);
@@ -144,8 +164,8 @@ class PixelSums {
   }
 
   template <class AddPoint>
-  BandSquares sum(int bands, StepPoints points, std::size_t length, const AddPoint& add_point) const {
-    BandSquares squares(static_cast<std::size_t>(bands));
+  Squares sum(int bands, StepPoints points, std::size_t length, const AddPoint& add_point) const {
+    Squares squares{BandSquares(static_cast<std::size_t>(bands)), {}};
     const auto coefficients = static_cast<std::size_t>(coefficient_count(bands));
     Eigen::ArrayXd first(length), second(length);
     std::size_t begin = 0;
@@ -155,11 +175,15 @@ class PixelSums {
       for (std::size_t point = begin; point < end; ++point)
         if (counts(point, points)) add_point(point, first, second);
       const double share = 1 / static_cast<double>(end - begin);
+      double of_pixel = 0;
       for (std::size_t i = 0; i < length; ++i) {
         const auto band = static_cast<std::size_t>(band_of(static_cast<int>(i % coefficients)));
         const auto at = static_cast<Eigen::Index>(i);
-        squares[band] += prior_[band] * share * share * first[at] * second[at];
+        const double square = prior_[band] * share * share * first[at] * second[at];
+        squares.by_band[band] += square;
+        of_pixel += square;
       }
+      squares.by_pixel.push_back(of_pixel);
       begin = end;
     }
     return squares;
@@ -168,8 +192,6 @@ class PixelSums {
   const ErrorSamples& samples_;
   const std::vector<double> prior_;
 };
-
-double total_of(const BandSquares& squares) { return std::accumulate(squares.begin(), squares.end(), 0.0); }
 
 /// Computes transfer at points of the scene, by rays and, of light that bounces, by paths.
 class Transport {
@@ -203,6 +225,11 @@ class Transport {
     const BouncePaths paths(scene_, input_.scene, input_.bounces, offset_);
     paths.add(receivers, sample_directions(Sampling::fibonacci, path_directions, seed), seed << 32, colors);
     result.values.reserve(receivers.size() * result.length);
+    if (input_.asset.channels == 1) {
+      // A single channel stands for all colours.
+      for (std::size_t k = 0; k < colors[0].values.size(); ++k)
+        colors[0].values[k] = (colors[0].values[k] + colors[1].values[k] + colors[2].values[k]) / 3;
+    }
     for (std::size_t r = 0; r < receivers.size(); ++r)
       for (std::size_t c = 0; c < static_cast<std::size_t>(input_.asset.channels); ++c)
         for (int i = 0; i < coefficients; ++i) result.values.push_back(colors[c].plane(i)[r]);
@@ -231,7 +258,7 @@ struct TexelPoints {
 
 ErrorSampling sampling_of(const SplitInput& input) {
   ErrorSampling sampling = input.sampling;
-  if (input.bounces > 0) sampling.pixels = std::max<std::size_t>(1, sampling.pixels / 4);
+  if (input.bounces > 0 || sampling.pixel_size > 0) sampling.pixels = std::max<std::size_t>(1, sampling.pixels / 2);
   return sampling;
 }
 
@@ -265,13 +292,12 @@ ErrorSplit error_causes(const SplitInput& input, const ProgressFunction& progres
   progress(0.3);
   const Station direct_seen(in_all_channels(seen_in_all_bands));
   const Station direct_stood(in_all_channels(transport.direct(at_stood, bands)));
-  progress(0.4);
-  const Station filtered(in_all_channels(looked_up(samples, texels, transport.direct(at_texels, bands))));
-  progress(0.7);
-  const Vectors by_bake = transport.direct(at_texels, bands, input.bake_directions);
+  progress(0.6);
+  const Station sampled(in_all_channels(transport.direct(at_stood, bands, input.bake_directions)));
+  const Vectors by_bake = in_all_channels(transport.direct(at_texels, bands, input.bake_directions));
   progress(0.8);
-  const Station sampled(in_all_channels(looked_up(samples, texels, by_bake)));
-  const Station rounded(looked_up(samples, texels, rounded_to(input.asset, in_all_channels(by_bake))));
+  const Station filtered(looked_up(samples, texels, by_bake));
+  const Station rounded(looked_up(samples, texels, rounded_to(input.asset, by_bake)));
   const Station stored(looked_up(samples, texels, stored_vectors(input.asset, texels)));
   const Station compressed(input.compressed != nullptr
                                ? looked_up(samples, texels, stored_vectors(*input.compressed, texels))
@@ -280,7 +306,7 @@ ErrorSplit error_causes(const SplitInput& input, const ProgressFunction& progres
   const Station seen = direct_seen + bounced_seen;
   progress(0.9);
   // Bounced light is smooth: what arrives at the point seen arrives at the one near it, too.
-  const Station stood = direct_stood + bounced_seen;
+  const Station sampled_with_paths = sampled + bounced_seen;
   const Station bounced_at_texels = transport.bounced(at_texels);
   const Station with_paths = rounded + Station(looked_up(samples, texels, bounced_at_texels.first),
                                                looked_up(samples, texels, bounced_at_texels.second));
@@ -290,30 +316,32 @@ ErrorSplit error_causes(const SplitInput& input, const ProgressFunction& progres
   const PixelSums sums(samples, input.prior.empty() ? lighting_prior(split.bands) : input.prior);
   const auto inside = StepPoints::inside_charts;
   const Step steps[] = {{"geometry", direct_seen, direct_stood},
-                        {"texels", direct_stood, filtered, inside},
-                        {"directions", filtered, sampled, inside},
-                        {"bits", sampled, rounded, inside},
+                        {"directions", direct_stood, sampled},
+                        {"texels", sampled, filtered, inside},
+                        {"bits", filtered, rounded, inside},
                         {input.bounces > 0 ? "bounces" : "visibility", with_paths, stored, inside},
                         // Gutters are filled and both sides made equal, which mends part of what the texels there cost.
-                        {"seams", stood, stored, StepPoints::at_borders},
+                        {"seams", sampled_with_paths, stored, StepPoints::at_borders},
                         {"compression", stored, compressed}};
-  BandSquares seen_squares =
+  const Squares cut = sums.of_vectors(seen, bands);
+  Squares all =
       sums.of_vectors(Station(in_channels(seen_in_all_bands, coefficient_count(split.bands), channels)), split.bands);
-  const BandSquares cut = sums.of_vectors(seen, bands);
-  std::ranges::copy(cut, seen_squares.begin());
-  const double norm = total_of(cut), tail = total_of(seen_squares) - norm;
+  std::ranges::copy(cut.by_band, all.by_band.begin());
+  const double norm = cut.total(), tail = (all.total() - norm) / norm;
   // Without a sample, or without any light, the error is not a number, which keeps no budget.
-  const auto error = [&](double square) { return std::sqrt(std::max(0.0, square) / norm); };
+  const auto error = [](double square) { return std::sqrt(square < 0 ? 0 : square); };
   const auto relative = [&](BandSquares squares) {
     for (double& square : squares) square /= norm;
     return squares;
   };
-  split.seen = relative(seen_squares);
-  split.total = error(total_of(sums.of_step({"total", seen, compressed}, bands)) + tail);
+  const Squares whole = sums.of_step({"total", seen, compressed}, bands);
+  split.seen = relative(all.by_band);
+  split.total = error(whole.total() / norm + tail);
+  split.uncertainty = uncertainty_of_root(whole, cut, tail);
   for (const Step& step : steps) {
     if (step.cause == "compression" && input.compressed == nullptr) continue;
-    const BandSquares squares = sums.of_step(step, bands);
-    split.causes.push_back({step.cause, error(total_of(squares)), relative(squares)});
+    const Squares squares = sums.of_step(step, bands);
+    split.causes.push_back({step.cause, error(squares.total() / norm), relative(squares.by_band)});
   }
   split.causes.push_back({"bands", error(tail), {}});
   return split;
@@ -325,8 +353,13 @@ Json to_json(const ErrorSplit& split) {
     causes[cause.name] = cause.error;
     if (!cause.squares.empty()) squares[cause.name] = cause.squares;
   }
-  return {{"total", split.total},          {"causes", causes},         {"root_sum_of_causes", split.root_sum()},
-          {"squares_by_band", squares},    {"samples", split.samples}, {"reference_directions", split.directions},
+  return {{"total", split.total},
+          {"uncertainty", split.uncertainty},
+          {"causes", causes},
+          {"root_sum_of_causes", split.root_sum()},
+          {"squares_by_band", squares},
+          {"samples", split.samples},
+          {"reference_directions", split.directions},
           {"reference_bands", split.bands}};
 }
 

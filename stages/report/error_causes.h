@@ -28,6 +28,7 @@ struct ErrorCause {
 /// as they are unrelated.
 struct ErrorSplit {
   double total = 0;
+  double uncertainty = 0;  ///< half-width of its 95 % confidence interval, for the pixels it was measured at
   std::vector<ErrorCause> causes;
   BandSquares seen;         ///< squares of the transfer seen, in the reference's bands, over that in the asset's bands
   std::size_t samples = 0;  ///< pixels
@@ -51,19 +52,20 @@ struct SplitInput {
   int bounces = 0;                               ///< how often light bounces; the scene has albedos then
   std::vector<double> prior = {};                ///< moments of light by band, as many as of the reference; empty:
                                                  ///< lighting_prior
-  ErrorSampling sampling = {};                   ///< where light bounces a quarter of its pixels, which take paths
+  ErrorSampling sampling = {};                   ///< half of its pixels where they have a size or paths
 };
 
 /// Measures E at points spread evenly over the low mesh, each seen from a direction of its own, by changing one thing
 /// after another between what a viewer should see and what the asset has there:
 /// - `geometry`: transfer at the point of the high mesh that the viewer's ray meets, or at that which the low mesh's
 ///   point stands for;
-/// - `texels`: there, or looked up bilinearly between the texels' points;
-/// - `directions`: by the reference's directions, or by the bake's;
+/// - `directions`: there by the reference's directions, or by the bake's;
+/// - `texels`: at that point, or looked up bilinearly between the texels' points;
 /// - `bits`: as computed, or rounded to the planes' ranges;
 /// - `visibility`: by rays, or as stored; where light bounces it is called `bounces`, and paths add that light to the
 ///   rays';
-/// - `seams`: in place of those four, from the point to what is stored, where texels reach over the border of a chart;
+/// - `seams`: in place of the last three, from the point to what is stored, where texels at the border of a chart are
+/// looked up;
 /// - `compression`: as baked, or as compressed;
 /// - `bands`: what bands beyond the asset's would add, up to those of the result.
 /// Where pixels have a size, differences are those of pixels' means. Rays are Embree's. Paths are two sets of their

@@ -15,28 +15,31 @@ namespace kiln {
 
 namespace {
 
-constexpr int cells_per_side = 3;  // points of a pixel along each side
+constexpr int cells_per_side = 2;  // points of a pixel along each side
 
-Lookup lookup_at(const Eigen::Vector2f& uv, const DetailMaps& detail) {
-  const float x = uv.x() * static_cast<float>(detail.width) - 0.5f,
-              y = uv.y() * static_cast<float>(detail.height) - 0.5f;
-  const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
-  const float s = x - static_cast<float>(i), t = y - static_cast<float>(j);
-  Lookup lookup;
-  for (int k = 0; k < 4; ++k) {
-    const int column = std::clamp(i + k % 2, 0, detail.width - 1), row = std::clamp(j + k / 2, 0, detail.height - 1);
-    lookup.texels[k] = static_cast<std::uint32_t>(row * detail.width + column);
-    lookup.weights[k] = (k % 2 == 0 ? 1 - s : s) * (k / 2 == 0 ? 1 - t : t);
-    lookup.at_border = lookup.at_border || detail.covered[lookup.texels[k]] == 0;
-  }
-  return lookup;
+/// Marks the texels that no chart covers, and those beside one: the ones that gutters and seams change.
+std::vector<std::uint8_t> border_texels(const DetailMaps& detail) {
+  std::vector<std::uint8_t> border(detail.covered.size());
+  for (int j = 0; j < detail.height; ++j)
+    for (int i = 0; i < detail.width; ++i)
+      for (int y = std::max(0, j - 1); y <= std::min(detail.height - 1, j + 1); ++y)
+        for (int x = std::max(0, i - 1); x <= std::min(detail.width - 1, i + 1); ++x)
+          if (detail.covered[static_cast<std::size_t>(y * detail.width + x)] == 0)
+            border[static_cast<std::size_t>(j * detail.width + i)] = 1;
+  return border;
 }
 
 /// Makes the samples of one asset.
 class Sampler {
  public:
   Sampler(const TriangleMesh& high, const TriangleMesh& low, const DetailMaps& detail, const ErrorSampling& sampling)
-      : high_(high), low_(low), detail_(detail), sampling_(sampling), high_rays_(high), low_rays_(low) {
+      : high_(high),
+        low_(low),
+        detail_(detail),
+        sampling_(sampling),
+        high_rays_(high),
+        low_rays_(low),
+        border_(border_texels(detail)) {
     const float diagonal = bounding_box(high).sides().norm();
     reach_ = std::max(0.05f * diagonal, static_cast<float>(sampling.pixel_size));
     offset_ = 1e-4f * 0.05f * diagonal;
@@ -74,6 +77,22 @@ class Sampler {
     return !low_rays_.first_hit(origin, view, 0, std::numeric_limits<float>::infinity()).found();
   }
 
+  Lookup lookup_at(const Eigen::Vector2f& uv) const {
+    const float x = uv.x() * static_cast<float>(detail_.width) - 0.5f,
+                y = uv.y() * static_cast<float>(detail_.height) - 0.5f;
+    const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
+    const float s = x - static_cast<float>(i), t = y - static_cast<float>(j);
+    Lookup lookup;
+    for (int k = 0; k < 4; ++k) {
+      const int column = std::clamp(i + k % 2, 0, detail_.width - 1),
+                row = std::clamp(j + k / 2, 0, detail_.height - 1);
+      lookup.texels[k] = static_cast<std::uint32_t>(row * detail_.width + column);
+      lookup.weights[k] = (k % 2 == 0 ? 1 - s : s) * (k / 2 == 0 ? 1 - t : t);
+      lookup.at_border = lookup.at_border || border_[lookup.texels[k]] != 0;
+    }
+    return lookup;
+  }
+
   /// Adds the points of a pixel around `position`, on a lattice shifted by `shift`, 0 to 1, of its cells.
   void add_pixel(const Eigen::Vector3f& position, const Eigen::Vector3f& view, const Eigen::Vector2f& shift) {
     const Eigen::Vector3f across = view.unitOrthogonal(), along = view.cross(across);
@@ -97,7 +116,7 @@ class Sampler {
     samples_.seen_normals.push_back(normal_at(high_, seen));
     samples_.stood_positions.push_back(position_at(high_, stood));
     samples_.stood_normals.push_back(normal_at(high_, stood));
-    samples_.lookups.push_back(lookup_at(interpolate(low_, low_.uvs, place), detail_));
+    samples_.lookups.push_back(lookup_at(interpolate(low_, low_.uvs, place)));
   }
 
   const TriangleMesh& high_;
@@ -105,6 +124,7 @@ class Sampler {
   const DetailMaps& detail_;
   const ErrorSampling& sampling_;
   const RayScene high_rays_, low_rays_;
+  const std::vector<std::uint8_t> border_;
   float reach_ = 0;   ///< how far the high mesh is looked for
   float offset_ = 0;  ///< start of a view off the low mesh
   ErrorSamples samples_;

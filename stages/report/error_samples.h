@@ -15,7 +15,7 @@ namespace kiln {
 struct Lookup {
   std::array<std::uint32_t, 4> texels;
   std::array<float, 4> weights;
-  bool at_border = false;  ///< whether one of them is covered by no chart
+  bool at_border = false;  ///< whether one of them, or a neighbour of one, is covered by no chart
 };
 
 /// Points of an asset as viewers see them, pixel after pixel.

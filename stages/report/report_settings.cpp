@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/report_settings.h"
 
+#include <algorithm>
 #include <charconv>
 #include <optional>
 #include <sstream>
@@ -21,7 +22,31 @@ std::optional<double> parse_albedo(const std::string& text) {
   return value;
 }
 
+/// Parses `error-bounces`; returns nothing for baked.
+std::optional<int> parse_error_bounces(const std::string& text) {
+  if (text == "baked") return std::nullopt;
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < 0 || value > 100)
+    throw WrongUsage("error-bounces: found '" + text + "'; expected baked or a whole number, 0 to 100");
+  return value;
+}
+
 }  // namespace
+
+std::map<std::string, double> ReportSettings::predictions() const {
+  std::map<std::string, double> result;
+  for (const std::string& entry : list_of(predicted)) {
+    const std::size_t equals = entry.find('=');
+    double value = 0;
+    const char* const begin = entry.data() + std::min(equals, entry.size() - 1) + 1;
+    const auto [end, error] = std::from_chars(begin, entry.data() + entry.size(), value);
+    if (equals == std::string::npos || error != std::errc() || end != entry.data() + entry.size())
+      throw WrongUsage("predicted: found '" + entry + "'; expected NAME=NUMBER");
+    result[entry.substr(0, equals)] = value;
+  }
+  return result;
+}
 
 double ReportSettings::albedo_factor(bool asset_has_albedo) const {
   return albedo.value_or(asset_has_albedo ? 1 : 0.8);
@@ -54,18 +79,25 @@ OptionSet report_options(ReportSettings& settings) {
                  "The longest side of the asset's box as viewers see it, in pixels, over which errors are averaged; 0: "
                  "however near");
   options.integer("error-samples", settings.error_samples, 64, 1000000, "Pixels that the error is measured at");
+  options.typed<std::optional<int>>(
+      "error-bounces", settings.error_bounces, "baked or 0 to 100",
+      "How often light bounces in what the error is measured against; baked: as often as in the bake",
+      parse_error_bounces,
+      [](const std::optional<int>& bounces) { return bounces ? std::to_string(*bounces) : "baked"; });
+  options.text("predicted", settings.predicted,
+               "What `kiln plan` predicted, to show beside what is measured: 'total=0.008; geometry=0.004; ...'");
   return options;
 }
 
-std::vector<std::string> list_of_lights(const std::string& text_of_all) {
+std::vector<std::string> list_of(const std::string& text_of_all) {
   constexpr const char* blanks = " \t";
-  std::vector<std::string> lights;
+  std::vector<std::string> entries;
   std::istringstream text(text_of_all);
-  for (std::string light; std::getline(text, light, ';');) {
-    const std::size_t first = light.find_first_not_of(blanks);
-    if (first != std::string::npos) lights.push_back(light.substr(first, light.find_last_not_of(blanks) - first + 1));
+  for (std::string entry; std::getline(text, entry, ';');) {
+    const std::size_t first = entry.find_first_not_of(blanks);
+    if (first != std::string::npos) entries.push_back(entry.substr(first, entry.find_last_not_of(blanks) - first + 1));
   }
-  return lights;
+  return entries;
 }
 
 }  // namespace kiln

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,16 +24,21 @@ struct ReportSettings {
   /// Returns that factor; auto is 1 where the asset has an albedo of its own, else 0.8.
   double albedo_factor(bool asset_has_albedo) const;
 
+  /// Returns `predicted` by name. Throws WrongUsage for what is no list of NAME=NUMBER.
+  std::map<std::string, double> predictions() const;
+
   std::string gl_device = "auto";  ///< device that kiln-render draws on
 
   std::string error_lights = "measured";  ///< light that E expects: "measured", or lights like `lights`
   double error_pixels = 0;                ///< longest side of the asset as it is seen, pixels; 0: any size
   int error_samples = 4096;               ///< pixels that the error is measured at
+  std::optional<int> error_bounces;       ///< bounces of light that E expects; nothing: as many as were baked
+  std::string predicted;                  ///< what a plan predicted: "total=0.008; geometry=0.004; ..."
 };
 
 OptionSet report_options(ReportSettings& settings);
 
-/// Returns the lights of `lights` or `error_lights` one by one, blanks trimmed.
-std::vector<std::string> list_of_lights(const std::string& lights);
+/// Returns the entries of a list with semicolons, as `lights` is one, without blanks around them.
+std::vector<std::string> list_of(const std::string& text);
 
 }  // namespace kiln

@@ -17,7 +17,8 @@ constexpr const char* metric_names =
     "reference_seconds seconds";
 
 constexpr const char* error_names =
-    "error.total error.root_sum_of_causes error.samples error.reference_directions error.reference_bands "
+    "error.total error.uncertainty error.root_sum_of_causes error.samples error.reference_directions "
+    "error.reference_bands "
     "error.causes.geometry error.causes.texels error.causes.bands error.causes.directions error.causes.bits "
     "error.causes.seams";
 

@@ -451,9 +451,9 @@ TEST(Labels, AStageMayStandBeforeTheKey) {
 TEST(ReportSettings, LightsAreCutAtSemicolons) {
   ReportSettings settings;
   settings.lights = " 45,30 ;; ambient:1;";
-  EXPECT_EQ(list_of_lights(settings.lights), (std::vector<std::string>{"45,30", "ambient:1"}));
+  EXPECT_EQ(list_of(settings.lights), (std::vector<std::string>{"45,30", "ambient:1"}));
   settings.lights = "";
-  EXPECT_TRUE(list_of_lights(settings.lights).empty());
+  EXPECT_TRUE(list_of(settings.lights).empty());
 }
 
 TEST(Process, GivesLinesStatusAndSignal) {

@@ -12,6 +12,7 @@
 #include "kiln/gate/junit.h"
 #include "kiln/gate/markdown.h"
 #include "kiln/output_lock.h"
+#include "kiln/plan/plan.h"
 #include "kiln/stage_state.h"
 
 namespace kiln {
@@ -61,6 +62,7 @@ class Cleaner {
       removed_ += fs::remove(folder_ / output_ / name, error) ? 1 : 0;
     fs::remove_all(folder_ / output_ / comparison_folder, error);
     fs::remove_all(folder_ / notes_, error);
+    fs::remove_all(folder_ / output_ / pilots_folder, error);
     fs::remove(folder_ / output_, error);  // removes the folder only if it is empty
   }
 

@@ -17,6 +17,8 @@
 #include "kiln/init.h"
 #include "kiln/makefile.h"
 #include "kiln/pipeline.h"
+#include "kiln/plan/plan.h"
+#include "kiln/plan/plan_file.h"
 #include "kiln/report_command.h"
 #include "kiln/schema.h"
 #include "kiln/step.h"
@@ -31,6 +33,8 @@ struct Commands::Values {
   std::vector<std::string> words;  ///< a pipeline file and assets
   BuildSettings build;
   ReportCommand report;
+  PlanSettings plan_settings;
+  fs::path build_plan;
   SweepSettings sweep;
   std::vector<fs::path> meshes;
   fs::path file = "pipeline.yaml";
@@ -42,10 +46,13 @@ struct Commands::Values {
 
 namespace {
 
+/// Tells whether a word names a pipeline file, and not an asset.
+bool names_pipeline(const std::string& word) { return word.ends_with(".yaml") || word.ends_with(".yml"); }
+
 /// Takes the pipeline file off the front of `words`; the rest are assets.
 Pipeline take_pipeline(std::vector<std::string>& words) {
   std::string file = "pipeline.yaml";
-  if (!words.empty() && (words.front().ends_with(".yaml") || words.front().ends_with(".yml"))) {
+  if (!words.empty() && names_pipeline(words.front())) {
     file = words.front();
     words.erase(words.begin());
   }
@@ -82,10 +89,13 @@ void list(const Pipeline& pipeline, bool as_json) {
                 mesh_text(asset).c_str());
 }
 
-/// Builds. Faults found before a stage runs are in the JSON object as well.
-int run_build(std::vector<std::string>& words, const BuildSettings& settings) {
+/// Builds, by a plan if one is given. Faults found before a stage runs are in the JSON object as well.
+int run_build(std::vector<std::string>& words, const fs::path& plan, const BuildSettings& settings) {
   try {
-    const Pipeline pipeline = take_pipeline(words);
+    if (!plan.empty() && (words.empty() || !names_pipeline(words.front())))
+      words.insert(words.begin(), pipeline_of_plan(plan).string());
+    Pipeline pipeline = take_pipeline(words);
+    if (!plan.empty()) apply_plan(pipeline, plan);
     return build(pipeline, select_assets(pipeline, words), settings);
   } catch (const std::runtime_error& error) {
     const auto tell = [&](ExitCode code) {
@@ -134,13 +144,17 @@ Commands::Commands(CLI::App& app) : values_(std::make_unique<Values>()) {
   build.add_flag("--force", v.build.force, "Run all stages, also those that are up to date");
   build.add_option("--until", v.build.until, fmt::format("The last stage to run: {}", fmt::join(stage_names(), ", ")))
       ->type_name("STAGE");
+  build
+      .add_option("--plan", v.build_plan,
+                  "Build by a plan of `kiln plan`; without a pipeline, the one that the plan names")
+      ->type_name("FILE");
   build.add_flag("--json", v.build.json, "Print what became of every asset as one JSON object on stdout");
   build.add_flag("--quiet", v.build.quiet, "Print errors only");
   build.callback([&v] {
     if (!v.build.until.empty() && find_stage(v.build.until) == nullptr)
       throw WrongUsage(
           fmt::format("until: found '{}'; expected one of {}", v.build.until, fmt::join(stage_names(), ", ")));
-    v.status = run_build(v.words, v.build);
+    v.status = run_build(v.words, v.build_plan, v.build);
   });
 
   CLI::App& report = *app.add_subcommand("report", "Compare what was built with a baseline, for CI");
@@ -157,6 +171,45 @@ Commands::Commands(CLI::App& app) : values_(std::make_unique<Values>()) {
   report.callback([&v] {
     const Pipeline pipeline = take_pipeline(v.words);
     v.status = report_on(pipeline, select_assets(pipeline, v.words), v.report);
+  });
+
+  CLI::App& plan_command =
+      *app.add_subcommand("plan", "Choose the cheapest settings that keep an error, from small builds");
+  add_words(plan_command, v.words, "all that are not on request");
+  PlanSettings& plan_settings = v.plan_settings;
+  auto* const error =
+      plan_command
+          .add_option("--error", plan_settings.error,
+                      "The expected relighting error that assets may have, above 0 and below 1 (default: their budgets "
+                      "for report.error.total)")
+          ->check(CLI::Range(1e-6, 1.0));
+  plan_command
+      .add_option("--levels", plan_settings.levels, "The same, in levels of 8-bit sRGB in a mid-grey (0.01 to 50)")
+      ->check(CLI::Range(0.01, 50.0))
+      ->excludes(error);
+  plan_command.add_option("--bytes", plan_settings.bytes, "Bytes that an asset may ship (default any)")
+      ->check(CLI::PositiveNumber);
+  plan_command
+      .add_option("--seconds", plan_settings.seconds, "CPU seconds that an asset's build may take (default any)")
+      ->check(CLI::PositiveNumber);
+  plan_command
+      .add_option("--least", plan_settings.least,
+                  "The cost that is made least: seconds, bytes, or both, their product (default both)")
+      ->check(CLI::IsMember({"both", "seconds", "bytes"}));
+  plan_command
+      .add_option("--keep", plan_settings.keep, "A setting that stays as the pipeline has it; any number of --keep")
+      ->expected(1)
+      ->take_all()
+      ->type_name("STAGE.SETTING");
+  plan_command.add_option("-o,--output", plan_settings.output, "The plan (default plan.yaml)")->type_name("FILE");
+  plan_command
+      .add_option("-j,--jobs", plan_settings.jobs, "Stages at a time, 0 for one per core (default 0; 0 to 1024)")
+      ->check(CLI::Range(0, 1024));
+  plan_command.add_flag("--json", plan_settings.json, "Print the plan as one JSON object on stdout");
+  plan_command.add_flag("--quiet", plan_settings.quiet, "Print errors only");
+  plan_command.callback([&v] {
+    const Pipeline pipeline = take_pipeline(v.words);
+    v.status = plan(pipeline, select_assets(pipeline, v.words), v.plan_settings);
   });
 
   CLI::App& sweep_command = *app.add_subcommand("sweep", "Measure cost and error over combinations of settings");

@@ -11,6 +11,7 @@
 #include "base/outputs.h"
 #include "kiln/asset_names.h"
 #include "kiln/nearest.h"
+#include "kiln/presets.h"
 #include "kiln/setting_checks.h"
 #include "kiln/settings_layer.h"
 #include "kiln/yaml_file.h"
@@ -34,7 +35,7 @@ class Reader {
   Pipeline read() {
     const YAML::Node& root = file_.root();
     file_.require(root.IsMap() && root.size() > 0, root, "nothing to build", "a mapping with 'assets'");
-    file_.check_keys(root, {"output", "include", "defaults", "budgets", "assets", "scene"});
+    file_.check_keys(root, {"output", "preset", "include", "defaults", "budgets", "assets", "scene"});
 
     Pipeline pipeline{file_.file(), folder_of(file_.file()), "out", {}, {}};
     if (const YAML::Node output = root["output"]) pipeline.output = output_folder(output);
@@ -70,7 +71,8 @@ class Reader {
 
   /// Reads what applies to all assets: included files, then the pipeline's own settings.
   void read_shared(const YAML::Node& root) {
-    if (const YAML::Node include = root["include"]) shared_ = included_layers(file_, include, "");
+    if (const YAML::Node preset = root["preset"]) shared_.push_back(preset_of(preset));
+    if (const YAML::Node include = root["include"]) append(shared_, included_layers(file_, include, ""));
     SettingsLayer& own = shared_.emplace_back();
     own.is_shared = true;
     if (const YAML::Node blocks = root["defaults"]) {
@@ -78,6 +80,20 @@ class Reader {
       add_blocks(file_, blocks, "", own);
     }
     if (const YAML::Node block = root["budgets"]) add_budgets(file_, block, own);
+  }
+
+  static void append(std::vector<SettingsLayer>& layers, const std::vector<SettingsLayer>& more) {
+    layers.insert(layers.end(), more.begin(), more.end());
+  }
+
+  /// Returns the settings of a preset that the file names.
+  SettingsLayer preset_of(const YAML::Node& node) const {
+    std::vector<std::string> names;
+    for (const Preset& preset : all_presets()) names.emplace_back(preset.name);
+    const std::string expected = fmt::format("one of {}", fmt::join(names, ", ")), name = file_.scalar(node, expected);
+    const Preset* preset = find_preset(name);
+    file_.require(preset != nullptr, node, "'" + name + "'", expected);
+    return preset_layer(*preset, file_.where(node));
   }
 
   /// Tests whether a key of `assets` stands for mesh files, and is not a name.
@@ -164,11 +180,12 @@ class Reader {
   /// Reads the settings of an asset, or of those of a pattern; returns the value of `default`.
   std::optional<bool> read_body(const YAML::Node& body, std::vector<std::string> known,
                                 std::vector<SettingsLayer>& layers) const {
-    for (const char* name : {"default", "budgets", "include"}) known.emplace_back(name);
+    for (const char* name : {"default", "preset", "budgets", "include"}) known.emplace_back(name);
     const std::vector<std::string> blocks = names_of_blocks();
     known.insert(known.end(), blocks.begin(), blocks.end());
     file_.check_keys(body, known);
-    if (const YAML::Node include = body["include"]) layers = included_layers(file_, include, "");
+    if (const YAML::Node preset = body["preset"]) layers.push_back(preset_of(preset));
+    if (const YAML::Node include = body["include"]) append(layers, included_layers(file_, include, ""));
     SettingsLayer& own = layers.emplace_back();
     add_blocks(file_, body, "", own);
     if (const YAML::Node block = body["budgets"]) add_budgets(file_, block, own);

@@ -8,6 +8,7 @@
 
 #include "base/json.h"
 #include "import/import_settings.h"
+#include "kiln/presets.h"
 #include "kiln/stages.h"
 
 namespace kiln {
@@ -112,6 +113,16 @@ Json block_references() {
   return blocks;
 }
 
+Json preset_schema() {
+  Json names = Json::array();
+  std::string purposes;
+  for (const Preset& preset : all_presets()) {
+    names.push_back(preset.name);
+    purposes += fmt::format("{}{}: {}", purposes.empty() ? "" : "; ", preset.name, preset.purpose);
+  }
+  return {{"enum", names}, {"description", "Settings that belong together, which others change: " + purposes}};
+}
+
 Json definitions() {
   const Json number = {{"type", "number"}};
   Json defs = {{"import", import_schema()}, {"material", material_schema()}};
@@ -121,6 +132,7 @@ Json definitions() {
   defs["budgets"] = {{"type", "object"},
                      {"propertyNames", {{"pattern", "^[a-z]+(\\.[A-Za-z0-9_-]+)+$"}}},
                      {"additionalProperties", limits}};
+  defs["preset"] = preset_schema();
   defs["paths"] = {{"type", {"string", "array"}}, {"items", {{"type", "string"}}}};
   Json archive = object_of({{"archive", {{"type", "string"}}}, {"member", {{"type", "string"}}}});
   archive["required"] = {"archive", "member"};
@@ -131,7 +143,8 @@ Json definitions() {
   body.update({{"mesh", reference("mesh")},
                {"default", {{"type", "boolean"}}},
                {"budgets", reference("budgets")},
-               {"include", reference("paths")}});
+               {"include", reference("paths")},
+               {"preset", reference("preset")}});
   defs["asset"] = object_of(body);
   defs["asset"]["type"] = {"object", "null"};
   return defs;
@@ -148,6 +161,7 @@ Json pipeline_schema() {
                  {"description", "Made by `kiln schema` from the stages' option tables."}};
   schema.update(object_of({{"output", {{"type", "string"}}},
                            {"include", reference("paths")},
+                           {"preset", reference("preset")},
                            {"defaults", object_of(block_references())},
                            {"budgets", reference("budgets")},
                            {"assets", {{"anyOf", {bodies, names}}}},

@@ -125,12 +125,13 @@ class Checks {
 
   void check_report() const {
     const auto settings = settings_from(asset_.settings.at("report"), report_options);
-    const std::vector<std::string> lights = list_of_lights(settings.lights);
+    const std::vector<std::string> lights = list_of(settings.lights);
     require(!lights.empty(), "report", "lights", "at least one light", "change the line");
     for (const std::string& light : lights)
       try_parsing(where("report", {"lights"}), "see kiln-report --help", [&] { parse_light_spec(light); });
+    try_parsing(where("report", {"predicted"}), "see kiln-report --help", [&] { settings.predictions(); });
     if (settings.error_lights == "measured") return;
-    for (const std::string& light : list_of_lights(settings.error_lights))
+    for (const std::string& light : list_of(settings.error_lights))
       try_parsing(where("report", {"error-lights"}), "see kiln-report --help", [&] { parse_light_spec(light); });
   }
 

@@ -49,7 +49,7 @@ Row budget_row(const AssetGate& asset, const BudgetVerdict& verdict) {
           std::isfinite(excess) ? excess : HUGE_VAL};
 }
 
-Row change_row(const AssetGate& asset, const MetricChange& change) {
+Row row_of_change(const AssetGate& asset, const MetricChange& change) {
   return {row(asset.name, change.metric, number_text(change.was), number_text(change.now),
               relative_text(change.relative())),
           std::abs(change.relative())};
@@ -79,7 +79,7 @@ Table changes_of(const Gate& gate, ChangeKind kind, const std::string& title) {
   Table table{title, {}};
   for (const AssetGate& asset : gate.assets) {
     for (const MetricChange& change : asset.changes)
-      if (change.kind == kind) table.rows.push_back(change_row(asset, change));
+      if (change.kind == kind) table.rows.push_back(row_of_change(asset, change));
     if (kind == ChangeKind::worse && asset.picture && asset.picture->is_drift)
       table.rows.push_back({row(asset.name, "picture", "", fmt::format("{:+.2f} levels", asset.picture->mean_shift),
                                 fmt::format("drift, not noise: sigma {:.2f}", asset.picture->sigma)),

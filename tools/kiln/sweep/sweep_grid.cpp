@@ -7,7 +7,7 @@
 #include <set>
 
 #include "base/errors.h"
-#include "kiln/setting_checks.h"
+#include "kiln/overrides.h"
 
 namespace kiln {
 
@@ -90,16 +90,8 @@ Pipeline pipeline_at(const Pipeline& pipeline, const SweepPoint& point) {
   Pipeline changed = pipeline;
   for (Asset& asset : changed.assets) {
     asset.budgets.clear();
-    for (const auto& [name, value] : point.settings) {
-      const std::size_t dot = name.find('.');
-      const std::string stage = name.substr(0, dot), setting = name.substr(dot + 1);
-      StageSettings& settings = asset.settings[stage];
-      for (const std::string& rival : stage_info(stage).rivals_of(setting)) settings.erase(rival);
-      settings[setting] = value;
-      asset.setting_lines[stage][setting] = "--set " + name;
-    }
     try {
-      check_settings(asset);
+      override_settings(asset, point.settings, "--set");
     } catch (const BadInput& fault) {
       throw WrongUsage(fault.what());
     }

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "kiln/overrides.h"
 #include "kiln/pipeline.h"
 
 namespace kiln {
@@ -20,8 +20,8 @@ struct SweepAxis {
 
 /// Settings of one point of a sweep, over those of the pipeline.
 struct SweepPoint {
-  std::string name;                                           ///< "today", "thesis", "patent"; empty on the grid
-  std::vector<std::pair<std::string, std::string>> settings;  ///< "bake.directions" and its text
+  std::string name;    ///< "today", "thesis", "patent"; empty on the grid
+  Overrides settings;  ///< "bake.directions" and its text
 };
 
 /// Reads "STAGE.SETTING=VALUE,VALUE,...". Throws WrongUsage for unknown stages and settings, values that the setting

@@ -9,6 +9,7 @@
 #include "base/asset_layout.h"
 #include "base/outputs.h"
 #include "kiln/gate/metric_changes.h"
+#include "kiln/shipped.h"
 #include "report/judging.h"
 
 namespace kiln {
@@ -21,16 +22,6 @@ Json read_record(const fs::path& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return {};
   return Json::parse(read_text(file), nullptr, false);
-}
-
-long long bytes_of_folder(const fs::path& folder) {
-  long long bytes = 0;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error))
-    // Leaves out the record, which no runtime reads.
-    if (entry.is_regular_file(error) && entry.path().stem() != "bake" && entry.path().stem() != "compress")
-      bytes += static_cast<long long>(entry.file_size(error));
-  return bytes;
 }
 
 std::string quoted(const std::string& text) {
@@ -107,7 +98,7 @@ SweepResult read_result(const std::string& asset, const SweepPoint& point, const
       if (std::isfinite(value)) result.metrics[name] = value;
   }
   const bool is_compressed = std::ranges::find(stages, "compress") != stages.end();
-  result.bytes = bytes_of_folder(layout::stage_folder(folder, is_compressed ? "compress" : "bake"));
+  result.bytes = shipped_bytes(layout::stage_folder(folder, is_compressed ? "compress" : "bake"));
   return result;
 }
 

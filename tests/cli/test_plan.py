@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""test_plan.py PROGRAMS SOURCES: `kiln plan` chooses settings that keep an error, `kiln build --plan` builds them, and the
+report sets what was predicted beside what it measures."""
+import json, pathlib, subprocess, sys, tempfile
+import yaml
+
+programs, sources = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+# A soft sky, so that few bands serve.
+PIPELINE = """
+output: out
+defaults:
+  atlas: {gutter: 2}
+  report:
+    error-lights: 'hemisphere:0,90,1,1,1,0.3,0.3,0.3'
+    error-samples: 1024
+    picture-size: 64
+    directions: 32
+    lights: ['45,30']
+assets:
+  post: {mesh: post.obj}
+  jade: {mesh: post.obj, bake: {subsurface: marble}}
+"""
+
+
+def run(*words, status=0):
+    result = subprocess.run([programs / "kiln", *words], capture_output=True, text=True, cwd=folder)
+    assert result.returncode == status, f"{words} ended with {result.returncode}: {result.stderr}"
+    return result
+
+
+with tempfile.TemporaryDirectory() as name:
+    folder = pathlib.Path(name)
+    (folder / "post.obj").write_text((sources / "examples" / "post.obj").read_text())
+    (folder / "pipeline.yaml").write_text(PIPELINE)
+
+    # Without an error there is nothing to plan for; what cannot be kept has no plan.
+    assert "--error" in run("plan", status=2).stderr
+    refused = run("plan", "post", "--error", "0.0001", status=4)
+    assert "post" in refused.stderr and "least" in refused.stderr, refused.stderr
+    assert not (folder / "plan.yaml").exists()
+    assert "keep" in run("plan", "post", "--error", "0.1", "--keep", "atlas.gutter", status=2).stderr
+
+    said = json.loads(run("plan", "--error", "0.08", "--json", "--keep", "bake.bits").stdout)
+    post, jade = said["assets"]
+    assert post["name"] == "post" and post["kept"] and post["predicted"]["total"] < 0.08, post
+    assert "bake.bits" not in post["settings"]
+    # A hemisphere has two bands, and the surface keeps no more of it than three.
+    assert int(post["settings"]["bake.bands"]) <= 3, post
+    assert "subsurface" in jade["left_alone"], jade
+    plan = yaml.safe_load((folder / "plan.yaml").read_text())
+    assert plan["pipeline"] == "pipeline.yaml" and list(plan["assets"]) == ["post"]
+    assert str(plan["assets"]["post"]["bake"]["bands"]) == post["settings"]["bake.bands"]
+
+    # The build needs no pipeline beside the plan, and keeps the error as a budget.
+    run("build", "--plan", "plan.yaml", "post", "--quiet")
+    error = json.loads((folder / "out" / "post" / "metrics.json").read_text())["error"]
+    assert error["predicted"]["asked"] == 0.08 and error["total"] <= 0.08, error
+    page = (folder / "out" / "post" / "report.html").read_text()
+    assert "Asked" in page and "predicted" in page
+
+    # A plan that people change is built as changed: too few texels miss the budget.
+    text = (folder / "plan.yaml").read_text()
+    size = f"size: {plan['assets']['post']['atlas']['size']}"
+    assert size in text
+    (folder / "plan.yaml").write_text(text.replace(size, "size: 16"))
+    missed = run("build", "--plan", "plan.yaml", "post", "--quiet", status=4)
+    assert "report.error.total" in missed.stderr, missed.stderr
+
+    # The pilots are kept: a second plan builds nothing.
+    record = folder / "out" / ".pilots" / "fine" / "post" / "prt" / "bake.json"
+    before = record.stat().st_mtime_ns
+    run("plan", "post", "--error", "0.1", "-o", "other.yaml", "--quiet")
+    assert record.stat().st_mtime_ns == before, "the second plan baked"
+    run("clean", "--quiet")
+    assert not (folder / "out").exists()

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+
+#include "base/errors.h"
+#include "kiln/plan/choice.h"
+#include "kiln/plan/plan.h"
+#include "kiln/plan/plan_file.h"
+#include "kiln/presets.h"
+#include "scratch.h"
+
+namespace kiln {
+namespace {
+
+/// Makes a build whose errors follow laws that are known: geometry 10 / triangles, texels 1 / root of their number,
+/// directions their number to the power -3/4, all of them in band 0; each band sees half of what the last one does.
+PilotBuild build_of(double triangles, double size, double directions) {
+  PilotBuild build;
+  build.triangles = triangles;
+  build.size = size;
+  build.texels = 0.5 * size * size;
+  build.directions = directions;
+  build.bands = 6;
+  for (int l = 0; l < 16; ++l) build.seen.push_back(std::pow(0.5, l));
+  const auto put = [&](const char* cause, double error) {
+    build.squares[cause] = std::vector<double>(6, 0.0);
+    build.squares[cause][0] = error * error;
+  };
+  put("geometry", 10 / std::pow(triangles, 0.75));
+  put("texels", 1 / std::sqrt(build.texels));
+  put("seams", 0.1 / std::sqrt(build.texels));
+  put("directions", std::pow(directions, -0.75));
+  put("bits", 0.002);
+  put("visibility", 0.001);
+  build.total = build.root_sum = 0.1;
+  build.uncertainty = 0.002;
+  build.cpu_seconds = {{"simplify", 1},
+                       {"atlas", 0.5 + triangles / 10000},
+                       {"normals", 0.2 + build.texels / 1e5},
+                       {"bake", 0.4 + build.texels * directions / 1e7}};
+  build.mesh_bytes = 1000 + 3 * triangles;
+  build.map_bytes = 4 * build.texels;
+  build.plane_bytes = 30 * build.texels;
+  return build;
+}
+
+AssetModel model() {
+  Pilot pilot;
+  pilot.coarse = build_of(500, 64, 256);
+  pilot.fine = build_of(2000, 128, 1024);
+  pilot.input_triangles = 100000;
+  return AssetModel(pilot);
+}
+
+TEST(PowerLaw, GoesThroughBothPointsWithinItsExponents) {
+  EXPECT_NEAR(power_law(1, 8, 4, 1, 16, -3, 0), 0.125, 1e-12);
+  EXPECT_NEAR(power_law(1, 8, 4, 1, 1, -3, 0), 8, 1e-12);
+  EXPECT_NEAR(power_law(1, 8, 4, 1, 16, -0.5, 0), 0.5, 1e-12);  // no steeper than asked
+  EXPECT_EQ(power_law(1, 1, 4, 2, 16, -3, 0), 2);               // never rises
+  EXPECT_EQ(power_law(3, 8, 3, 1, 16, -3, 0), 1);
+  EXPECT_EQ(power_law(1, 0, 4, 0, 16, -3, 0), 0);
+}
+
+TEST(AssetModel, PredictsWhatItsLawsSay) {
+  const Prediction at = model().predict({8000, 256, 6, 4096, 8, false, 0});
+  const PilotBuild truth = build_of(8000, 256, 4096);
+  double kept = 0, all = 0;
+  for (int l = 0; l < 16; ++l) (l < 6 ? kept : all) += truth.seen[static_cast<std::size_t>(l)];
+  for (const char* cause : {"geometry", "texels", "seams", "directions", "bits", "visibility"})
+    EXPECT_NEAR(at.causes.at(cause), error_of(truth, cause, 6), 1e-3 * error_of(truth, cause, 6)) << cause;
+  EXPECT_NEAR(at.causes.at("bands"), std::sqrt(all / kept), 1e-12);
+  double seconds = 0;
+  for (const auto& [stage, cpu] : truth.cpu_seconds) seconds += cpu;
+  EXPECT_NEAR(at.cpu_seconds, seconds, 1e-3 * seconds);
+  EXPECT_NEAR(at.bytes, truth.mesh_bytes + truth.map_bytes + truth.plane_bytes, 0.01 * at.bytes);
+}
+
+TEST(AssetModel, FewerBandsCostTheirLightAndNoBytes) {
+  const AssetModel asset = model();
+  const Prediction six = asset.predict({2000, 128, 6, 1024, 8, false, 0});
+  const Prediction three = asset.predict({2000, 128, 3, 1024, 8, false, 0});
+  EXPECT_GT(three.causes.at("bands"), 2 * six.causes.at("bands"));
+  // A quarter of the planes; mesh and maps stay.
+  EXPECT_NEAR(six.bytes - three.bytes, 0.75 * asset.pilot().fine.plane_bytes, 1);
+  const Prediction fine_bits = asset.predict({2000, 128, 6, 1024, 16, false, 0});
+  EXPECT_NEAR(fine_bits.causes.at("bits"), six.causes.at("bits") / 256, 1e-9);
+}
+
+TEST(AssetModel, AllOfTheHighMeshHasNoErrorOfGeometry) {
+  EXPECT_EQ(model().predict({100000, 128, 6, 1024, 8, false, 0}).causes.at("geometry"), 0);
+}
+
+TEST(Cheapest, KeepsTheErrorAndIsCheaperThanAllOthersThatDo) {
+  const AssetModel asset = model();
+  const std::vector<Choice> choices = choices_of(full_grid(asset), 0);
+  for (const PlanCost cost : {PlanCost::both, PlanCost::seconds, PlanCost::bytes}) {
+    PlanGoal goal;
+    goal.error = 0.3;
+    goal.cost = cost;
+    const std::optional<PlannedChoice> best = cheapest(asset, choices, goal);
+    ASSERT_TRUE(best);
+    EXPECT_LE(best->prediction.error * 1.1, goal.error);
+    for (const Choice& choice : choices) {
+      const Prediction other = asset.predict(choice);
+      if (other.error * 1.1 <= goal.error) {
+        ASSERT_GE(cost_of(other, cost), cost_of(best->prediction, cost));
+      }
+    }
+  }
+}
+
+TEST(Cheapest, IsNoneBeyondReach) {
+  const AssetModel asset = model();
+  const std::vector<Choice> choices = choices_of(full_grid(asset), 0);
+  PlanGoal goal;
+  goal.error = 0.01;  // six bands alone cost more
+  EXPECT_FALSE(cheapest(asset, choices, goal));
+  const std::optional<PlannedChoice> closest = most_accurate(asset, choices, goal);
+  ASSERT_TRUE(closest);
+  EXPECT_GT(closest->prediction.error, goal.error);
+  goal.error = 0.3;
+  goal.bytes = 10;
+  EXPECT_FALSE(cheapest(asset, choices, goal));
+}
+
+TEST(Choices, HaveDirectionsEnoughForTheirBands) {
+  for (const Choice& choice : choices_of(full_grid(model()), 0))
+    ASSERT_GE(choice.directions, 4 * choice.bands * choice.bands);
+}
+
+TEST(ErrorOfLevels, IsOneStepOfEightBitsInAMidGrey) {
+  const auto encoded = [](double linear) { return 1.055 * std::pow(linear, 1 / 2.4) - 0.055; };
+  const double error = error_of_levels(1);
+  EXPECT_NEAR(encoded(0.2 * (1 + error)) - encoded(0.2), 1.0 / 255, 1e-4 / 255 * 100);
+}
+
+/// A pipeline and a plan in a folder of their own.
+class PlanFile : public ::testing::Test {
+ protected:
+  void write(const std::string& name, const std::string& text) const { std::ofstream(scratch_ / name) << text; }
+
+  void SetUp() override {
+    write("ball.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    write("pipeline.yaml",
+          "budgets:\n  report.error.total: {max: 0.5}\nassets:\n  ball: {mesh: ball.obj, simplify: {max-error: 0.01}}\n");
+  }
+
+  std::filesystem::path file(const std::string& name) const { return scratch_ / name; }
+
+  Scratch scratch_;
+};
+
+TEST_F(PlanFile, GivesBackWhatItWasWrittenOf) {
+  PlannedAsset planned{"ball", 0.02, "", {}, {}, {}};
+  planned.lines = {{"simplify.faces", "1400", "1 % of error"}, {"bake.directions", "512", "why: 'a' # \"b\""}};
+  planned.prediction = {0.018, 0.001, {{"geometry", 0.01}, {"bands", 0.015}}, 3.5, 12345};
+  write_plan(file("plan.yaml"), "pipeline.yaml", {planned}, 7);
+  EXPECT_EQ(pipeline_of_plan(file("plan.yaml")), file("pipeline.yaml"));
+  Pipeline pipeline = load_pipeline(file("pipeline.yaml"));
+  apply_plan(pipeline, file("plan.yaml"));
+  const Asset& ball = pipeline.assets.front();
+  EXPECT_EQ(ball.settings.at("simplify").at("faces"), "1400");
+  EXPECT_EQ(ball.settings.at("bake").at("directions"), "512");
+  EXPECT_FALSE(ball.settings.at("simplify").contains("max-error")) << "it excludes faces";
+  EXPECT_EQ(ball.budgets, std::vector<std::string>{"report.error.total<=0.02"}) << "in place of the pipeline's";
+  EXPECT_EQ(ball.settings.at("report").at("predicted"),
+            "asked=0.02; total=0.018; bands=0.015; geometry=0.01; cpu_seconds=3.5; bytes=12345");
+}
+
+TEST_F(PlanFile, RefusesWhatThePipelineHasNot) {
+  const auto fault_of = [&](const std::string& text) -> std::string {
+    write("plan.yaml", text);
+    try {
+      Pipeline pipeline = load_pipeline(file("pipeline.yaml"));
+      apply_plan(pipeline, file("plan.yaml"));
+    } catch (const BadInput& fault) {
+      return fault.what();
+    }
+    return "no fault";
+  };
+  EXPECT_NE(fault_of("pipeline: pipeline.yaml\nassets:\n  cube: {}\n").find("plan.yaml:3"), std::string::npos);
+  EXPECT_NE(fault_of("assets:\n  ball: {bake: {directions: no}}\n").find("plan.yaml:2"), std::string::npos);
+  EXPECT_NE(fault_of("assets:\n  ball: {bake: {direction: 5}}\n").find("direction"), std::string::npos);
+  EXPECT_NE(fault_of("pipeline: pipeline.yaml\n").find("no 'assets'"), std::string::npos);
+  write("plan.yaml", "assets: {}\n");
+  EXPECT_THROW(pipeline_of_plan(file("plan.yaml")), BadInput);
+}
+
+TEST_F(PlanFile, PresetsAreWeakerThanWhatStandsBesideThem) {
+  write("pipeline.yaml",
+        "preset: draft\ndefaults: {atlas: {size: 777}}\nassets:\n  ball: {mesh: ball.obj}\n"
+        "  hero: {mesh: ball.obj, preset: final, bake: {bands: 3}}\n");
+  const Pipeline pipeline = load_pipeline(file("pipeline.yaml"));
+  const auto preset = [](const char* name, const std::string& setting) {
+    for (const auto& [key, value] : find_preset(name)->settings)
+      if (key == setting) return value;
+    return std::string();
+  };
+  const AssetSettings &ball = pipeline.assets[0].settings, &hero = pipeline.assets[1].settings;
+  EXPECT_EQ(ball.at("simplify").at("faces"), preset("draft", "simplify.faces"));
+  EXPECT_EQ(ball.at("atlas").at("size"), "777");
+  EXPECT_EQ(hero.at("simplify").at("faces"), preset("final", "simplify.faces"));
+  EXPECT_EQ(hero.at("atlas").at("size"), preset("final", "atlas.size")) << "an asset's preset is nearer than defaults";
+  EXPECT_EQ(hero.at("bake").at("bands"), "3");
+  write("pipeline.yaml", "preset: finest\nassets:\n  ball: {mesh: ball.obj}\n");
+  try {
+    load_pipeline(file("pipeline.yaml"));
+    FAIL() << "an unknown preset";
+  } catch (const BadInput& fault) {
+    EXPECT_NE(std::string(fault.what()).find("draft, standard, final"), std::string::npos) << fault.what();
+  }
+}
+
+}  // namespace
+}  // namespace kiln

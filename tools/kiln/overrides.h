@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "kiln/pipeline.h"
+
+namespace kiln {
+
+/// Settings over those of a pipeline: "bake.directions" and its text.
+using Overrides = std::vector<std::pair<std::string, std::string>>;
+
+/// Gives an asset these settings; each removes those that it excludes, and a stage that the asset did not pass is
+/// passed. `source` says in messages where a setting stands, given its name.
+void override_settings(Asset& asset, const Overrides& overrides, const std::string& source);
+
+}  // namespace kiln

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "kiln/plan/asset_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace kiln {
+
+namespace {
+
+/// Bits of the planes of every pilot.
+constexpr int pilot_bits = 8;
+
+double sum_of_first(const std::vector<double>& values, int count) {
+  const std::size_t n = std::min(values.size(), static_cast<std::size_t>(count));
+  return std::accumulate(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(n), 0.0);
+}
+
+/// Returns the square of a cause's error in an asset of so many bands; 0 where the build has no such cause.
+double square_of(const PilotBuild& build, const std::string& cause, int bands) {
+  const auto found = build.squares.find(cause);
+  if (found == build.squares.end()) return 0;
+  return std::max(0.0, sum_of_first(found->second, bands) / sum_of_first(build.seen, bands));
+}
+
+/// Returns the value at `x` of the line through two points, which neither falls nor begins below 0.
+double rising_line(double x1, double y1, double x2, double y2, double x) {
+  if (x2 <= x1) return y2;
+  const double slope = std::max(0.0, (y2 - y1) / (x2 - x1));
+  return std::max(0.0, y2 - slope * x2) + slope * x;
+}
+
+double stage_seconds(const PilotBuild& build, const std::string& stage) {
+  const auto found = build.cpu_seconds.find(stage);
+  return found == build.cpu_seconds.end() ? 0 : found->second;
+}
+
+}  // namespace
+
+double error_of(const PilotBuild& build, const std::string& cause, int bands) {
+  return std::sqrt(square_of(build, cause, bands));
+}
+
+double power_law(double x1, double y1, double x2, double y2, double x, double least, double most) {
+  if (!(x1 > 0 && x2 > 0 && y1 > 0 && y2 > 0) || x1 == x2) return y2;
+  const double exponent = std::clamp(std::log(y2 / y1) / std::log(x2 / x1), least, most);
+  return y2 * std::pow(x / x2, exponent);
+}
+
+AssetModel::AssetModel(Pilot pilot) : pilot_(std::move(pilot)) {}
+
+double AssetModel::texels(double size) const {
+  // Gutters take a strip along every chart, whose share of the side falls with the size.
+  const auto side = [](const PilotBuild& build) { return std::sqrt(build.texels); };
+  const double slope = (side(pilot_.fine) - side(pilot_.coarse)) / (pilot_.fine.size - pilot_.coarse.size);
+  const double covered = side(pilot_.fine) + std::clamp(slope, 0.5, 1.0) * (size - pilot_.fine.size);
+  return std::max(1.0, covered * covered);
+}
+
+Prediction AssetModel::predict(const Choice& choice) const {
+  const PilotBuild &coarse = pilot_.coarse, &fine = pilot_.fine;
+  const int bands = choice.bands;
+  std::map<std::string, double> squares;
+  const auto follow = [&](const char* cause, double PilotBuild::*variable, double x, double steepest) {
+    squares[cause] = power_law(coarse.*variable, square_of(coarse, cause, bands), fine.*variable,
+                               square_of(fine, cause, bands), x, -steepest, 0);
+  };
+  // Exponents of squares, at most: of a transfer that jumps, a lookup's error falls with the texels' distance for the
+  // share of points near a jump, as does a quadrature's with the power 3/4 of its directions [Brauchart 2014]; seams
+  // are points at borders, whose share falls likewise, but never as fast as where every texel is at one.
+  follow("geometry", &PilotBuild::triangles, choice.triangles, 1.5);
+  if (choice.triangles >= pilot_.input_triangles) squares["geometry"] = 0;
+  const double covered = texels(choice.size);
+  follow("texels", &PilotBuild::texels, covered, 1.5);
+  follow("seams", &PilotBuild::texels, covered, 1);
+  follow("directions", &PilotBuild::directions, choice.directions, 1.5);
+  squares["bits"] = square_of(fine, "bits", bands) * std::pow(0.25, choice.bits - pilot_bits);
+  if (pilot_.has_bounces && choice.bounces)
+    // Bounced light is gathered over the bake's directions. Its error is averaged over the four texels of a lookup,
+    // which keeps 4/9 of its square, until texels are finer than its grain.
+    squares["bounces"] =
+        9.0 / 4 * square_of(fine, "bounces", bands) * std::pow(fine.directions / choice.directions, 1.5);
+  else if (pilot_.has_bounces)
+    squares["bounces"] = square_of(pilot_.without_bounces, "bounces", bands);
+  else
+    squares["visibility"] = square_of(fine, "visibility", bands);
+  const double kept = sum_of_first(fine.seen, bands);
+  squares["bands"] = (sum_of_first(fine.seen, static_cast<int>(fine.seen.size())) - kept) / kept;
+  if (choice.compression > 0) {
+    // kiln-compress keeps its error by the measured prior; the pilot says what that is in the light expected here.
+    squares["compression"] = choice.compression * choice.compression;
+    if (pilot_.is_compressed) squares["compression"] = square_of(pilot_.compressed, "compression", bands);
+  }
+  Prediction prediction;
+  double sum = 0;
+  for (const auto& [cause, square] : squares) {
+    prediction.causes[cause] = std::sqrt(square);
+    sum += square;
+  }
+  // Causes that are related add up to less, or more: take the pilot's own ratio.
+  const double ratio = fine.root_sum > 0 ? std::clamp(fine.total / fine.root_sum, 0.85, 1.1) : 1;
+  prediction.error = ratio * std::sqrt(sum);
+  prediction.uncertainty = prediction.error * fine.uncertainty / fine.total;
+  prediction.cpu_seconds = cpu_seconds(choice);
+  prediction.bytes = bytes(choice);
+  return prediction;
+}
+
+double AssetModel::cpu_seconds(const Choice& choice) const {
+  const PilotBuild &coarse = pilot_.coarse, &fine = pilot_.fine;
+  const double covered = texels(choice.size);
+  const auto line = [&](const char* stage, double work_coarse, double work_fine, double work) {
+    return rising_line(work_coarse, stage_seconds(coarse, stage), work_fine, stage_seconds(fine, stage), work);
+  };
+  double seconds = stage_seconds(fine, "simplify");
+  seconds += line("atlas", coarse.triangles, fine.triangles, choice.triangles);
+  seconds += line("normals", coarse.texels, fine.texels, covered);
+  const double bake =
+      line("bake", (coarse.texels + coarse.cache_points) * coarse.directions,
+           (fine.texels + fine.cache_points) * fine.directions, (covered + fine.cache_points) * choice.directions);
+  const double bare = pilot_.has_bounces ? stage_seconds(pilot_.without_bounces, "bake") : 0;
+  // Without bounces a bake is as much cheaper as in the pilot.
+  seconds += pilot_.has_bounces && !choice.bounces && stage_seconds(coarse, "bake") > 0
+                 ? bake * std::min(1.0, bare / stage_seconds(coarse, "bake"))
+                 : bake;
+  if (choice.compression > 0 && pilot_.is_compressed)
+    seconds += stage_seconds(pilot_.compressed, "compress") * covered / pilot_.compressed.texels;
+  return seconds;
+}
+
+double AssetModel::bytes(const Choice& choice) const {
+  const PilotBuild &coarse = pilot_.coarse, &fine = pilot_.fine;
+  const double covered = texels(choice.size);
+  const double mesh =
+      rising_line(coarse.triangles, coarse.mesh_bytes, fine.triangles, fine.mesh_bytes, choice.triangles);
+  // Larger pictures are smoother, so their bytes grow less than their texels.
+  const auto at = [&](double PilotBuild::*bytes, double texels) {
+    return power_law(coarse.texels, coarse.*bytes, fine.texels, fine.*bytes, texels, 0.5, 1);
+  };
+  const double maps = at(&PilotBuild::map_bytes, covered), planes = at(&PilotBuild::plane_bytes, covered);
+  if (choice.compression > 0 && pilot_.is_compressed) {
+    const double growth = planes / at(&PilotBuild::plane_bytes, pilot_.compressed.texels);
+    return mesh + maps + pilot_.compressed.plane_bytes * growth;
+  }
+  const double coefficients = static_cast<double>(choice.bands * choice.bands) / (fine.bands * fine.bands);
+  return mesh + maps + planes * coefficients * choice.bits / pilot_bits;
+}
+
+}  // namespace kiln
