@@ -293,7 +293,7 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   // Take other directions than the bake, so that an error of the bake's does not cancel.
   const std::vector<Eigen::Vector3f> directions =
       sample_directions(Sampling::fibonacci, settings.directions, static_cast<std::uint64_t>(run.seed) + 1);
-  std::vector<Image<float>> references =
+  std::vector<ReferencePicture> references =
       reference_pictures(high, view, specs, directions, part_of(run.progress, 0, 1 - split_share));
   comparison.error_left_out = left_out(asset);
   if (comparison.error_left_out.empty()) comparison.error = split_error(asset, atlas, high, view.scene, settings, run);
@@ -302,8 +302,10 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
 
   for (std::size_t k = 0; k < lights.size(); ++k) {
     LightComparison& light = comparison.lights[k];
-    light.reference = std::move(references[k]);
+    light.reference = std::move(references[k].in_bands);
     light.difference = compare(light.asset, light.reference, comparison.compared_pixels);
+    light.reference_in_full = std::move(references[k].in_full);
+    light.difference_in_full = compare(light.asset, light.reference_in_full, comparison.compared_pixels);
   }
   comparison.silhouette_difference = silhouette_difference(comparison.lights.front());
   return comparison;

@@ -22,6 +22,8 @@ struct LightComparison {
   Image<float> asset;
   Image<float> reference;
   ImageDifference difference;             ///< asset minus reference, over the pixels that both cover wholly
+  Image<float> reference_in_full;         ///< under the light itself, not cut to the asset's bands
+  ImageDifference difference_in_full;     ///< asset minus that
   Image<float> compressed;                ///< the asset as kiln-compress stored it; empty where there is none
   ImageDifference compressed_difference;  ///< compressed minus plain asset, over the same pixels
 };

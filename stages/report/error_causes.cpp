@@ -337,6 +337,7 @@ ErrorSplit error_causes(const SplitInput& input, const ProgressFunction& progres
   const Squares whole = sums.of_step({"total", seen, compressed}, bands);
   split.seen = relative(all.by_band);
   split.total = error(whole.total() / norm + tail);
+  split.squares = relative(whole.by_band);
   split.uncertainty = uncertainty_of_root(whole, cut, tail);
   for (const Step& step : steps) {
     if (step.cause == "compression" && input.compressed == nullptr) continue;
@@ -348,7 +349,7 @@ ErrorSplit error_causes(const SplitInput& input, const ProgressFunction& progres
 }
 
 Json to_json(const ErrorSplit& split) {
-  Json causes = Json::object(), squares = {{"seen", split.seen}};
+  Json causes = Json::object(), squares = {{"seen", split.seen}, {"total", split.squares}};
   for (const ErrorCause& cause : split.causes) {
     causes[cause.name] = cause.error;
     if (!cause.squares.empty()) squares[cause.name] = cause.squares;

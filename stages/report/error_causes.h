@@ -30,6 +30,7 @@ struct ErrorSplit {
   double total = 0;
   double uncertainty = 0;  ///< half-width of its 95 % confidence interval, for the pixels it was measured at
   std::vector<ErrorCause> causes;
+  BandSquares squares;      ///< of all causes but bands together, as those of one cause
   BandSquares seen;         ///< squares of the transfer seen, in the reference's bands, over that in the asset's bands
   std::size_t samples = 0;  ///< pixels
   int directions = 0;       ///< of the reference

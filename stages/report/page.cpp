@@ -147,7 +147,7 @@ std::string relit_section(const AssetFolder& asset, const Report& report, const 
   const Crop crop = crop_of(comparison.lights.front());
   for (const LightComparison& light : comparison.lights) {
     const std::string name = light_label(light.light);
-    html += "<div class=light><h3>" + escaped(name) + "</h3>\n<div class=trio>\n";
+    html += "<div class=light><h3>" + escaped(name) + "</h3>\n<div class=quartet>\n";
     html += figure(image(cropped(shown_radiance(light.asset), crop), "Asset: " + name, scratch), "<b>Asset</b>");
     html += figure(image(cropped(shown_radiance(light.reference), crop), "Reference: " + name, scratch),
                    "<b>Reference</b>, high mesh by rays");
@@ -159,6 +159,11 @@ std::string relit_section(const AssetFolder& asset, const Report& report, const 
                                difference_gain, rounded(light.difference.root_mean_square, 3),
                                metric_value("relative_l2", light.difference.relative_l2),
                                rounded(light.difference.largest, 3), 1 / difference_gain, 1 / difference_gain));
+    html +=
+        figure(image(cropped(shown_radiance(light.reference_in_full), crop), "In full: " + name, scratch),
+               fmt::format("<b>In full</b>, the high mesh under the light itself, not cut to {} bands: relative L² of "
+                           "the asset {}",
+                           asset.baked.bands, metric_value("relative_l2", light.difference_in_full.relative_l2)));
     html += "</div></div>\n";
   }
   return html + "</section>\n";

@@ -10,6 +10,7 @@
 #include "raycast/ray_scene.h"
 #include "raycast/ray_transfer.h"
 #include "report/bounce_paths.h"
+#include "report/direct_light.h"
 #include "sh/ray_offset.h"
 
 namespace kiln {
@@ -101,11 +102,12 @@ void add_samples(Image<float>& picture, const VisiblePoints& points, std::size_t
 
 }  // namespace
 
-std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
-                                             std::span<const LightSpec> lights,
-                                             std::span<const Eigen::Vector3f> directions,
-                                             const ProgressFunction& progress) {
-  std::vector<Image<float>> pictures(lights.size(), Image<float>(view.width, view.height, 4));
+std::vector<ReferencePicture> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
+                                                 std::span<const LightSpec> lights,
+                                                 std::span<const Eigen::Vector3f> directions,
+                                                 const ProgressFunction& progress) {
+  const Image<float> empty(view.width, view.height, 4);
+  std::vector<ReferencePicture> pictures(lights.size(), {empty, empty});
   if (lights.empty()) return pictures;
   const std::vector<VisiblePoints> places = visible_points(RayScene(mesh), mesh, view);
   std::size_t count = 0, done = 0;
@@ -128,13 +130,23 @@ std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const Ref
       const Receivers receivers{std::span(points.positions).subspan(begin, size),
                                 std::span(points.normals).subspan(begin, size)};
       std::vector<TransferVectors> channels = {transfer_by_rays(scene, receivers, own, view.bands, ray_offset)};
+      const std::vector<TransferVectors> direct = channels;
       if (paths) {
         channels.resize(3, channels.front());
         paths->add(receivers, every_nth(own, 0, path_step), done, channels);
       }
-      for (std::size_t light = 0; light < lights.size(); ++light)
-        add_samples(pictures[light], points, begin, radiance_of(channels, lights[light], view, receivers),
-                    1.f / static_cast<float>(places.size()));
+      const float share = 1.f / static_cast<float>(places.size());
+      for (std::size_t light = 0; light < lights.size(); ++light) {
+        std::vector<Eigen::Vector3f> radiance = radiance_of(channels, lights[light], view, receivers);
+        add_samples(pictures[light].in_bands, points, begin, radiance, share);
+        if (!has_few_bands(lights[light])) {
+          // What bounced stays as the bands have it.
+          const auto cut = radiance_of(direct, lights[light], view, receivers);
+          const auto full = direct_radiance(scene, receivers, lights[light], ray_offset, done);
+          for (std::size_t r = 0; r < size; ++r) radiance[r] += full[r] - cut[r];
+        }
+        add_samples(pictures[light].in_full, points, begin, radiance, share);
+      }
       done += size;
       progress(static_cast<double>(done) / static_cast<double>(count));
     }

@@ -30,16 +30,22 @@ struct ReferenceView {
   LightWindow window = LightWindow::hann;
 };
 
+/// Pictures of the reference under one light: RGBA in linear radiance; alpha is coverage and colours are multiplied by
+/// it.
+struct ReferencePicture {
+  Image<float> in_bands;  ///< under the light as the asset's bands and window have it
+  Image<float> in_full;   ///< under the light itself, as far as it arrives directly
+};
+
 /// Draws pictures of a mesh under each of `lights`: the first hit of each sample's ray is shaded by the transfer
 /// integral over `directions` (rays against the view's scene, with interpolated normals), and by paths for light that
 /// bounces (report/bounce_paths.h), projected on the view's bands. The samples of a pixel share the directions among
 /// them: sample s of n takes every n-th from the s-th on, so the pixel's mean is over all of them at the price of one
 /// sample (interleaved sampling, [Keller 2001]). A light near the mesh is evaluated at every point. Without atlas,
-/// textures or rasteriser, this is what the baked asset approximates. RGBA in linear radiance; alpha is coverage and
-/// colours are multiplied by it.
-std::vector<Image<float>> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
-                                             std::span<const LightSpec> lights,
-                                             std::span<const Eigen::Vector3f> directions,
-                                             const ProgressFunction& progress = no_progress);
+/// textures or rasteriser, this is what the baked asset approximates.
+std::vector<ReferencePicture> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
+                                                 std::span<const LightSpec> lights,
+                                                 std::span<const Eigen::Vector3f> directions,
+                                                 const ProgressFunction& progress = no_progress);
 
 }  // namespace kiln

@@ -16,7 +16,8 @@ Json Report::to_json() const {
     lights.push_back({{"light", light.light},
                       {"relative_l2", light.difference.relative_l2},
                       {"root_mean_square", light.difference.root_mean_square},
-                      {"largest", light.difference.largest}});
+                      {"largest", light.difference.largest},
+                      {"relative_l2_in_full", light.difference_in_full.relative_l2}});
     relative_l2 = std::max(relative_l2, light.difference.relative_l2);
     if (light.compressed.width() > 0) {
       is_compressed = true;

@@ -16,6 +16,7 @@
 #include "raycast/ray_scene.h"
 #include "report/bounce_paths.h"
 #include "report/budget.h"
+#include "report/direct_light.h"
 #include "report/labels.h"
 #include "report/pictures.h"
 #include "report/reference.h"
@@ -25,9 +26,11 @@
 #include "report/transport.h"
 #include "report/verdicts.h"
 #include "scratch.h"
+#include "shapes.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 #include "sh/light_spec.h"
+#include "sh/lights.h"
 #include "sh/transfer.h"
 #include "sh/windows.h"
 
@@ -214,17 +217,18 @@ TEST(Reference, SphereInAFurnaceHasItsAlbedo) {
   view.bands = 3;
   const LightSpec lights[] = {{.kind = LightSpec::Kind::ambient}};
   const auto directions = sample_directions(Sampling::fibonacci, 2048, 1);
-  const std::vector<Image<float>> pictures = reference_pictures(mesh, view, lights, directions);
+  const std::vector<ReferencePicture> pictures = reference_pictures(mesh, view, lights, directions);
   int whole = 0;
   for (int j = 0; j < view.height; ++j)
     for (int i = 0; i < view.width; ++i) {
-      if (pictures[0].at(i, j, 3) < 0.9999f) continue;
+      if (pictures[0].in_bands.at(i, j, 3) < 0.9999f) continue;
       ++whole;
       // Exact but for the quadrature (2,048 directions: far below 1 %) and for facets that lie inside the sphere.
-      EXPECT_NEAR(pictures[0].at(i, j, 1), 0.6, 0.01);
+      EXPECT_NEAR(pictures[0].in_bands.at(i, j, 1), 0.6, 0.01);
     }
   EXPECT_GT(whole, 100);
-  EXPECT_EQ(pictures[0].at(0, 0, 3), 0);
+  EXPECT_EQ(pictures[0].in_bands.at(0, 0, 3), 0);
+  EXPECT_EQ(pictures[0].in_full.values(), pictures[0].in_bands.values()) << "bands hold all of a furnace";
 }
 
 TEST(Reference, LightNearTheMeshIsThatOfEveryPoint) {
@@ -236,7 +240,7 @@ TEST(Reference, LightNearTheMeshIsThatOfEveryPoint) {
   view.albedo = 1;
   const LightSpec ball = parse_light_spec("sphere:0.5,1,2,0.1");
   const auto directions = sample_directions(Sampling::fibonacci, 2048, 1);
-  const Image<float> picture = reference_pictures(mesh, view, std::span(&ball, 1), directions).front();
+  const Image<float> picture = reference_pictures(mesh, view, std::span(&ball, 1), directions).front().in_bands;
   const RayScene scene(mesh);
   const ShBasis basis(5);
   double nearest = 0, largest = 0;
@@ -256,6 +260,64 @@ TEST(Reference, LightNearTheMeshIsThatOfEveryPoint) {
   EXPECT_GT(nearest, 2);  // the near side has more than the origin would
 }
 
+TEST(DirectLight, IsThatOfItsFormWhereNothingShadows) {
+  // Receivers in free space, the light at all angles to them.
+  const TriangleMesh far_away = shapes::icosphere(0);
+  std::vector<Eigen::Vector3f> shifted = far_away.positions;
+  for (Eigen::Vector3f& p : shifted) p += Eigen::Vector3f(1000, 0, 0);
+  const RayScene scene(shifted, far_away.triangles);
+  const std::vector<Eigen::Vector3f> normals = sample_directions(Sampling::fibonacci, 512, 3);
+  const std::vector<Eigen::Vector3f> positions(normals.size(), Eigen::Vector3f::Zero());
+  for (const char* text : {"30,40", "cone:30,40,25", "cone:-120,-5,60", "sphere:1,2,-1,0.8"}) {
+    const LightSpec light = parse_light_spec(text);
+    const auto radiance = direct_radiance(scene, {positions, normals}, light, 0, 0);
+    // Irradiance in spherical harmonics: 40 bands, of which those beyond two are exact to (l)^-2.5.
+    const LightCoefficients expected = irradiance(light_coefficients(light, 40));
+    double worst = 0;
+    for (std::size_t r = 0; r < normals.size(); ++r)
+      worst =
+          std::max(worst, std::abs(radiance[r][1] - evaluate_at(expected.channels[1], normals[r]) / std::numbers::pi));
+    // A directional light's clamped cosine of 40 bands is right to 0.005. The others have 32 places of the light: a
+    // receiver that sees part of it may be wrong by most of one, 1 / 32.
+    EXPECT_LT(worst, 0.03) << text;
+    EXPECT_GT(worst, 0) << text;
+  }
+}
+
+TEST(DirectLight, HasTheSharpShadowThatBandsLose) {
+  // A ball above a floor, the light overhead: in full, the floor beneath is dark and the rest has the radiance 1.
+  TriangleMesh floor;
+  floor.positions = {{-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}};
+  floor.triangles = {{0, 1, 2}, {0, 2, 3}};
+  floor.normals.assign(4, Eigen::Vector3f::UnitY());
+  TriangleMesh ball = shapes::icosphere(3);
+  for (Eigen::Vector3f& p : ball.positions) p += Eigen::Vector3f(0, 1.5f, 0);
+  ReferenceView view;
+  view.scene.add(floor);
+  view.scene.add(ball);
+  view.width = view.height = 32;
+  view.supersample = 1;
+  view.albedo = 1;
+  CameraSettings above;
+  above.azimuth_degrees = 0;
+  above.elevation_degrees = 90;
+  view.camera = make_camera(floor.positions, above, view.width, view.height);
+  const LightSpec light = parse_light_spec("0,90");
+  const ReferencePicture picture =
+      reference_pictures(floor, view, std::span(&light, 1), sample_directions(Sampling::fibonacci, 1024, 1)).front();
+  int dark = 0, lit = 0;
+  for (int j = 0; j < view.height; ++j)
+    for (int i = 0; i < view.width; ++i) {
+      if (picture.in_full.at(i, j, 3) < 0.9999f) continue;
+      (picture.in_full.at(i, j, 0) < 0.5f ? dark : lit) += 1;
+      const float value = picture.in_full.at(i, j, 0);
+      EXPECT_TRUE(value == 0 || std::abs(value - 1) < 1e-5f) << value;
+    }
+  // The shadow has pi / 64 of the floor; a pixel more or less around it.
+  EXPECT_NEAR(static_cast<double>(dark) / (dark + lit), std::numbers::pi / 64, 0.012);
+  EXPECT_GT(picture.in_bands.at(16, 16, 0), 0.1f) << "five bands do not darken it wholly";
+}
+
 TEST(Reference, SurfacesHaveTheirOwnAlbedo) {
   // Every vertex of the sphere has a colour that tells where it is; in a furnace of radiance 1 that is its radiance.
   const TriangleMesh mesh = sphere(64);
@@ -271,7 +333,7 @@ TEST(Reference, SurfacesHaveTheirOwnAlbedo) {
   view.bands = 3;
   const LightSpec lights[] = {{.kind = LightSpec::Kind::ambient}};
   const auto directions = sample_directions(Sampling::fibonacci, 2048, 1);
-  const Image<float> picture = reference_pictures(mesh, view, lights, directions).front();
+  const Image<float> picture = reference_pictures(mesh, view, lights, directions).front().in_bands;
   const RayScene scene(mesh);
   int whole = 0;
   for (int j = 0; j < view.height; ++j)
@@ -350,12 +412,12 @@ TEST(Reference, LightBouncesAsOftenAsTheViewSays) {
   view.bands = 2;
   const LightSpec lights[] = {{.kind = LightSpec::Kind::ambient}};
   const auto directions = sample_directions(Sampling::fibonacci, 8192, 1);
-  const float direct = reference_pictures(mesh, view, lights, directions).front().at(2, 2, 0);
+  const float direct = reference_pictures(mesh, view, lights, directions).front().in_bands.at(2, 2, 0);
   view.scene.add(mesh, SurfaceAlbedo::constant({1, 1, 1}));
   view.bounces = 1;
-  const float once = reference_pictures(mesh, view, lights, directions).front().at(2, 2, 0);
+  const float once = reference_pictures(mesh, view, lights, directions).front().in_bands.at(2, 2, 0);
   view.bounces = 50;
-  const float often = reference_pictures(mesh, view, lights, directions).front().at(2, 2, 0);
+  const float often = reference_pictures(mesh, view, lights, directions).front().in_bands.at(2, 2, 0);
   // Near the corner of two half planes a floor sees half of the sky, by the cosine; one bounce adds half of the half
   // that the wall covers, and all bounces make it whole. 2,048 directions a sample, half as many paths.
   EXPECT_NEAR(direct, 0.5, 0.02);

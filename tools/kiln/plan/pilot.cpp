@@ -65,7 +65,7 @@ PilotBuild read_build(const fs::path& asset, const std::string& last) {
   result.uncertainty = error.at("uncertainty").get<double>();
   result.root_sum = error.at("root_sum_of_causes").get<double>();
   for (const auto& [cause, squares] : error.at("squares_by_band").items())
-    (cause == "seen" ? result.seen : result.squares[cause]) = squares.get<std::vector<double>>();
+    if (cause != "total") (cause == "seen" ? result.seen : result.squares[cause]) = squares.get<std::vector<double>>();
   for (const char* stage : {"simplify", "atlas", "normals", "bake", "compress"})
     if (std::error_code code; fs::is_regular_file(layout::record(asset, stage), code))
       result.cpu_seconds[stage] = record_of(asset, stage).at("cpu_seconds").get<double>();

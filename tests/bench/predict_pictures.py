@@ -1,0 +1,161 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""predict_pictures.py PROGRAMS FOLDER [-o CSV]: how well E predicts pictures (docs/error.md, "Does it predict pictures?").
+
+A cell is an asset, its settings and a kind of light: one predicted error, from the report's squares by band and the
+light's own moments, and one rendered error, the relative L2 of pictures over eight turns of the light and four cameras.
+Two judges that are not Kiln's look at some of the pictures as well: butteraugli, and OpenImageIO's `idiff -p` after Yee.
+Needs Debian's butteraugli and openimageio-tools, and the meshes of glmark2-data and libcgal-demo. Takes about a quarter
+of an hour on two cores."""
+import argparse, base64, csv, io, itertools, json, math, pathlib, re, subprocess, sys
+import numpy
+from PIL import Image
+
+parser = argparse.ArgumentParser()
+parser.add_argument("programs", type=pathlib.Path)
+parser.add_argument("folder", type=pathlib.Path, help="for the assets that are built")
+parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("docs/predicted-pictures.csv"))
+arguments = parser.parse_args()
+
+ARCHIVE = "/usr/share/doc/libcgal-dev/data.tar.gz"
+TUNED = ["bunny", "armadillo", "lion-head"]  # seen while anything was tuned
+UNSEEN = ["elephant", "nefertiti", "fandisk", "hand"]
+SETTINGS = {"coarse": (500, 96, 128, 4), "middle": (2000, 192, 512, 5), "fine": (8000, 384, 1536, 6)}
+CAMERAS = [(20, 12), (110, -10), (200, 30), (290, 5)]
+PIXELS = 192
+TURNS = 8
+KINDS = ["cone 10", "cone 45", "cone 90", "hemisphere"]
+
+
+def turned(kind, random):
+    """Returns a light of a kind towards a direction that is as likely as any other."""
+    elevation = math.degrees(math.asin(random.uniform(-1, 1)))
+    azimuth = random.uniform(-180, 180)
+    if kind == "hemisphere":
+        return f"hemisphere:{azimuth:.3f},{elevation:.3f},1,1,1,0.2,0.2,0.2"
+    return f"cone:{azimuth:.3f},{elevation:.3f},{kind.split()[1]}"
+
+
+def legendre(bands, x):
+    values = [1.0, x]
+    for l in range(1, bands + 1):
+        values.append(((2 * l + 1) * x * values[l] - l * values[l - 1]) / (l + 1))
+    return values
+
+
+def moments(kind, bands):
+    """Returns the light's second moments by band as pictures have it: through the Hann window, except in hemispheres."""
+    if kind == "hemisphere":  # (1 + c) / 2 sky + (1 - c) / 2 ground of 1 and 0.2
+        return [4 * math.pi * 0.6**2, 4 * math.pi / 9 * 0.4**2] + [0.0] * (bands - 2)
+    p = legendre(bands, math.cos(math.radians(float(kind.split()[1]))))
+    coefficient = lambda l: 2 * math.pi * ((1 if l == 0 else p[l - 1]) - p[l + 1]) / (2 * l + 1)
+    window = lambda l: (1 + math.cos(math.pi * l / bands)) / 2
+    return [(coefficient(l) * window(l)) ** 2 / (4 * math.pi) for l in range(bands)]
+
+
+def report(folder, camera, lights, samples):
+    command = [arguments.programs / "kiln-report", folder, "-o", arguments.folder / "report" / "report.html", "--json",
+               "--quiet", f"--lights={';'.join(lights)}", f"--camera-azimuth={camera[0]}",
+               f"--camera-elevation={camera[1]}", f"--picture-size={PIXELS}", "--error-samples", str(samples),
+               "--error-pixels", str(0.9 * PIXELS)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{folder}: {done.stderr}")
+    return json.loads(done.stdout), (arguments.folder / "report" / "report.html").read_text()
+
+
+def on_grey(data):
+    picture = Image.open(io.BytesIO(base64.b64decode(data))).convert("RGBA")
+    grey = Image.new("RGBA", picture.size, (119, 119, 119, 255))
+    return Image.alpha_composite(grey, picture).convert("RGB")
+
+
+def judged(page, count):
+    """Returns both judges' scores of the first lights of a page."""
+    scores = []
+    trios = re.findall(r"<div class=light>.*?</div>\s*<", page, re.S)[:count]
+    for trio in trios:
+        ours, theirs = (on_grey(data) for data in re.findall(r"data:image/png;base64,([^']*)'", trio)[:2])
+        a, b = arguments.folder / "a.png", arguments.folder / "b.png"
+        ours.save(a), theirs.save(b)
+        distance = float(subprocess.run(["butteraugli", a, b], capture_output=True, text=True).stdout.split()[0])
+        said = subprocess.run(["idiff", "-p", a, b], capture_output=True, text=True).stdout
+        fail = re.search(r"(\d+) pixels \([^)]*\) failed the perceptual test", said)
+        scores.append((distance, float(fail.group(1)) if fail else 0.0))
+    return scores
+
+
+def ranks(values):
+    order = numpy.argsort(numpy.argsort(values, kind="stable"), kind="stable").astype(float)
+    for value in set(values):  # ties share their mean rank
+        same = [k for k, other in enumerate(values) if other == value]
+        order[same] = order[same].mean()
+    return order
+
+
+def rank_correlation(a, b):
+    return float(numpy.corrcoef(ranks(list(a)), ranks(list(b)))[0, 1])
+
+
+def build():
+    lines = ["output: .", "defaults:", "  report: {picture-size: 64, directions: 16, error-samples: 64}", "assets:"]
+    for mesh, (setting, (faces, size, directions, bands)) in itertools.product(TUNED + UNSEEN, SETTINGS.items()):
+        source = ("/usr/share/glmark2/models/bunny.obj" if mesh == "bunny"
+                  else f"{{archive: {ARCHIVE}, member: data/meshes/{mesh}.off}}")
+        lines.append(f"  {mesh}-{setting}: {{mesh: {source}, simplify: {{faces: {faces}}}, atlas: {{size: {size}}}, "
+                     f"bake: {{directions: {directions}, bands: {bands}}}}}")
+    (arguments.folder / "report").mkdir(parents=True, exist_ok=True)
+    (arguments.folder / "pipeline.yaml").write_text("\n".join(lines) + "\n")
+    subprocess.run([arguments.programs / "kiln", "build", arguments.folder / "pipeline.yaml", "--quiet"], check=True)
+
+
+def cells_of(mesh, setting, prior):
+    bands = SETTINGS[setting][3]
+    random = numpy.random.default_rng(hash_of(mesh + setting))
+    lights = [turned(kind, random) for kind in KINDS for _ in range(TURNS)]
+    differences, references = numpy.zeros(len(KINDS)), numpy.zeros(len(KINDS))
+    for number, camera in enumerate(CAMERAS):
+        said, page = report(arguments.folder / f"{mesh}-{setting}", camera, lights, 4096 if number == 0 else 64)
+        if number == 0:
+            squares = said["error"]["squares_by_band"]
+            order = [k * TURNS + turn for k in range(len(KINDS)) for turn in range(TURNS)]
+            scores = judged(page, len(order))
+        for index, light in enumerate(said["lights"]):
+            difference = light["root_mean_square"] ** 2
+            differences[index // TURNS] += difference
+            references[index // TURNS] += difference / light["relative_l2"] ** 2
+    for k, kind in enumerate(KINDS):
+        weights = numpy.array(moments(kind, bands)) / prior[:bands]
+        predicted = math.sqrt((weights * squares["total"]).sum() / (weights * squares["seen"][:bands]).sum())
+        own = scores[k * TURNS:(k + 1) * TURNS]
+        yield {"mesh": mesh, "seen_before": mesh in TUNED, "setting": setting, "light": kind,
+               "predicted": f"{predicted:.5f}", "rendered": f"{math.sqrt(differences[k] / references[k]):.5f}",
+               "butteraugli": f"{numpy.mean([score[0] for score in own]):.4f}",
+               "idiff_pixels": f"{numpy.mean([score[1] for score in own]):.1f}"}
+
+
+def hash_of(text):
+    return sum(ord(c) * 31**k for k, c in enumerate(text)) % 2**32
+
+
+def main():
+    root = pathlib.Path(__file__).resolve().parents[2]
+    rows = list(csv.DictReader((root / "docs" / "light-prior.csv").open()))
+    prior = numpy.array([float(row["prior"]) for row in rows if row["prior"]])
+    build()
+    cells = [cell for mesh, setting in itertools.product(TUNED + UNSEEN, SETTINGS)
+             for cell in cells_of(mesh, setting, prior)]
+    with arguments.output.open("w", newline="") as file:
+        writer = csv.DictWriter(file, cells[0].keys(), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(cells)
+    ratios = numpy.array([float(cell["predicted"]) / float(cell["rendered"]) for cell in cells])
+    within = numpy.mean(abs(ratios - 1) <= 0.2)
+    print(f"{len(cells)} cells: predicted over rendered {ratios.mean():.3f} in the mean, {ratios.std():.3f} standard "
+          f"deviation, {ratios.min():.2f} to {ratios.max():.2f}; within 20 %: {100 * within:.0f} %")
+    predicted = [float(cell["predicted"]) for cell in cells]
+    for judge in ("rendered", "butteraugli", "idiff_pixels"):
+        print(f"rank correlation with {judge}: {rank_correlation(predicted, [float(c[judge]) for c in cells]):.3f}")
+
+
+main()
