@@ -64,14 +64,14 @@ void by_triangles(const Programs& programs, Table& table) {
   constexpr double largest = 1.25;
   Growth simplify("kiln-simplify to 1,000", "triangles", largest),
       normals("kiln-normals, 128 x 128", "triangles", largest),
-      bake("kiln-bake, 128 x 128, 64 directions", "triangles", largest);
-  for (const int triangles : {1, 100, 10'000, 100'000, 1'000'000, 5'000'000}) {
+      bake("kiln-bake, 128 x 128, 16 directions", "triangles", largest);
+  for (const int triangles : {1, 10'000, 100'000, 1'000'000, 5'000'000}) {
     Shape shape{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
     const int across = static_cast<int>(std::lround(std::sqrt(triangles / 4.)));
     if (triangles > 1) shape = bumpy_torus(2 * across, across);
     write_ply(programs / "large.ply", shape);
     const Asset asset =
-        make_asset(programs, "large", programs / "large.ply", {.faces = 1000, .size = "128", .directions = 64});
+        make_asset(programs, "large", programs / "large.ply", {.faces = 1000, .size = "128", .directions = 16});
     const auto count = static_cast<double>(shape.triangles.size());
     if (!asset.is_done()) table.rows.push_back(failure("an asset", grouped(triangles) + " triangles", asset.outcome));
     simplify.add(count, asset.simplify);
@@ -85,12 +85,12 @@ void by_triangles(const Programs& programs, Table& table) {
 
 void by_texels(const Programs& programs, Table& table) {
   Growth atlas("kiln-atlas", "texels", 1.1), normals("kiln-normals", "texels", 1.1),
-      bake("kiln-bake, 1 band, 64 directions", "texels", 1.1);
+      bake("kiln-bake, 1 band, 8 directions", "texels", 1.1);
   write_obj(programs / "torus.obj", bumpy_torus(64, 32));
   for (const int size : {32, 104, 330, 1044, 3316}) {
     const Asset asset =
         make_asset(programs, "texels", programs / "torus.obj",
-                   {.faces = 200, .size = std::to_string(size), .gutter = 1, .bands = 1, .directions = 64});
+                   {.faces = 200, .size = std::to_string(size), .gutter = 1, .bands = 1, .directions = 8});
     const double count = static_cast<double>(size) * size;
     if (!asset.is_done()) table.rows.push_back(failure("an atlas", grouped(size), asset.outcome));
     atlas.add(count, asset.atlas);
@@ -103,10 +103,10 @@ void by_texels(const Programs& programs, Table& table) {
 }
 
 void by_bands(const Programs& programs, Table& table) {
-  Growth bake("kiln-bake, 256 x 256, 4,096 directions", "coefficients", 1.1);
+  Growth bake("kiln-bake, 128 x 128, 2,304 directions", "coefficients", 1.1);
   for (const int bands : {1, 3, 6, 12, 24}) {
     const Asset asset = make_asset(programs, "bands", programs / "torus.obj",
-                                   {.faces = 200, .size = "256", .gutter = 1, .bands = bands, .directions = 4096});
+                                   {.faces = 200, .size = "128", .gutter = 1, .bands = bands, .directions = 2304});
     if (!asset.is_done()) table.rows.push_back(failure("bands", std::to_string(bands), asset.outcome));
     bake.add(bands * bands, asset.bake);
   }

@@ -13,6 +13,9 @@ namespace {
 /// Error of t_0 by 256 directions and 16 bits on a surface that nothing shadows.
 constexpr double quadrature_bound = 2e-3;
 
+/// Sharp edges, so that no normal leans over them.
+const Chain sharp = {.faces = 10000, .import = {"--normals", "angle:40"}};
+
 /// What an asset is compared with.
 enum class Truth {
   convex,    ///< nothing shadows it, so t_0 is known
@@ -79,7 +82,7 @@ Table measure_hard_shapes(const Bench& bench) {
     thrice.triangles.insert(thrice.triangles.end(), torus.triangles.begin(), torus.triangles.end());
 
   std::vector<Subject> subjects = {
-      {"slivers", "aspect 1e6, kept as they are", slabs(60, 1e-6), Truth::convex, {.faces = 10000}},
+      {"slivers", "aspect 1e6, kept as they are", slabs(60, 1e-6), Truth::convex, sharp},
       {"coincident triangles", "each three times", thrice, Truth::as_clean},
       {"triangles without area", "lines and points among others", with_degenerate(torus), Truth::as_clean},
       {"triangles smaller than a texel", "4,096 in 1,024 texels", torus, Truth::sane, {.faces = 4096, .size = "32"}},
@@ -89,8 +92,8 @@ Table measure_hard_shapes(const Bench& bench) {
   };
   if (!bench.quick) {
     const std::vector<Subject> more = {
-        {"slivers", "aspect 1e3, 8,004 to 400", slabs(1000, 1e-3), Truth::convex},
-        {"slivers", "aspect 1e6, 16,004 to 400", slabs(2000, 1e-6), Truth::convex},
+        {"slivers", "aspect 1e3, 8,004 to 400", slabs(1000, 1e-3), Truth::convex, {.import = sharp.import}},
+        {"slivers", "aspect 1e6, 16,004 to 400", slabs(2000, 1e-6), Truth::convex, {.import = sharp.import}},
         {"flattened", "1e-6 of its height", torus.placed({1, 1e-6, 1})},
         {"stretched", "1e4 times its length", torus.placed({1e4, 1, 1}), Truth::sane, {.size = "256"}},
         {"two parts",

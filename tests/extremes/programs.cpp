@@ -78,16 +78,29 @@ Asset make_asset(const Programs& programs, const std::string& name, const fs::pa
   std::vector<std::string> atlas = {file("low.drc")};
   if (!chain.kept_uv.empty()) atlas = {chain.kept_uv, "--keep-uv"};
   atlas.insert(atlas.end(), {"-o", file("atlas.drc"), "--size", chain.size, "--gutter", std::to_string(chain.gutter)});
+  std::vector<std::string> bake = {file("atlas.drc"),
+                                   "--occluder",
+                                   high,
+                                   "-o",
+                                   file("prt"),
+                                   "--bands",
+                                   std::to_string(chain.bands),
+                                   "--directions",
+                                   std::to_string(chain.directions),
+                                   "--bits",
+                                   "16",
+                                   "--backend",
+                                   "embree"};
+  if (chain.has_detail)
+    bake.insert(bake.end(), {"--detail", file("normals")});
+  else
+    bake.insert(bake.end(), {"--receiver", "low"});
+  const std::vector<std::string> simplify = {high, "-o", file("low.drc"), "--faces", std::to_string(chain.faces)};
   Json check;
-  step("kiln-simplify", {high, "-o", file("low.drc"), "--faces", std::to_string(chain.faces)}, true, asset.simplify) &&
-      step("kiln-atlas", atlas, false, asset.atlas) &&
-      step("kiln-normals", {high, file("atlas.drc"), "-o", file("normals")}, true, asset.normals) &&
-      step("kiln-bake",
-           {file("atlas.drc"), "--detail", file("normals"), "--occluder", high, "-o", file("prt"), "--bands",
-            std::to_string(chain.bands), "--directions", std::to_string(chain.directions), "--bits", "16", "--backend",
-            "embree"},
-           true, asset.bake) &&
-      step("kiln-check", {file("prt")}, false, check);
+  step("kiln-simplify", simplify, true, asset.simplify) && step("kiln-atlas", atlas, false, asset.atlas) &&
+      (!chain.has_detail ||
+       step("kiln-normals", {high, file("atlas.drc"), "-o", file("normals")}, true, asset.normals)) &&
+      step("kiln-bake", bake, true, asset.bake) && step("kiln-check", {file("prt")}, false, check);
   return asset;
 }
 

@@ -49,6 +49,7 @@ struct Chain {
   int gutter = 2;
   int bands = 5;
   int directions = 256;
+  bool has_detail = true;                ///< whether kiln-normals runs, else the low mesh itself receives
   std::vector<std::string> import = {};  ///< further arguments of all stages that read the high mesh
   std::string kept_uv = {};              ///< a low mesh with uvs, to keep in place of kiln-simplify's
 };

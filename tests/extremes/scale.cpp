@@ -67,8 +67,7 @@ Table measure_scale(const Bench& bench) {
   const TriangleMesh atlas = load_draco(reference.folder / "atlas.drc");
   const double hausdorff = reference.simplify["hausdorff"];
 
-  std::vector<Place> places = {
-      {"2^-100 (7.9e-31)", 0x1p-100, 0, 0}, {"1e-30", 1e-30}, {"1e25", 1e25}, {"moved by 1e8 sizes", 1, 1e8}};
+  std::vector<Place> places = {{"1e25", 1e25}, {"1e-30, moved by 1e8 sizes", 1e-30, 1e8}};
   if (!bench.quick)
     places = {{"2^-100 (7.9e-31)", 0x1p-100, 0, 0},
               {"2^83 (9.7e24)", 0x1p83, 0, 0},
@@ -113,11 +112,9 @@ Table measure_scale(const Bench& bench) {
     const char* text;
     double scale, move;
   };
-  const std::vector<Refused> refused = {{"1e-40", 1e-40, 0},
-                                        {"1e-300", 1e-300, 0},
-                                        {"1e38", 1e38, 0},
-                                        {"1e300", 1e300, 0},
-                                        {"moved by 1e17 sizes", 1, 1e17}};
+  std::vector<Refused> refused = {{"1e-40", 1e-40, 0}, {"1e38", 1e38, 0}};
+  if (!bench.quick)
+    refused.insert(refused.end(), {{"1e-300", 1e-300, 0}, {"1e300", 1e300, 0}, {"moved by 1e17 sizes", 1, 1e17}});
   for (const auto& [text, scale, move] : refused) {
     const Asset asset = asset_at(programs, high, {}, {text, scale, move});
     table.rows.push_back(refusal("asset", text, asset.outcome, asset.folder / "low.drc"));
