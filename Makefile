@@ -5,6 +5,7 @@
 #   make demo     build the programs, then run pipeline.yaml; ends by naming the report
 #   make test     build, then run all tests
 #   make check    formatting, clang-tidy, sanitizers, a build with clang; CHECKS="format tidy" for some of them
+#   make extremes measure Kiln at its extremes, into docs/extremes.md: minutes, and 8 GB of memory
 #   make docs     API pages of the runtime's headers and the stages' functions, by Doxygen, in build/docs
 #   make install  install programs, the runtime and its headers; PREFIX=/usr/local, DESTDIR for packagers
 #   make package  a .deb of the same, in build/release
@@ -15,7 +16,7 @@ JOBS   ?= $(shell nproc)
 BUILD  := build/$(PRESET)
 PREFIX ?= /usr/local
 
-.PHONY: build programs pages configure demo test check docs install package clean
+.PHONY: build programs pages configure demo test check extremes docs install package clean
 
 build: configure
 	cmake --build $(BUILD) -j $(JOBS)
@@ -38,6 +39,10 @@ test: build
 
 check:
 	.ci/check $(CHECKS)
+
+extremes: programs
+	cmake --build $(BUILD) -j $(JOBS) --target extremes
+	$(BUILD)/bin/extremes --output docs/extremes.md
 
 docs:
 	@tools/setup docs

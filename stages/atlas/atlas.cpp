@@ -144,7 +144,9 @@ AtlasResult make_atlas(const TriangleMesh& low, const AtlasSettings& settings, c
 
   // Step 1: cut and flatten charts.
   Surface surface = analyse_surface(*mesh);
-  if (!(surface.area > 0)) throw BadInput(name, "has no triangle with an area", "a surface", "check how it was made");
+  if (!(surface.area > 0))
+    throw BadInput(name, "has no triangle that is thicker than a millionth of its longest side", "a surface",
+                   "check how it was made");
   check_density(settings, surface.area);
   weigh_seams(surface, surface_openness(*mesh, {mesh->positions, mesh->normals}));
   const ChartSettings how_to_cut = chart_settings(settings, surface.area);

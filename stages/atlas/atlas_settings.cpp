@@ -7,7 +7,7 @@ namespace kiln {
 
 OptionSet atlas_options(AtlasSettings& settings) {
   OptionSet options;
-  options.extent("size", settings.size, 16, 16384, "Width and height of the atlas, texels")
+  options.extent("size", settings.size, 8, 16384, "Width and height of the atlas, texels")
       .number("texels-per-unit", settings.texels_per_unit, 0, 1e9,
               "Texels per unit of the mesh's length, in place of --size: the atlas is the smallest square found that "
               "holds the charts; 0: as many as fit")

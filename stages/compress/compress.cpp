@@ -439,6 +439,17 @@ class Search {
   std::map<std::pair<int, int>, Attempt> attempted_;  ///< by clusters and components
 };
 
+/// Throws BadInput for transfer whose squares are beyond floats, so that no error could be told.
+void check_ranges(const PrtAsset& asset) {
+  constexpr double least = 1e-12, most = 1e12;
+  double largest = 0;
+  for (const PrtPlane& plane : asset.planes)
+    largest = std::max({largest, std::abs(plane.range.lowest), std::abs(plane.range.highest)});
+  if (largest == 0 || (largest >= least && largest <= most)) return;
+  throw BadInput(asset.ranges_file.string(), fmt::format("the largest value of transfer is {:g}", largest),
+                 "0, or 1e-12 to 1e+12 (an unoccluded texel has 0.282095)", "bake the asset again with kiln-bake");
+}
+
 }  // namespace
 
 std::string scheme_name(CompressScheme scheme) {
@@ -465,6 +476,7 @@ CompressResult compress(const PrtAsset& asset, const CompressSettings& settings,
   if (asset.clusters)
     throw BadInput(asset.ranges_file.string(), "is a compressed asset", "the output folder of kiln-bake",
                    "compress the baked folder itself");
+  check_ranges(asset);
   const Stopwatch watch;
   CompressResult result = Search(asset, settings, progress).run();
   result.seconds = watch.seconds();

@@ -57,7 +57,7 @@ struct CompressResult {
 };
 
 /// Finds the cheapest way, in bytes, to store an asset within an error, and encodes its files. Throws WrongUsage where
-/// the settings ask for the impossible.
+/// the settings ask for the impossible, and BadInput for a compressed asset or transfer beyond 1e12.
 CompressResult compress(const PrtAsset& asset, const CompressSettings& settings,
                         const ProgressFunction& progress = no_progress);
 

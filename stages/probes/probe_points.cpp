@@ -9,6 +9,7 @@
 #include "asset/probe_set.h"
 #include "base/errors.h"
 #include "base/outputs.h"
+#include "probes/probes_settings.h"
 
 namespace kiln {
 
@@ -36,9 +37,9 @@ std::vector<Eigen::Vector3f> read_points(const std::filesystem::path& file) {
     Eigen::Vector3f point = Eigen::Vector3f::Constant(NAN);
     for (int axis = 0; parts.size() == 3 && axis < 3; ++axis)
       point[axis] = number_or_nan(parts[static_cast<std::size_t>(axis)]);
-    if (!point.allFinite())
+    if (!(point.cwiseAbs().maxCoeff() <= farthest_probe) || !point.allFinite())
       throw BadInput(fmt::format("{}:{}", file.string(), number), "'" + line.substr(0, 60) + "'",
-                     "three numbers, X Y Z", "mend the line");
+                     "three numbers, X Y Z, each -1e+12 to 1e+12", "mend the line");
     points.push_back(point);
   }
   if (points.empty() || points.size() > most_probes)

@@ -67,10 +67,12 @@ std::optional<ProbeBox> parse_box(const std::string& text) {
   const std::vector<float> numbers = numbers_of<float>(plain, ',');
   bool good = numbers.size() == 6;
   for (std::size_t k = 0; good && k < 6; ++k)
-    good = std::isfinite(numbers[k]) && (k < 3 || numbers[k - 3] <= numbers[k]);
+    good = std::abs(numbers[k]) <= farthest_probe && (k < 3 || numbers[k - 3] <= numbers[k]);
   if (!good)
-    throw WrongUsage("box: found '" + text +
-                     "'; expected auto, or six numbers X0,Y0,Z0,X1,Y1,Z1, none of the first three above its second");
+    throw WrongUsage(
+        "box: found '" + text +
+        "'; expected auto, or six numbers X0,Y0,Z0,X1,Y1,Z1, -1e+12 to 1e+12, none of the first three above its "
+        "second");
   ProbeBox box{};
   std::copy(numbers.begin(), numbers.end(), box.begin());
   return box;

@@ -31,6 +31,9 @@ struct ProbesSettings {
 
 OptionSet probes_options(ProbesSettings& settings);
 
+/// The largest coordinate of a probe, object units: rays start there, and Embree's cannot from beyond 1e18.
+inline constexpr float farthest_probe = 1e12f;
+
 /// Parses "NxMxK". Throws WrongUsage.
 std::array<int, 3> parse_grid(const std::string& text);
 inline constexpr std::size_t most_grid_points = 1u << 18;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/errors.h"
 #include "base/json.h"
 #include "mesh/draco_file.h"
 #include "mesh/hard_edges.h"
@@ -71,6 +72,9 @@ TriangleMesh LowFile::write(const TriangleMesh& mesh) {
   low.colors.clear();
   save_draco(file_, low, quantisation);
   low = load_draco(file_);
+  if (!(surface_area(low) > 0))
+    throw BadInput(source_, "is so thin that no triangle has an area in steps of 24 bits of its longest side",
+                   "a surface", "check the units of its axes, or simplify its parts on their own");
   compute_vertex_normals(low);
   if (colored_ != nullptr) low.colors = nearest_colors(*colored_, *colored_surface_, low.positions);
   save_draco(file_, low, quantisation);

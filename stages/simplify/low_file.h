@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "base/json_fwd.h"
 #include "mesh/mesh_repair.h"
@@ -14,7 +16,9 @@ namespace kiln {
 /// Draco file that the stage writes.
 class LowFile {
  public:
-  explicit LowFile(std::filesystem::path file) : file_(std::move(file)) {}
+  /// `source` is the file that the mesh comes from, for messages.
+  explicit LowFile(std::filesystem::path file, std::string source = "the mesh")
+      : file_(std::move(file)), source_(std::move(source)) {}
 
   /// Has vertices get, from now on, the colours of `high` at the nearest point of its surface; it must outlive this
   /// object.
@@ -22,7 +26,7 @@ class LowFile {
 
   /// Writes positions, normals and colours, and returns what the file now holds. Positions have 16 bits, or more where
   /// rounding to 16 bits takes the area or the winding of a triangle, or where a component's box has less than 256
-  /// steps along its diagonal; 24 at most.
+  /// steps along its diagonal; 24 at most. Throws BadInput where that leaves no triangle an area.
   TriangleMesh write(const TriangleMesh& mesh);
 
   /// Returns the bits of positions in the latest write.
@@ -33,6 +37,7 @@ class LowFile {
 
  private:
   std::filesystem::path file_;
+  std::string source_;
   int position_bits_ = 0;
   double too_few_steps_ = 0;
   const TriangleMesh* colored_ = nullptr;

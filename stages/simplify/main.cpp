@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
       throw BadInput(high_file.string(), "has no colours of vertices", "a file with colours of vertices",
                      "export them, or leave out --colors");
     OutputSet outputs(folder_of(low_file));
-    LowFile low(outputs.add(low_file.filename().string()));
+    LowFile low(outputs.add(low_file.filename().string()), high_file.string());
     if (settings.colors) low.keep_colors(high);
     const SimplifyResult result = simplify(
         high, settings, [&](const TriangleMesh& mesh) { return low.write(mesh); }, command.progress("simplify"));

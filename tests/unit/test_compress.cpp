@@ -437,6 +437,20 @@ TEST(Compress, RefusesWhatCannotBe) {
     EXPECT_THROW(parse_compression_error(error), WrongUsage) << error;
 }
 
+TEST(Compress, RefusesTransferWhoseSquaresFloatsDoNotHold) {
+  PrtAsset asset = make_asset(32, 32, 2, 1, noise(4));
+  const auto scaled = [&](double factor) {
+    PrtAsset other = asset;
+    for (PrtPlane& plane : other.planes) plane.range = {factor * plane.range.lowest, factor * plane.range.highest};
+    return other;
+  };
+  // It wrote errors of null at 1e30, and took any loss for none at 1e-30.
+  for (const double factor : {1e30, 1e-30}) EXPECT_THROW(compress(scaled(factor), {}), BadInput) << factor;
+  const double error = compress(asset, {}).chosen.error;
+  for (const double factor : {0x1p30, 0x1p-30}) EXPECT_EQ(compress(scaled(factor), {}).chosen.error, error) << factor;
+  EXPECT_EQ(compress(scaled(0), {}).chosen.error, 0);
+}
+
 // ---- reading and relighting ----
 
 TEST(PcaAsset, RefusesMalformedFolders) {

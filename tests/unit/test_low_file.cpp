@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <string>
 
+#include "base/errors.h"
 #include "base/outputs.h"
 #include "import/import_mesh.h"
 #include "scratch.h"
@@ -47,6 +49,28 @@ TEST_F(LowColors, AreLeftOutUnlessAskedFor) {
   LowFile colored(path("colored.drc"));
   EXPECT_TRUE(colored.write(low).colors.empty());
   EXPECT_EQ(read_text(path("plain.drc")), read_text(path("colored.drc")));
+}
+
+using ThinFile = LowColors;
+
+TEST_F(ThinFile, NeedlesKeepTheirAreaOrAreRefused) {
+  const auto needle = [](float height) {
+    TriangleMesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0.5f, height, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    return mesh;
+  };
+  LowFile file(path("low.drc"), "needle.obj");
+  const TriangleMesh written = file.write(needle(1e-6f));
+  // Its corners move by half a step of 2^-21 at most, so its height by a whole one.
+  EXPECT_NEAR(surface_area(written), 0.5e-6, 0.5 * std::ldexp(1.0, -21));
+  try {
+    file.write(needle(1e-9f));
+    ADD_FAILURE() << "no file has steps for a height of 1e-9 of the length";
+  } catch (const BadInput& error) {
+    EXPECT_EQ(error.file(), "needle.obj");
+    EXPECT_NE(error.found().find("24 bits"), std::string::npos) << error.found();
+  }
 }
 
 }  // namespace

@@ -400,7 +400,7 @@ TEST(ProbePoints, ReadsLines) {
   const fs::path file = scratch.folder() / "points.txt";
   std::ofstream(file) << "# where\n0 1 2\n\n  -1.5 2e-1\t3 # here\n";
   EXPECT_EQ(read_points(file), (std::vector<Eigen::Vector3f>{{0, 1, 2}, {-1.5f, 0.2f, 3}}));
-  for (const char* text : {"", "# none\n", "1 2\n", "1 2 3 4\n", "1 2 x\n", "1 2 nan\n"}) {
+  for (const char* text : {"", "# none\n", "1 2\n", "1 2 3 4\n", "1 2 x\n", "1 2 nan\n", "1e13 0 0\n", "0 0 -1e38\n"}) {
     std::ofstream(file, std::ios::trunc) << text;
     EXPECT_THROW(read_points(file), BadInput) << text;
   }
@@ -413,7 +413,8 @@ TEST(ProbesSettings, GridsAndBoxes) {
   EXPECT_FALSE(parse_box("auto"));
   EXPECT_EQ((*parse_box("-1,0,1,2,3,4"))[3], 2);
   EXPECT_EQ(parse_box("-1; 0; 1; 2; 3; 4"), parse_box("-1,0,1,2,3,4")) << "as a list of pipeline.yaml comes";
-  for (const char* text : {"", "1,2,3", "1,2,3,0,3,4", "1,2,3,4,5,x", "0,0,0,1,1,inf"})
+  for (const char* text :
+       {"", "1,2,3", "1,2,3,0,3,4", "1,2,3,4,5,x", "0,0,0,1,1,inf", "0,0,0,1,1,1e13", "-1e30,0,0,1,1,1"})
     EXPECT_THROW(parse_box(text), WrongUsage) << text;
 }
 

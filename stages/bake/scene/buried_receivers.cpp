@@ -133,8 +133,10 @@ std::size_t move_to_seen_places(ReceiverSet& receivers, const TriangleMesh& atla
     for (std::size_t k = is_near ? 0 : places.size() - far_places; k < places.size(); ++k)
       candidates.push_back({r, static_cast<std::uint8_t>(k)});
   }
-  std::vector<Eigen::Vector3f> positions(candidates.size()), normals(candidates.size());
-  std::vector<std::uint8_t> usable(candidates.size(), 0);
+  // Eigen's vectors start with whatever the memory holds, and a ray must not start there.
+  const std::size_t count = candidates.size();
+  std::vector<Eigen::Vector3f> positions(count, Eigen::Vector3f::Zero()), normals(count, Eigen::Vector3f::UnitY());
+  std::vector<std::uint8_t> usable(count, 0);
   tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t k) {
     const auto& [r, place] = candidates[k];
     const TexelSteps steps(atlas, raster.texels[receivers.slots[r]].triangle, raster.width, raster.height);

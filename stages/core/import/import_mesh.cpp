@@ -55,6 +55,18 @@ void warn_of_precision(const SourceMesh& source, const Eigen::AlignedBox3d& box,
   warnings.emplace_back(text);
 }
 
+/// Refuses meshes whose coordinates the files of an asset, which have 32-bit floats, cannot hold: beyond 1e37 some
+/// overflow, below 1e-32 steps of 24 bits are no longer exact.
+void check_size(const std::string& name, const Eigen::AlignedBox3d& box) {
+  constexpr double smallest = 1e-32, largest = 1e37;
+  const double side = box.sizes().maxCoeff();
+  if (!(side > 0) || (side >= smallest && side <= largest)) return;  // a point has a message of its own
+  char found[100];
+  std::snprintf(found, sizeof found, "is %.3g across", side);
+  throw BadInput(name, found, "a mesh of 1e-32 to 1e+37 units, which 32-bit floats hold",
+                 "export it in another unit, or give --scale");
+}
+
 void warn_of_repairs(const MeshRepairs& repairs, std::vector<std::string>& warnings) {
   const auto add = [&](int count, const std::string& what, const std::string& rest) {
     if (count > 0) warnings.push_back(counted(static_cast<std::uint64_t>(count), what) + " " + rest);
@@ -114,6 +126,7 @@ ImportedMesh import_mesh(const std::filesystem::path& file, const ImportSettings
   result.further_files = source.further_files;
   const int welded = weld_borders(source, triangles, settings.weld);
   const Eigen::AlignedBox3d box = box_of(source, triangles);
+  check_size(name, box);
   warn_of_precision(source, box, result.warnings);
 
   // Step 2: make one clean mesh.
