@@ -19,6 +19,7 @@
 #include "kiln/pipeline.h"
 #include "kiln/plan/plan.h"
 #include "kiln/plan/plan_file.h"
+#include "kiln/presets.h"
 #include "kiln/report_command.h"
 #include "kiln/schema.h"
 #include "kiln/step.h"
@@ -45,6 +46,25 @@ struct Commands::Values {
 };
 
 namespace {
+
+/// Prints what each preset is for, promises and sets.
+void list_presets(bool as_json) {
+  Json presets = Json::array();
+  for (const Preset& preset : all_presets()) {
+    Json settings = Json::object();
+    std::string text;
+    for (const auto& [name, value] : preset.settings) {
+      settings[name] = value;
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name, value);
+    }
+    presets.push_back(
+        {{"name", preset.name}, {"purpose", preset.purpose}, {"error", preset.error}, {"settings", settings}});
+    if (!as_json)
+      std::printf("%s\tE of %g %% or less, %s: %s\n", std::string(preset.name).c_str(), 100 * preset.error,
+                  std::string(preset.purpose).c_str(), text.c_str());
+  }
+  if (as_json) std::printf("%s\n", json_text({{"presets", presets}}).c_str());
+}
 
 /// Tells whether a word names a pipeline file, and not an asset.
 bool names_pipeline(const std::string& word) { return word.ends_with(".yaml") || word.ends_with(".yml"); }
@@ -244,6 +264,10 @@ Commands::Commands(CLI::App& app) : values_(std::make_unique<Values>()) {
   add_words(list_command, v.words, "all");
   list_command.add_flag("--json", v.build.json, "Print them as one JSON object");
   list_command.callback([&v] { list(take_pipeline(v.words), v.build.json); });
+
+  CLI::App& presets_command = *app.add_subcommand("presets", "Print the presets, what they promise and set");
+  presets_command.add_flag("--json", v.build.json, "Print them as one JSON object");
+  presets_command.callback([&v] { list_presets(v.build.json); });
 
   CLI::App& clean_command = *app.add_subcommand("clean", "Remove what was built");
   add_words(clean_command, v.words, "all that was built");

@@ -67,7 +67,7 @@ Prediction AssetModel::predict(const Choice& choice) const {
                                square_of(fine, cause, bands), x, -steepest, 0);
   };
   // Exponents of squares, at most: of a transfer that jumps, a lookup's error falls with the texels' distance for the
-  // share of points near a jump, as does a quadrature's with the power 3/4 of its directions [Brauchart 2014]; seams
+  // share of points near a jump, as does a quadrature's with the power 3/4 of its directions [Beck 1984]; seams
   // are points at borders, whose share falls likewise, but never as fast as where every texel is at one.
   follow("geometry", &PilotBuild::triangles, choice.triangles, 1.5);
   if (choice.triangles >= pilot_.input_triangles) squares["geometry"] = 0;

@@ -68,14 +68,19 @@ class AssetPlanner {
   PlannedAsset decide() {
     ChoiceGrid grid = full_grid(model_);
     keep_in(grid);
-    const bool compresses = asset_.settings.contains("compress");
-    double allowance = compresses ? share_of_compression * goal_.error : 0;
+    double allowance = asset_.settings.contains("compress") ? share_of_compression * goal_.error : 0;
     std::optional<PlannedChoice> best = cheapest(model_, choices_of(grid, allowance), goal_);
-    if (best && compresses) {
-      // Measure compression with the bands chosen; then choose the rest anew.
-      grid.bands = {best->choice.bands};
+    // Measure compression with the bands chosen, and choose the rest anew; if that is too much error, halve its share.
+    for (int tries = 0; tries < 2 && best && allowance > 0; ++tries) {
+      ChoiceGrid rest = grid;
+      rest.bands = {best->choice.bands};
       allowance = compress_pilot(best->choice.bands, allowance);
-      best = cheapest(model_, choices_of(grid, allowance), goal_);
+      const std::optional<PlannedChoice> better = cheapest(model_, choices_of(rest, allowance), goal_);
+      if (better || tries == 1 || keeps("compress.max-error")) {
+        best = better;
+        break;
+      }
+      allowance /= 2;
     }
     PlannedAsset planned{asset_.name, goal_.error, "", {}, {}, {}};
     if (best) {
@@ -85,7 +90,7 @@ class AssetPlanner {
       return planned;
     }
     const PlannedChoice closest =
-        most_accurate(model_, choices_of(full_grid(model_), allowance), PlanGoal{}).value_or(PlannedChoice{});
+        most_accurate(model_, choices_of(grid, allowance), PlanGoal{}).value_or(PlannedChoice{});
     planned.prediction = closest.prediction;
     return planned;
   }
