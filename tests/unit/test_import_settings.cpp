@@ -5,7 +5,7 @@
 #include "import/readers.h"
 
 namespace kiln {
-namespace {
+namespace test_import_settings {
 
 TEST(ImportSettings, UpComesUpAndTheFrontToTheCamera) {
   // docs/import.md, "Up and front": up, the side that becomes +Z.
@@ -23,5 +23,5 @@ TEST(ImportSettings, UpComesUpAndTheFrontToTheCamera) {
   }
 }
 
-}  // namespace
+}  // namespace test_import_settings
 }  // namespace kiln

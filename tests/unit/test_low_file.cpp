@@ -10,7 +10,7 @@
 #include "simplify/low_file.h"
 
 namespace kiln {
-namespace {
+namespace test_low_file {
 
 namespace fs = std::filesystem;
 
@@ -49,5 +49,5 @@ TEST_F(LowColors, AreLeftOutUnlessAskedFor) {
   EXPECT_EQ(read_text(path("plain.drc")), read_text(path("colored.drc")));
 }
 
-}  // namespace
+}  // namespace test_low_file
 }  // namespace kiln

@@ -21,7 +21,7 @@
 #include "simplify/small_components.h"
 
 namespace kiln {
-namespace {
+namespace test_simplify_shapes {
 
 constexpr SimplifyQuality all_qualities[] = {SimplifyQuality::draft, SimplifyQuality::standard, SimplifyQuality::best};
 
@@ -237,5 +237,5 @@ TEST(FlippedTriangles, AreThoseThatFaceAgainstAllThatIsNear) {
   EXPECT_EQ(count_flipped(turned, shapes::icosphere(3), flipped_reach(turned, 0)), 5);
 }
 
-}  // namespace
+}  // namespace test_simplify_shapes
 }  // namespace kiln
