@@ -17,6 +17,7 @@
 // A failing step must leave the folder unchanged, byte for byte and without further files; "writes": true lifts that. A
 // case with a step's own keys is that one step.
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -223,7 +224,12 @@ int main(int argc, char** argv) {
     const Json file = Json::parse(kiln::read_text(argv[2]));
     Runner runner(fs::absolute(argv[1]), file);
     int failed = 0;
-    for (const Json& test : file.at("cases")) failed += runner.passes(test) ? 0 : 1;
+    for (const Json& test : file.at("cases")) {
+      const auto start = std::chrono::steady_clock::now();
+      failed += runner.passes(test) ? 0 : 1;
+      const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+      std::printf("%6.2f s  %s\n", seconds.count(), test.at("name").get<std::string>().c_str());
+    }
     std::printf("%zu cases, %d failed\n", file.at("cases").size(), failed);
     return failed == 0 ? 0 : 1;
   } catch (const std::exception& error) {

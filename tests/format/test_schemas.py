@@ -23,7 +23,7 @@ defaults:
   bake: {bands: 2, directions: 64, backend: embree}
   compress: {max-error: 0.2}
   probes: {grid: 2x1x2, bands: 2, directions: 64}
-  report: {picture-size: 64, directions: 32, lights: ['45,30', 'ambient:1']}
+  report: {picture-size: 64, directions: 32, error-samples: 64, lights: ['45,30', 'ambient:1']}
 budgets:
   bake.texels: {min: 1}
 assets:

@@ -21,6 +21,7 @@ namespace kiln {
 namespace import_support {
 
 inline std::filesystem::path write(const std::filesystem::path& file, const std::string& bytes) {
+  std::filesystem::remove(file);  // ext4 waits for the disk if a file is truncated and written again
   std::ofstream(file, std::ios::binary) << bytes;
   return file;
 }

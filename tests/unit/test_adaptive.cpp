@@ -11,7 +11,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_adaptive {
 
 constexpr int bands = 3;
 constexpr int coefficients = bands * bands;
@@ -173,5 +173,5 @@ TEST(Adaptive, AnyNumberOfThreadsGivesTheSameBits) {
   EXPECT_EQ(many.adaptive->error, single.adaptive->error);
 }
 
-}  // namespace
+}  // namespace test_adaptive
 }  // namespace kiln

@@ -15,7 +15,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_albedo_map {
 
 Eigen::Vector3f vector_at(const Image<float>& image, int i, int j) {
   return Eigen::Map<const Eigen::Vector3f>(image.pixel(i, j).data());
@@ -185,5 +185,5 @@ TEST_F(AlbedoFolder, WhatDoesNotFitIsRefused) {
   }
 }
 
-}  // namespace
+}  // namespace test_albedo_map
 }  // namespace kiln

@@ -15,7 +15,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_asset_albedo {
 
 namespace fs = std::filesystem;
 
@@ -121,5 +121,5 @@ TEST_F(AssetAlbedo, WhatDoesNotFitIsRefused) {
   }
 }
 
-}  // namespace
+}  // namespace test_asset_albedo
 }  // namespace kiln

@@ -20,7 +20,7 @@
 #include "simplify/simplify.h"
 
 namespace kiln {
-namespace {
+namespace test_atlas {
 
 namespace fs = std::filesystem;
 
@@ -511,5 +511,5 @@ TEST(Drawing, ShowsChartsGutterAndFreeRoom) {
   EXPECT_EQ(colors.size(), 3u);
 }
 
-}  // namespace
+}  // namespace test_atlas
 }  // namespace kiln

@@ -22,7 +22,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_atlas_layout {
 
 namespace fs = std::filesystem;
 
@@ -47,7 +47,7 @@ AtlasSettings quick_settings(const Extent& size, int gutter = 4) {
   return settings;
 }
 
-TriangleMesh with_normals(TriangleMesh mesh) {
+TriangleMesh with_vertex_normals(TriangleMesh mesh) {
   compute_vertex_normals(mesh);
   return mesh;
 }
@@ -127,7 +127,7 @@ TEST_F(AtlasLayout, GivesTexelsToWhereTransferVaries) {
   // Far from each other: an open square, on which transfer is the same everywhere, and a pleated one.
   TriangleMesh pleated = shapes::plane(16);
   for (Eigen::Vector3f& p : pleated.positions) p.y() = 0.15f * std::sin(12 * p.x());
-  const TriangleMesh mesh = with_normals(shapes::joined(shapes::plane(4), pleated, {10, 0, 0}));
+  const TriangleMesh mesh = with_vertex_normals(shapes::joined(shapes::plane(4), pleated, {10, 0, 0}));
   const Surface surface = analyse_surface(mesh);
   ChartSet cut = cut_into_charts(surface, {});
   const ChartDensities densities = densities_by_transfer(surface, cut.charts, nullptr);
@@ -208,7 +208,7 @@ TEST_F(AtlasLayout, OddTrianglesGetTexelsOrAreTold) {
   single.triangles = {{0, 1, 2}};
 
   const auto check = [&](TriangleMesh mesh, int size) {
-    mesh = with_normals(mesh);
+    mesh = with_vertex_normals(mesh);
     const AtlasSettings settings = quick_settings(size, 2);
     const WrittenAtlas atlas = written(make_atlas(mesh, settings));
     expect_told(atlas.measures, atlas.mesh, size);
@@ -311,5 +311,5 @@ TEST_F(AtlasLayout, NamesWhatIsWrongWithUvs) {
   }
 }
 
-}  // namespace
+}  // namespace test_atlas_layout
 }  // namespace kiln

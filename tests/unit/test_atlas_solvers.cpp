@@ -11,7 +11,7 @@
 #include "atlas/place.h"
 
 namespace kiln {
-namespace {
+namespace test_atlas_solvers {
 
 /// Lists the edges of a grid of squares, each with a diagonal, in random order and numbering.
 struct GridGraph {
@@ -141,5 +141,5 @@ TEST(Placer, FindsTheLowestThenLeftmostPlaceOfAll) {
   }
 }
 
-}  // namespace
+}  // namespace test_atlas_solvers
 }  // namespace kiln

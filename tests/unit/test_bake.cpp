@@ -19,7 +19,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_bake {
 
 constexpr double t_0 = 0.28209479;
 
@@ -269,5 +269,5 @@ TEST(Occluders, HullHoldsAllAndClosednessIsSeen) {
   EXPECT_EQ(join_occluders({floor}).hull.size(), 4u);
 }
 
-}  // namespace
+}  // namespace test_bake
 }  // namespace kiln

@@ -9,7 +9,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_bounce_paths {
 
 /// Radiance of a sky of three bands: bright above and to one side, grey. Band-limited, so that transfer represents all
 /// of it.
@@ -97,5 +97,5 @@ TEST(BouncePaths, BunnyOnAColoredFloor) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean_baked[c] / mean_truth[c], 1, 0.003);
 }
 
-}  // namespace
+}  // namespace test_bounce_paths
 }  // namespace kiln

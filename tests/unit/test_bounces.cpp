@@ -15,7 +15,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_bounces {
 
 constexpr double t_0 = 0.28209479;
 
@@ -421,5 +421,5 @@ TEST(SurfaceCache, PointsHaveTheMeanAlbedo) {
   }
 }
 
-}  // namespace
+}  // namespace test_bounces
 }  // namespace kiln

@@ -20,7 +20,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_buried {
 
 struct Points {
   std::vector<Eigen::Vector3f> positions, normals;
@@ -277,5 +277,5 @@ TEST(Buried, VerticesAreFilledAlongEdges) {
   for (std::size_t v = 0; v < floor_vertices; ++v) EXPECT_FLOAT_EQ(plane[v], 1);
 }
 
-}  // namespace
+}  // namespace test_buried
 }  // namespace kiln

@@ -11,7 +11,7 @@
 #include "mesh/camera_record.h"
 
 namespace kiln {
-namespace {
+namespace test_camera {
 
 using Shape = std::vector<Eigen::Vector3f>;
 
@@ -136,5 +136,5 @@ TEST(Camera, PixelDirectionsAgreeWithTheMatrix) {
   EXPECT_NEAR(clip.y() / clip.w(), 2 * 40.5 / 48 - 1, 1e-5);
 }
 
-}  // namespace
+}  // namespace test_camera
 }  // namespace kiln

@@ -29,7 +29,7 @@
 #include "simplify/simplify.h"
 
 namespace kiln {
-namespace {
+namespace test_cgal_collapse {
 
 using Vector = Eigen::Vector3d;
 
@@ -326,5 +326,5 @@ TEST_F(CgalThreads, GiveTheSameFile) {
   EXPECT_EQ(hash_with(1), hash_with(2));
 }
 
-}  // namespace
+}  // namespace test_cgal_collapse
 }  // namespace kiln

@@ -31,7 +31,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_compress {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -577,5 +577,5 @@ TEST(PcaAsset, GpuAndCpuAgree) {
   }
 }
 
-}  // namespace
+}  // namespace test_compress
 }  // namespace kiln

@@ -11,7 +11,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_drc_reader {
 
 using import_support::write;
 
@@ -82,5 +82,5 @@ TEST(DrcReader, ReadsOrRefusesDamagedFiles) {
   EXPECT_GT(import_support::read_damaged(read_drc, scratch.folder() / "damaged.drc", read_text(file), 3000), 500);
 }
 
-}  // namespace
+}  // namespace test_drc_reader
 }  // namespace kiln

@@ -12,7 +12,7 @@
 #include "scratch.h"
 
 namespace kiln {
-namespace {
+namespace test_fbx_reader {
 
 namespace fs = std::filesystem;
 using import_support::append;
@@ -344,5 +344,5 @@ TEST_F(FbxReader, ReadsOrRefusesDamagedFiles) {
   EXPECT_GT(damaged(binary_cube(7500, false)), 300);
 }
 
-}  // namespace
+}  // namespace test_fbx_reader
 }  // namespace kiln

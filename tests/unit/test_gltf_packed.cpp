@@ -12,7 +12,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_gltf_packed {
 
 using import_support::signed_volume;
 using import_support::worst_normal;
@@ -161,5 +161,5 @@ TEST_F(GltfPacked, ReadsOrRefusesDamagedFiles) {
   }
 }
 
-}  // namespace
+}  // namespace test_gltf_packed
 }  // namespace kiln

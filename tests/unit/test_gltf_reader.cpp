@@ -12,7 +12,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_gltf_reader {
 
 namespace fs = std::filesystem;
 using import_support::append;
@@ -339,5 +339,5 @@ TEST_F(GltfReader, ReadsOrRefusesDamagedFiles) {
   EXPECT_GT(import_support::read_damaged(read_gltf, path("damaged.gltf"), text, 2500), 1000);
 }
 
-}  // namespace
+}  // namespace test_gltf_reader
 }  // namespace kiln

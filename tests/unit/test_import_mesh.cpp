@@ -25,7 +25,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_import_mesh {
 
 namespace fs = std::filesystem;
 
@@ -588,5 +588,5 @@ TEST_F(MeshFile, TrianglesOnALineAreNoMesh) {
                BadInput);
 }
 
-}  // namespace
+}  // namespace test_import_mesh
 }  // namespace kiln

@@ -10,7 +10,7 @@
 #include "scratch.h"
 
 namespace kiln {
-namespace {
+namespace test_import_settings {
 
 TEST(ImportSettings, UpComesUpAndTheFrontToTheCamera) {
   // docs/import.md, "Up and front": up, the side that becomes +Z.
@@ -49,5 +49,5 @@ TEST(ImportedSize, IsRefusedWhereFloatsDoNotHoldIt) {
   }
 }
 
-}  // namespace
+}  // namespace test_import_settings
 }  // namespace kiln

@@ -16,7 +16,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_integration {
 
 namespace fs = std::filesystem;
 
@@ -337,5 +337,5 @@ TEST(ErrorDriven, StopsAtAnErrorThatRaysConfirm) {
   EXPECT_GT(limited.choice->estimated_error, limited.choice->target_error);
 }
 
-}  // namespace
+}  // namespace test_integration
 }  // namespace kiln

@@ -12,7 +12,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_known_rays {
 
 constexpr std::size_t plenty = 1u << 30;
 
@@ -152,5 +152,5 @@ TEST(KnownRays, MemoryIsNeverMoreThanThereIs) {
   EXPECT_FALSE(memory.take(1));
 }
 
-}  // namespace
+}  // namespace test_known_rays
 }  // namespace kiln

@@ -16,7 +16,7 @@
 #include "sh/rotation.h"
 
 namespace kiln {
-namespace {
+namespace test_light_prior {
 
 constexpr double pi = std::numbers::pi;
 constexpr std::array<float, 1> white = {1};
@@ -323,5 +323,5 @@ TEST(LightingPrior, FallsFromOneAndKeepsItsValues) {
   }
 }
 
-}  // namespace
+}  // namespace test_light_prior
 }  // namespace kiln

@@ -11,7 +11,7 @@
 #include "sh/windows.h"
 
 namespace kiln {
-namespace {
+namespace test_light_windows {
 
 constexpr std::array windows = {LightWindow::none, LightWindow::hann, LightWindow::lanczos, LightWindow::dering};
 
@@ -114,5 +114,5 @@ TEST(LightWindows, OfAPassedLightAreThoseOfTheBandsThatArrive) {
   }
 }
 
-}  // namespace
+}  // namespace test_light_windows
 }  // namespace kiln

@@ -16,7 +16,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_local_lights {
 
 using namespace test;
 
@@ -254,5 +254,5 @@ TEST(Placement, ReadsAndRefuses) {
     EXPECT_THROW(parse_placement("place", text), WrongUsage) << text;
 }
 
-}  // namespace
+}  // namespace test_local_lights
 }  // namespace kiln

@@ -12,7 +12,7 @@
 #include "simplify/low_file.h"
 
 namespace kiln {
-namespace {
+namespace test_low_file {
 
 namespace fs = std::filesystem;
 
@@ -73,5 +73,5 @@ TEST_F(ThinFile, NeedlesKeepTheirAreaOrAreRefused) {
   }
 }
 
-}  // namespace
+}  // namespace test_low_file
 }  // namespace kiln

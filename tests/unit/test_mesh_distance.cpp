@@ -11,7 +11,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_mesh_distance {
 
 TEST(MeshDistance, OfAMeshToItselfIsZero) {
   const TriangleMesh sphere = shapes::icosphere(3);
@@ -156,5 +156,5 @@ TEST(NearestSurface, AgreesWithEveryTriangleOnItsOwn) {
   }
 }
 
-}  // namespace
+}  // namespace test_mesh_distance
 }  // namespace kiln

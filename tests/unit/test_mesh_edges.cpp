@@ -13,7 +13,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_mesh_edges {
 
 TEST(SamePosition, IsTheFirstOne) {
   const std::vector<Eigen::Vector3f> positions = {{0, 1, 2}, {3, 4, 5}, {-0.f, 1, 2}, {3, 4, 5}, {3, 4, 6}, {0, 1, 2}};
@@ -118,5 +118,5 @@ TEST(SurfacePoints, InterpolateBetweenCorners) {
   EXPECT_EQ(normal_at(mesh, {0, 0.25f, 0.25f, 0}), Eigen::Vector3f::UnitY()) << "they cancel: the triangle's own";
 }
 
-}  // namespace
+}  // namespace test_mesh_edges
 }  // namespace kiln

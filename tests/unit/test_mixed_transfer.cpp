@@ -13,7 +13,7 @@
 #include "sh/ray_offset.h"
 
 namespace kiln {
-namespace {
+namespace test_mixed_transfer {
 
 constexpr int bands = 3;
 
@@ -133,5 +133,5 @@ TEST_F(MixedTransferTest, NothingIsInTheWayOfNoTriangles) {
   EXPECT_NEAR(transfer.sums().transfer().plane(0)[5], unoccluded_transfer(basis, normals[5])[0], 3e-3);
 }
 
-}  // namespace
+}  // namespace test_mixed_transfer
 }  // namespace kiln

@@ -5,7 +5,7 @@
 #include "obj_files.h"
 
 namespace kiln {
-namespace {
+namespace test_mtl_reader {
 
 namespace fs = std::filesystem;
 
@@ -237,5 +237,5 @@ TEST_F(MtlFiles, DamagedLibrariesAreReadOrFaults) {
   EXPECT_GE(read_count, 10) << "those whose second Kd is damaged into another word";
 }
 
-}  // namespace
+}  // namespace test_mtl_reader
 }  // namespace kiln

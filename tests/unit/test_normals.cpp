@@ -24,7 +24,7 @@
 #include "simplify/simplify.h"
 
 namespace kiln {
-namespace {
+namespace test_normals {
 
 constexpr double degree = 3.14159265358979323846 / 180;
 
@@ -518,5 +518,5 @@ TEST(Normals, WhatCannotBeDoneIsSaid) {
   EXPECT_THROW(make_normals(high, low, {}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace test_normals
 }  // namespace kiln

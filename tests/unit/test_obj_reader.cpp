@@ -5,7 +5,7 @@
 #include "obj_files.h"
 
 namespace kiln {
-namespace {
+namespace test_obj_reader {
 
 namespace fs = std::filesystem;
 
@@ -328,5 +328,5 @@ TEST_F(ObjFiles, DamagedFilesAreReadOrRefused) {
   EXPECT_GT(refused, 500);
 }
 
-}  // namespace
+}  // namespace test_obj_reader
 }  // namespace kiln

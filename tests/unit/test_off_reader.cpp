@@ -5,7 +5,7 @@
 #include "import_files.h"
 
 namespace kiln {
-namespace {
+namespace test_off_reader {
 
 using Places = std::vector<std::uint32_t>;
 
@@ -183,5 +183,5 @@ TEST(OffReader, AnyBytesAreReadOrRefused) {
     EXPECT_GT(files.mutate(good, 1000), 100);
 }
 
-}  // namespace
+}  // namespace test_off_reader
 }  // namespace kiln

@@ -8,7 +8,7 @@
 #include "sh/lights.h"
 
 namespace kiln {
-namespace {
+namespace test_picture_lights {
 
 constexpr std::array<float, 1> white = {1};
 constexpr double half_turn = std::numbers::pi;
@@ -111,5 +111,5 @@ TEST(CubeMap, TexelsOfManyAreThoseOfFewCutUp) {
   for (std::size_t i = 0; i < 64; ++i) EXPECT_NEAR(coarse.channels[0][i], fine.channels[0][i], 3e-5) << i;
 }
 
-}  // namespace
+}  // namespace test_picture_lights
 }  // namespace kiln

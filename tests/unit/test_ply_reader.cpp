@@ -8,7 +8,7 @@
 #include "import_files.h"
 
 namespace kiln {
-namespace {
+namespace test_ply_reader {
 
 using Places = std::vector<std::uint32_t>;
 
@@ -367,5 +367,5 @@ TEST(PlyReader, AnyBytesAreReadOrRefused) {
     EXPECT_GT(files.mutate(good, 800), 100);
 }
 
-}  // namespace
+}  // namespace test_ply_reader
 }  // namespace kiln

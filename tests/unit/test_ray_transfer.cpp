@@ -15,7 +15,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_ray_transfer {
 
 constexpr int bands = 3;
 struct Points {
@@ -329,5 +329,5 @@ TEST(RayTransfer, EmptyScenesAndFewReceivers) {
   EXPECT_EQ(receivers_that_differ(hidden, by_streams(one, point, directions)), 0);
 }
 
-}  // namespace
+}  // namespace test_ray_transfer
 }  // namespace kiln

@@ -12,7 +12,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_raycast {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
@@ -158,5 +158,5 @@ TEST(RayScene, OneThreadAndManyBuildTheSameTree) {
   for (int k = 0; k < 3; ++k) EXPECT_EQ(one, queries(4));
 }
 
-}  // namespace
+}  // namespace test_raycast
 }  // namespace kiln

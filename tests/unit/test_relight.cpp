@@ -35,7 +35,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_relight {
 
 namespace fs = std::filesystem;
 using namespace test;
@@ -542,5 +542,5 @@ TEST(RenderSettings, TurntableKeepsTargetAndDistanceAndShowsAll) {
     EXPECT_NEAR((view.camera.position - Eigen::Vector3f(1, 0, 0)).norm(), 20, 1e-4);
 }
 
-}  // namespace
+}  // namespace test_relight
 }  // namespace kiln

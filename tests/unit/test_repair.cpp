@@ -12,7 +12,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_repair {
 
 /// Computes vertices - edges + triangles: 2 for a sphere, 1 for a disk, 0 for a torus or a ring.
 int euler_characteristic(const TriangleMesh& mesh) {
@@ -318,5 +318,5 @@ TEST(Repair, TellsManifoldsFromOthers) {
   EXPECT_TRUE(is_manifold(TriangleMesh{}));
 }
 
-}  // namespace
+}  // namespace test_repair
 }  // namespace kiln

@@ -10,7 +10,7 @@
 #include "scatter/profile.h"
 
 namespace kiln {
-namespace {
+namespace test_scatter {
 
 /// Lists profiles over the whole range that content may ask for, in mm.
 std::vector<ScatterProfile> usual_profiles() {
@@ -104,5 +104,5 @@ TEST(Scatter, RefusesWhatIsNoMaterial) {
   EXPECT_THROW(ScatterProfile::diffusion(0.5, 0), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace test_scatter
 }  // namespace kiln

@@ -12,7 +12,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_seams {
 
 /// Makes a cube sphere whose six charts are turned and scaled, each differently. Positions are rounded as Draco rounds
 /// them, so that both sides of a seam have the same bits.
@@ -237,5 +237,5 @@ TEST_F(TurnedCharts, NormalMapsOfBothSpaces) {
   }
 }
 
-}  // namespace
+}  // namespace test_seams
 }  // namespace kiln

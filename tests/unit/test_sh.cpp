@@ -14,7 +14,7 @@
 #include "sh/windows.h"
 
 namespace kiln {
-namespace {
+namespace test_sh {
 
 /// Computes the Gram matrix of all basis functions by a quadrature that is exact for their products.
 template <class Real>
@@ -343,5 +343,5 @@ TEST(Transfer, SampledErrorsAreAsUncertainAsTheySay) {
   EXPECT_EQ(sampled_relative_l2(std::span(&other, 1), std::span(&truth, 1), all).uncertainty, 0) << "all measured";
 }
 
-}  // namespace
+}  // namespace test_sh
 }  // namespace kiln

@@ -21,7 +21,7 @@
 #include "sh/windows.h"
 
 namespace kiln {
-namespace {
+namespace test_sh_functions {
 
 constexpr std::array<float, 1> white = {1};
 
@@ -349,5 +349,5 @@ TEST(LightSpecs, NumbersOutOfRangeAreRefusedInAStructToo) {
   expect_refused([](LightSpec& spec) { spec.kind = LightSpec::Kind::sphere, spec.position[2] = nan; });
 }
 
-}  // namespace
+}  // namespace test_sh_functions
 }  // namespace kiln

@@ -21,7 +21,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_shadow_maps {
 
 constexpr double t_0 = 0.28209479;
 
@@ -354,5 +354,5 @@ TEST(ShadowSettings, SizeIsANumberOrAuto) {
   for (const char* wrong : {"0", "15", "16385", "512x", ""}) EXPECT_THROW(size->set(wrong), WrongUsage) << wrong;
 }
 
-}  // namespace
+}  // namespace test_shadow_maps
 }  // namespace kiln

@@ -26,7 +26,7 @@
 #include "simplify/simplify.h"
 
 namespace kiln {
-namespace {
+namespace test_simplify {
 
 namespace fs = std::filesystem;
 
@@ -486,5 +486,5 @@ TEST_F(Simplify, ThinTrianglesGetMoreBits) {
   for (const Eigen::Vector3f& normal : decoded.normals) EXPECT_GT(normal.z(), 0.999f);
 }
 
-}  // namespace
+}  // namespace test_simplify
 }  // namespace kiln

@@ -6,7 +6,7 @@
 #include "import_files.h"
 
 namespace kiln {
-namespace {
+namespace test_stl_reader {
 
 using Triangle3 = std::array<Eigen::Vector3f, 3>;
 
@@ -159,5 +159,5 @@ TEST(StlReader, AnyBytesAreReadOrRefused) {
   EXPECT_GT(files.mutate(binary(3, {0x8000, 0x801f, 0}), 1500), 100);
 }
 
-}  // namespace
+}  // namespace test_stl_reader
 }  // namespace kiln

@@ -15,7 +15,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_subsurface {
 
 using shapes::icosphere;
 
@@ -402,5 +402,5 @@ TEST(Subsurface, TexelsScatterInMillimetres) {
     EXPECT_NEAR(channels[c].plane(0)[middle], 0.5 * report.reflectance[c], 0.01 * report.reflectance[c]);
 }
 
-}  // namespace
+}  // namespace test_subsurface
 }  // namespace kiln

@@ -10,7 +10,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_surface_transfer {
 
 TEST(SurfaceTransfer, OutsideOfSphereIsUnoccluded) {
   const TriangleMesh sphere = shapes::icosphere(3);
@@ -55,5 +55,5 @@ TEST(SurfaceTransfer, ThreadsChangeNoBit) {
   EXPECT_EQ(surface_transfer(torus, {torus.positions, normals}).values, many.values);
 }
 
-}  // namespace
+}  // namespace test_surface_transfer
 }  // namespace kiln

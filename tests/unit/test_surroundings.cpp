@@ -13,7 +13,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_surroundings {
 
 namespace fs = std::filesystem;
 
@@ -144,5 +144,5 @@ TEST_F(SurroundingsTest, WhatCannotBeIsSaid) {
   for (const char* text : {"low", "0,1,2"}) EXPECT_THROW(options.find("ground")->set(text), WrongUsage);
 }
 
-}  // namespace
+}  // namespace test_surroundings
 }  // namespace kiln

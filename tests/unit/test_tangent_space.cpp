@@ -8,7 +8,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_tangent_space {
 
 TEST(TangentSpace, PlaneHasItsUvAxes) {
   const TriangleMesh mesh = shapes::plane(3);
@@ -93,5 +93,5 @@ TEST(TangentSpace, NothingToGoByStillGivesAFrame) {
   EXPECT_THROW(tangent_frames(mesh), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace test_tangent_space
 }  // namespace kiln

@@ -23,7 +23,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_techniques {
 
 namespace fs = std::filesystem;
 using namespace test;
@@ -330,5 +330,5 @@ TEST(ContactSheet, HoldsEveryPictureAndItsCaption) {
   EXPECT_GT(text, 20);  // pixels of three letters
 }
 
-}  // namespace
+}  // namespace test_techniques
 }  // namespace kiln

@@ -8,7 +8,7 @@
 #include "simplify/transfer_weights.h"
 
 namespace kiln {
-namespace {
+namespace test_transfer_weights {
 
 /// Makes a cube of side 1 on a floor of side 6, with a gap that no ray offset closes.
 TriangleMesh cube_on_floor() {
@@ -79,5 +79,5 @@ TEST(TransferWeights, PutTrianglesWhereTransferVaries) {
   EXPECT_GT(aware, blind + 0.05);
 }
 
-}  // namespace
+}  // namespace test_transfer_weights
 }  // namespace kiln

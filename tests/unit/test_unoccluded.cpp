@@ -11,7 +11,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_unoccluded {
 
 constexpr float lift = 1e-3f;
 
@@ -60,5 +60,5 @@ TEST(Unoccluded, EveryRayOfAFreeReceiverOfTheBunnyIsFree) {
   EXPECT_GT(count, 20);
 }
 
-}  // namespace
+}  // namespace test_unoccluded
 }  // namespace kiln

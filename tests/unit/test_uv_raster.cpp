@@ -9,7 +9,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_uv_raster {
 
 TriangleMesh flat(const std::vector<Eigen::Vector2f>& uvs, const std::vector<Triangle>& triangles) {
   TriangleMesh mesh;
@@ -104,5 +104,5 @@ TEST(UvRaster, ClipsAtTheBorder) {
   EXPECT_EQ(rasterise_uvs(mesh, 32, 32).covered_texels, 32 * 32);
 }
 
-}  // namespace
+}  // namespace test_uv_raster
 }  // namespace kiln

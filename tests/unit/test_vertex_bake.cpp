@@ -23,7 +23,7 @@
 #include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_vertex_bake {
 
 namespace fs = std::filesystem;
 
@@ -302,5 +302,5 @@ TEST_F(VertexBake, RuntimesReadTheFolderOrSayWhatIsWrong) {
   refuses("/albedo", "albedo.png", "albedo.png");
 }
 
-}  // namespace
+}  // namespace test_vertex_bake
 }  // namespace kiln
