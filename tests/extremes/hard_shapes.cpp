@@ -95,7 +95,7 @@ Table measure_hard_shapes(const Bench& bench) {
         {"slivers", "aspect 1e3, 8,004 to 400", slabs(1000, 1e-3), Truth::convex, {.import = sharp.import}},
         {"slivers", "aspect 1e6, 16,004 to 400", slabs(2000, 1e-6), Truth::convex, {.import = sharp.import}},
         {"flattened", "1e-6 of its height", torus.placed({1, 1e-6, 1})},
-        {"stretched", "1e4 times its length", torus.placed({1e4, 1, 1}), Truth::sane, {.size = "256"}},
+        {"stretched", "100 times its length", torus.placed({100, 1, 1}), Truth::sane, {.size = "256"}},
         {"two parts",
          "the second a millionth of the first",
          torus.with(torus.placed(Eigen::Vector3d::Constant(1e-6), {3, 0, 0})),
@@ -120,6 +120,7 @@ Table measure_hard_shapes(const Bench& bench) {
   const std::vector<std::tuple<const char*, const char*, Shape, const char*>> refused = {
       {"a needle alone", "aspect 1e6", needle(1e-6), "atlas.drc"},
       {"a needle alone", "aspect 1e9", needle(1e-9), "low.drc"},
+      {"a torus stretched", "1e4 times its length", torus.placed({1e4, 1, 1}), "atlas.drc"},
       {"a line", "no area", needle(0), "low.drc"},
       {"a point", "three corners at one place", needle(0).placed({0, 0, 0}), "low.drc"}};
   for (const auto& [what, extreme, shape, output] : refused) {

@@ -5,6 +5,7 @@
 #include <ctime>
 #include <fmt/format.h>
 #include <fstream>
+#include <sstream>
 #include <thread>
 
 namespace kiln::extremes {
@@ -33,6 +34,21 @@ std::string cell(const std::string& text) {
     plain += c == '\n' ? ' ' : c;
   }
   return plain;
+}
+
+/// Breaks a paragraph into lines of at most 120 columns.
+std::string wrapped(const std::string& paragraph) {
+  constexpr std::size_t columns = 120;
+  std::istringstream words(paragraph);
+  std::string text, line;
+  for (std::string word; words >> word;) {
+    if (!line.empty() && line.size() + 1 + word.size() > columns) {
+      text += line + "\n";
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  return text + line;
 }
 
 std::string processor() {
@@ -70,12 +86,12 @@ std::string grouped(long long value) {
 }
 
 std::string to_markdown(const Table& table) {
-  std::string text = fmt::format("## {}\n\n{}\n\n", table.title, table.finding);
+  std::string text = fmt::format("## {}\n\n{}\n\n", table.title, wrapped(table.finding));
   text += "| what | extreme | measured | bound | verdict |\n| --- | --- | --- | --- | --- |\n";
   for (const Row& row : table.rows)
     text += fmt::format("| {} | {} | {} | {} | {} |\n", cell(row.what), cell(row.extreme), cell(row.measured),
                         cell(row.bound), name_of(row.verdict));
-  if (!table.notes.empty()) text += "\n" + table.notes + "\n";
+  if (!table.notes.empty()) text += "\n" + wrapped(table.notes) + "\n";
   return text;
 }
 
@@ -86,15 +102,19 @@ std::string to_page(const std::vector<Table>& tables) {
     for (const Row& row : table.rows) missed += row.verdict == Verdict::misses;
   }
   std::string text = "# The extremes, measured\n\n";
+  text += wrapped(fmt::format(
+              "What Kiln does where numbers are far out: of {} measurements {} miss their bound. `make extremes` makes "
+              "this page anew (`tests/extremes`); `make test` runs the quick part of it and fails where a bound is "
+              "missed.",
+              rows, missed == 0 ? "none" : std::to_string(missed))) +
+          "\n\n";
   text += fmt::format(
-      "What Kiln does where numbers are far out: of {} measurements {} miss their bound. `make extremes` makes this "
-      "page\nanew (`tests/extremes`); `make test` runs the quick part of it and fails where a bound is missed.\n\n"
       "- A row **holds** where the measurement is within its bound, and is **refused** where a program says what is "
       "wrong\n  with its input (exit status 3) or its options (2), and leaves no output behind.\n"
       "- Transfer is compared by relative L2 over the covered texels. An unoccluded texel has t_0 = 0.282095.\n"
-      "- Machine: {}, {} threads, {}. Times are of a machine that others used, too: read their growth, not their "
+      "- Machine: {}, {} threads, {}. Times are of a machine that others used, too: read\n  their growth, not their "
       "size.\n",
-      rows, missed == 0 ? "none" : std::to_string(missed), processor(), std::thread::hardware_concurrency(), today());
+      processor(), std::thread::hardware_concurrency(), today());
   for (const Table& table : tables) text += "\n" + to_markdown(table);
   return text;
 }
