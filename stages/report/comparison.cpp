@@ -148,6 +148,25 @@ ErrorSplit split_error(const AssetFolder& asset, const TriangleMesh& low, const 
                       part_of(run.progress, 1 - split_share, 1));
 }
 
+/// A camera, and the lights under which it shows the asset.
+struct CameraView {
+  double azimuth_degrees = 0;
+  std::vector<std::string> lights;
+};
+
+/// Returns the cameras around the asset: the one of the settings, with all lights, then others evenly about the
+/// vertical, each with the first light.
+std::vector<CameraView> camera_views(const ReportSettings& settings) {
+  const std::vector<std::string> lights = list_of(settings.lights);
+  parse_lights("lights", lights);  // refuses what is none
+  std::vector<CameraView> views = {{settings.camera_azimuth_degrees, lights}};
+  for (int k = 1; k < settings.cameras; ++k) {
+    const double azimuth = settings.camera_azimuth_degrees + 360.0 * k / settings.cameras;
+    views.push_back({azimuth > 360 ? azimuth - 360 : azimuth, {lights.front()}});
+  }
+  return views;
+}
+
 /// Pictures of assets under each light.
 struct Rendered {
   Json said;                           ///< result of kiln-render for the first picture
@@ -164,8 +183,9 @@ Image<float> read_rendered(const fs::path& file, const ReportSettings& settings)
 
 /// Draws the asset and, if there is one, its compressed form under each light. All in one run of kiln-render, because
 /// starting takes longer than drawing.
-Rendered render(const AssetFolder& asset, const std::vector<std::string>& lights, double albedo,
-                const ReportSettings& settings, const ComparisonRun& run) {
+Rendered render(const AssetFolder& asset, const CameraView& view, double albedo, const ReportSettings& settings,
+                const ComparisonRun& run) {
+  const std::vector<std::string>& lights = view.lights;
   std::string printed;
   ProcessSettings process;
   process.on_output_line = [&](const std::string& line) { printed += line; };
@@ -180,7 +200,7 @@ Rendered render(const AssetFolder& asset, const std::vector<std::string>& lights
       "--each-asset",
       "--window",
       "hann",
-      fmt::format("--camera={},{}", settings.camera_azimuth_degrees, settings.camera_elevation_degrees),
+      fmt::format("--camera={},{}", view.azimuth_degrees, settings.camera_elevation_degrees),
       "--field-of-view",
       fmt::format("{}", field_of_view_degrees),
       fmt::format("--zoom={}", settings.framing.zoom),
@@ -220,8 +240,14 @@ Rendered render(const AssetFolder& asset, const std::vector<std::string>& lights
   return rendered;
 }
 
+/// Difference of two pictures, and the number of pixels that it is taken over.
+struct PictureComparison {
+  ImageDifference difference;
+  std::size_t pixels = 0;
+};
+
 /// Compares two pictures over the pixels that both cover wholly: elsewhere the background would be compared.
-ImageDifference compare(const Image<float>& picture, const Image<float>& reference, std::size_t& compared_pixels) {
+PictureComparison compare(const Image<float>& picture, const Image<float>& reference) {
   std::vector<float> ours, theirs;
   for (int j = 0; j < picture.height(); ++j)
     for (int i = 0; i < picture.width(); ++i) {
@@ -230,13 +256,13 @@ ImageDifference compare(const Image<float>& picture, const Image<float>& referen
       ours.insert(ours.end(), a.begin(), a.begin() + 3);
       theirs.insert(theirs.end(), b.begin(), b.begin() + 3);
     }
-  compared_pixels = ours.size() / 3;
+  const std::size_t pixels = ours.size() / 3;
   const auto as_image = [&](std::vector<float>& values) {
-    Image<float> image(static_cast<int>(compared_pixels), 1, 3);
+    Image<float> image(static_cast<int>(pixels), 1, 3);
     image.values() = std::move(values);
     return image;
   };
-  return compare_images(as_image(ours), as_image(theirs));
+  return {compare_images(as_image(ours), as_image(theirs)), pixels};
 }
 
 double silhouette_difference(const LightComparison& comparison) {
@@ -253,29 +279,31 @@ double silhouette_difference(const LightComparison& comparison) {
 
 Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high_file, const ReportSettings& settings,
                                   const ComparisonRun& run) {
-  const std::vector<std::string> lights = list_of(settings.lights);
-  const std::vector<LightSpec> specs = parse_lights("lights", lights);
   Comparison comparison;
-
   const double albedo = settings.albedo_factor(has_albedo(asset));
+  const std::vector<CameraView> views = camera_views(settings);
 
   // Draw the asset by the program that reads only its files.
   const Stopwatch render_watch;
-  Rendered rendered = render(asset, lights, albedo, settings, run);
-  comparison.renderer = rendered.said.at("renderer").get<std::string>();
-  comparison.software_renderer = rendered.said.at("software_renderer").get<bool>();
-  for (std::size_t k = 0; k < lights.size(); ++k) {
-    LightComparison& light = comparison.lights.emplace_back();
-    light.light = lights[k];
-    light.asset = std::move(rendered.pictures[k]);
-    if (asset.compressed.empty()) continue;
-    light.compressed = std::move(rendered.pictures[lights.size() + k]);
-    std::size_t pixels = 0;
-    light.compressed_difference = compare(light.compressed, light.asset, pixels);
+  std::vector<Camera> cameras;
+  for (const CameraView& view : views) {
+    Rendered rendered = render(asset, view, albedo, settings, run);
+    comparison.renderer = rendered.said.at("renderer").get<std::string>();
+    comparison.software_renderer = rendered.said.at("software_renderer").get<bool>();
+    cameras.push_back(camera_of_json(rendered.said.at("camera")));
+    for (std::size_t k = 0; k < view.lights.size(); ++k) {
+      LightComparison& light = comparison.lights.emplace_back();
+      light.light = view.lights[k];
+      light.camera_azimuth_degrees = view.azimuth_degrees;
+      light.asset = std::move(rendered.pictures[k]);
+      if (asset.compressed.empty()) continue;
+      light.compressed = std::move(rendered.pictures[view.lights.size() + k]);
+      light.compressed_difference = compare(light.compressed, light.asset).difference;
+    }
   }
   comparison.render_seconds = render_watch.seconds();
 
-  // Draw the high mesh by rays, from the very camera that kiln-render used.
+  // Draw the high mesh by rays, from the very cameras that kiln-render used.
   const Stopwatch reference_watch;
   const TriangleMesh atlas = load_atlas(asset.prt() / layout::atlas_mesh);
   const ImportSettings how = import_settings_of(asset.record("simplify").value("settings", Json::object()));
@@ -283,7 +311,6 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   const TriangleMesh& high = imported.mesh;
   ReferenceView view;
   view.width = view.height = settings.picture_size;
-  view.camera = camera_of_json(rendered.said.at("camera"));
   view.supersample = supersample;
   view.albedo = static_cast<float>(albedo);
   view.surface_albedo = load_albedo(imported, material_of(asset.record("normals"))).albedo;
@@ -293,20 +320,27 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   // Take other directions than the bake, so that an error of the bake's does not cancel.
   const std::vector<Eigen::Vector3f> directions =
       sample_directions(Sampling::fibonacci, settings.directions, static_cast<std::uint64_t>(run.seed) + 1);
-  std::vector<ReferencePicture> references =
-      reference_pictures(high, view, specs, directions, part_of(run.progress, 0, 1 - split_share));
+  auto light = comparison.lights.begin();
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    view.camera = cameras[v];
+    const double begin = static_cast<double>(v) / static_cast<double>(views.size()),
+                 end = static_cast<double>(v + 1) / static_cast<double>(views.size());
+    for (ReferencePicture& reference :
+         reference_pictures(high, view, parse_lights("lights", views[v].lights), directions,
+                            part_of(run.progress, (1 - split_share) * begin, (1 - split_share) * end))) {
+      const PictureComparison compared = compare(light->asset, reference.in_bands);
+      if (light == comparison.lights.begin()) comparison.compared_pixels = compared.pixels;
+      light->difference = compared.difference;
+      light->difference_in_full = compare(light->asset, reference.in_full).difference;
+      light->reference = std::move(reference.in_bands);
+      light->reference_in_full = std::move(reference.in_full);
+      ++light;
+    }
+  }
   comparison.error_left_out = left_out(asset);
   if (comparison.error_left_out.empty()) comparison.error = split_error(asset, atlas, high, view.scene, settings, run);
   comparison.predicted = settings.predictions();
   comparison.reference_seconds = reference_watch.seconds();
-
-  for (std::size_t k = 0; k < lights.size(); ++k) {
-    LightComparison& light = comparison.lights[k];
-    light.reference = std::move(references[k].in_bands);
-    light.difference = compare(light.asset, light.reference, comparison.compared_pixels);
-    light.reference_in_full = std::move(references[k].in_full);
-    light.difference_in_full = compare(light.asset, light.reference_in_full, comparison.compared_pixels);
-  }
   comparison.silhouette_difference = silhouette_difference(comparison.lights.front());
   return comparison;
 }

@@ -16,9 +16,10 @@
 
 namespace kiln {
 
-/// The asset and the high mesh under one light. Pictures are linear RGBA, premultiplied.
+/// The asset and the high mesh under one light, from one camera. Pictures are linear RGBA, premultiplied.
 struct LightComparison {
   std::string light;
+  double camera_azimuth_degrees = 0;
   Image<float> asset;
   Image<float> reference;
   ImageDifference difference;             ///< asset minus reference, over the pixels that both cover wholly
@@ -29,8 +30,8 @@ struct LightComparison {
 };
 
 struct Comparison {
-  std::vector<LightComparison> lights;
-  std::size_t compared_pixels = 0;  ///< number of pixels covered wholly by both
+  std::vector<LightComparison> lights;  ///< of the settings' camera first
+  std::size_t compared_pixels = 0;      ///< number of pixels covered wholly by both, of the first
   double silhouette_difference =
       0;                 ///< share of the pixels in either silhouette that lie (by half or more) in only one
   std::string renderer;  ///< renderer that drew the asset

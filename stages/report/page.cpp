@@ -144,9 +144,12 @@ std::string relit_section(const AssetFolder& asset, const Report& report, const 
     html +=
         "<p class=note>The reference has no light that scatters beneath the surface: that is part of the "
         "difference.</p>\n";
-  const Crop crop = crop_of(comparison.lights.front());
+  const double front = comparison.lights.front().camera_azimuth_degrees;
   for (const LightComparison& light : comparison.lights) {
-    const std::string name = light_label(light.light);
+    const Crop crop = crop_of(light);
+    std::string name = light_label(light.light);
+    if (light.camera_azimuth_degrees != front)
+      name += fmt::format(", seen from azimuth {:g}°", light.camera_azimuth_degrees);
     html += "<div class=light><h3>" + escaped(name) + "</h3>\n<div class=quartet>\n";
     html += figure(image(cropped(shown_radiance(light.asset), crop), "Asset: " + name, scratch), "<b>Asset</b>");
     html += figure(image(cropped(shown_radiance(light.reference), crop), "Reference: " + name, scratch),

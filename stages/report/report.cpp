@@ -14,6 +14,7 @@ Json Report::to_json() const {
   bool is_compressed = false;
   for (const LightComparison& light : comparison.lights) {
     lights.push_back({{"light", light.light},
+                      {"camera_azimuth", light.camera_azimuth_degrees},
                       {"relative_l2", light.difference.relative_l2},
                       {"root_mean_square", light.difference.root_mean_square},
                       {"largest", light.difference.largest},

@@ -62,6 +62,9 @@ OptionSet report_options(ReportSettings& settings) {
                  "Where the camera stands, in degrees: 0 is +Z, which is the front whatever --up was; 90 is +X");
   options.number("camera-elevation", settings.camera_elevation_degrees, -90, 90,
                  "Of the camera above the horizon, in degrees");
+  options.integer("cameras", settings.cameras, 1, 16,
+                  "Cameras evenly around the asset, the first where --camera-azimuth says; the others show the first "
+                  "light");
   add_framing_options(options, settings.framing);
   options.integer("picture-size", settings.picture_size, 64, 2048, "Of the rendered pictures, pixels a side");
   options.integer("directions", settings.directions, 16, 65536, "Directions of the reference's transfer integral");

@@ -15,7 +15,7 @@ parser.add_argument("--scenes", nargs="*", default=["convex", "crowd", "hero"])
 arguments = parser.parse_args()
 
 ARCHIVE = "/usr/share/doc/libcgal-dev/data.tar.gz"
-REPORT = "picture-size: 64, directions: 16, lights: 'ambient:1'"
+REPORT = "picture-size: 64, directions: 16, cameras: 1, lights: 'ambient:1'"
 SCENES = {
     "convex": (0.02, f"""
 defaults:

@@ -3,7 +3,7 @@
 """predict_pictures.py PROGRAMS FOLDER [-o CSV]: how well E predicts pictures (docs/error.md, "Does it predict pictures?").
 
 A cell is an asset, its settings and a kind of light: one predicted error, from the report's squares by band and the
-light's own moments, and one rendered error, the relative L2 of pictures over eight turns of the light and four cameras.
+light's own moments, and one rendered error, the relative L2 of pictures over four turns of the light and three cameras.
 Two judges that are not Kiln's look at some of the pictures as well: butteraugli, and OpenImageIO's `idiff -p` after Yee.
 Needs Debian's butteraugli and openimageio-tools, and the meshes of glmark2-data and libcgal-demo. Takes about a quarter
 of an hour on two cores."""
@@ -16,14 +16,16 @@ parser.add_argument("programs", type=pathlib.Path)
 parser.add_argument("folder", type=pathlib.Path, help="for the assets that are built")
 parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("docs/predicted-pictures.csv"))
 arguments = parser.parse_args()
+arguments.programs, arguments.folder = arguments.programs.resolve(), arguments.folder.resolve()
 
 ARCHIVE = "/usr/share/doc/libcgal-dev/data.tar.gz"
 TUNED = ["bunny", "armadillo", "lion-head"]  # seen while anything was tuned
 UNSEEN = ["elephant", "nefertiti", "fandisk", "hand"]
 SETTINGS = {"coarse": (500, 96, 128, 4), "middle": (2000, 192, 512, 5), "fine": (8000, 384, 1536, 6)}
-CAMERAS = [(20, 12), (110, -10), (200, 30), (290, 5)]
-PIXELS = 192
-TURNS = 8
+CAMERAS = [(20, 12), (140, -20), (260, 35)]
+PIXELS = 160
+TURNS = 4
+JUDGED = 2  # turns of a kind that the judges look at, from the first camera
 KINDS = ["cone 10", "cone 45", "cone 90", "hemisphere"]
 
 
@@ -56,9 +58,9 @@ def moments(kind, bands):
 def report(folder, camera, lights, samples):
     command = [arguments.programs / "kiln-report", folder, "-o", arguments.folder / "report" / "report.html", "--json",
                "--quiet", f"--lights={';'.join(lights)}", f"--camera-azimuth={camera[0]}",
-               f"--camera-elevation={camera[1]}", f"--picture-size={PIXELS}", "--error-samples", str(samples),
+               f"--camera-elevation={camera[1]}", "--cameras", "1", f"--picture-size={PIXELS}", "--error-samples", str(samples),
                "--error-pixels", str(0.9 * PIXELS)]
-    done = subprocess.run(command, capture_output=True, text=True)
+    done = subprocess.run(command, capture_output=True, text=True, cwd=arguments.folder)
     if done.returncode != 0:
         sys.exit(f"{folder}: {done.stderr}")
     return json.loads(done.stdout), (arguments.folder / "report" / "report.html").read_text()
@@ -70,18 +72,21 @@ def on_grey(data):
     return Image.alpha_composite(grey, picture).convert("RGB")
 
 
-def judged(page, count):
-    """Returns both judges' scores of the first lights of a page."""
-    scores = []
-    trios = re.findall(r"<div class=light>.*?</div>\s*<", page, re.S)[:count]
-    for trio in trios:
+def judged(page):
+    """Returns both judges' scores of some lights of a page, by the light's number."""
+    scores = {}
+    pictures = re.findall(r"<div class=light>.*?</div>\s*<", page, re.S)
+    for index in range(len(KINDS) * TURNS):
+        if index % TURNS >= JUDGED:
+            continue
+        trio = pictures[index]
         ours, theirs = (on_grey(data) for data in re.findall(r"data:image/png;base64,([^']*)'", trio)[:2])
         a, b = arguments.folder / "a.png", arguments.folder / "b.png"
         ours.save(a), theirs.save(b)
         distance = float(subprocess.run(["butteraugli", a, b], capture_output=True, text=True).stdout.split()[0])
         said = subprocess.run(["idiff", "-p", a, b], capture_output=True, text=True).stdout
         fail = re.search(r"(\d+) pixels \([^)]*\) failed the perceptual test", said)
-        scores.append((distance, float(fail.group(1)) if fail else 0.0))
+        scores[index] = (distance, float(fail.group(1)) if fail else 0.0)
     return scores
 
 
@@ -118,16 +123,15 @@ def cells_of(mesh, setting, prior):
         said, page = report(arguments.folder / f"{mesh}-{setting}", camera, lights, 4096 if number == 0 else 64)
         if number == 0:
             squares = said["error"]["squares_by_band"]
-            order = [k * TURNS + turn for k in range(len(KINDS)) for turn in range(TURNS)]
-            scores = judged(page, len(order))
-        for index, light in enumerate(said["lights"]):
+            scores = judged(page)
+        for index, light in enumerate(said["lights"][:len(lights)]):  # those of this camera
             difference = light["root_mean_square"] ** 2
             differences[index // TURNS] += difference
             references[index // TURNS] += difference / light["relative_l2"] ** 2
     for k, kind in enumerate(KINDS):
         weights = numpy.array(moments(kind, bands)) / prior[:bands]
         predicted = math.sqrt((weights * squares["total"]).sum() / (weights * squares["seen"][:bands]).sum())
-        own = scores[k * TURNS:(k + 1) * TURNS]
+        own = [score for index, score in scores.items() if index // TURNS == k]
         yield {"mesh": mesh, "seen_before": mesh in TUNED, "setting": setting, "light": kind,
                "predicted": f"{predicted:.5f}", "rendered": f"{math.sqrt(differences[k] / references[k]):.5f}",
                "butteraugli": f"{numpy.mean([score[0] for score in own]):.4f}",

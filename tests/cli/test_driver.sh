@@ -27,7 +27,7 @@ settings='defaults:
   simplify: {faces: 200, quality: draft}
   atlas: {size: 128, gutter: 2}
   bake: {bands: 3, directions: DIRECTIONS, backend: embree}
-  report: {picture-size: 64, directions: 32, error-samples: 64, lights: ["45,30"]}
+  report: {picture-size: 64, directions: 32, error-samples: 64, cameras: 1, lights: ["45,30"]}
 assets:'
 pipeline() { # DIRECTIONS ASSET...
   echo "$settings" | sed "s/DIRECTIONS/$1/"

@@ -30,7 +30,7 @@ EOF
 
 # The canary.
 mkdir samples
-sed "s/report: {/report: {error-samples: 64, /" "$source/samples/canary.yaml" >samples/canary.yaml
+sed "s/report: {/report: {error-samples: 64, cameras: 1, /" "$source/samples/canary.yaml" >samples/canary.yaml
 expect 4 "$kiln" build samples/canary.yaml
 junit out/canary/junit.xml >cases
 head -1 cases | grep -qx "3 1" || fail "cases of the canary: $(cat cases)"

@@ -12,7 +12,7 @@ defaults:
   simplify: {faces: 24}
   atlas: {size: 32, gutter: 2}
   bake: {bands: 2, directions: 64, backend: embree, verify-directions: 512}
-  report: {picture-size: 64, directions: 32, error-samples: 64, lights: ['45,30']}
+  report: {picture-size: 64, directions: 32, error-samples: 64, cameras: 1, lights: ['45,30']}
 budgets:
   simplify.hausdorff: {max: 0}   # a sweep is not judged
 assets:

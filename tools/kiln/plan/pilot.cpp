@@ -33,6 +33,7 @@ const Overrides common_settings = {{"simplify.quality", "standard"},
                                    {"bake.max-error", "none"},
                                    {"bake.verify-directions", "0"},
                                    {"report.picture-size", "64"},
+                                   {"report.cameras", "1"},
                                    {"report.directions", "16"},
                                    {"report.lights", "ambient:1"},
                                    {"report.error-samples", "2048"}};
