@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """tradeoff_tables.py SWEEP.json DOCS: makes docs/tradeoffs.csv and tradeoffs.png of a sweep, and prints its tables.
+Needs Debian's python3-matplotlib.
 
 The sweep is that of samples/tradeoffs.yaml. Costs are CPU seconds of simplify, atlas, normals and bake, without the
 report that measures, and bytes of prt/."""
@@ -8,6 +9,7 @@ import csv, json, math, pathlib, sys
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as pyplot
+import matplotlib.ticker
 
 results = json.loads(pathlib.Path(sys.argv[1]).read_text())["results"]
 docs = pathlib.Path(sys.argv[2])
@@ -57,9 +59,15 @@ for axis, (cost, scale, label) in zip(axes, [("cpu_seconds", 1, "CPU seconds"), 
                 axis.scatter([p[cost] / scale], [100 * p["error"]], marker="*", s=90, color=colors[asset],
                              edgecolors="black", linewidths=0.5)
     axis.set_xscale("log"), axis.set_yscale("log")
+    for side, ticks in ((axis.xaxis, [0.3, 0.5, 1, 2, 3, 5, 7, 10, 15, 20]), (axis.yaxis, [3, 4, 5, 6, 8, 10, 12, 15])):
+        low, high = side.get_view_interval()
+        side.set_minor_locator(matplotlib.ticker.NullLocator())
+        side.set_major_locator(matplotlib.ticker.FixedLocator([tick for tick in ticks if low <= tick <= high]))
+        side.set_major_formatter(matplotlib.ticker.FormatStrFormatter("%g"))
     axis.set_xlabel(label)
     axis.grid(True, which="both", alpha=0.2)
 axes[0].set_ylabel("E, %")
+axes[0].scatter([], [], marker="*", s=90, color="white", edgecolors="black", linewidths=0.5, label="defaults")
 axes[0].legend(frameon=False)
 figure.tight_layout()
 figure.savefig(docs / "tradeoffs.png", dpi=110)

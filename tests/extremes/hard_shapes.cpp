@@ -83,15 +83,15 @@ Table measure_hard_shapes(const Bench& bench) {
 
   std::vector<Subject> subjects = {
       {"slivers", "aspect 1e6, kept as they are", slabs(60, 1e-6), Truth::convex, sharp},
-      {"coincident triangles", "each three times", thrice, Truth::as_clean},
       {"triangles without area", "lines and points among others", with_degenerate(torus), Truth::as_clean},
       {"triangles smaller than a texel", "4,096 in 1,024 texels", torus, Truth::sane, {.faces = 4096, .size = "32"}},
-      {"triangles larger than the atlas's texels", "2 in 64 texels", square(1), Truth::convex, {.size = "8"}},
       {"one triangle", "1", needle(1), Truth::convex},
       {"a room seen from inside", "no light comes in", room(), Truth::dark, {.import = {"--orientation", "keep"}}},
   };
   if (!bench.quick) {
     const std::vector<Subject> more = {
+        {"coincident triangles", "each three times", thrice, Truth::as_clean},
+        {"triangles larger than the atlas's texels", "2 in 64 texels", square(1), Truth::convex, {.size = "8"}},
         {"slivers", "aspect 1e3, 8,004 to 400", slabs(1000, 1e-3), Truth::convex, {.import = sharp.import}},
         {"slivers", "aspect 1e6, 16,004 to 400", slabs(2000, 1e-6), Truth::convex, {.import = sharp.import}},
         {"flattened", "1e-6 of its height", torus.placed({1, 1e-6, 1})},
