@@ -5,7 +5,7 @@
 A cell is an asset, its settings and a kind of light: one predicted error, from the report's squares by band and the
 light's own moments, and one rendered error, the relative L2 of pictures over four turns of the light and three cameras.
 Two judges that are not Kiln's look at some of the pictures as well: butteraugli, and OpenImageIO's `idiff -p` after Yee.
-Needs Debian's butteraugli and openimageio-tools, and the meshes of glmark2-data and libcgal-demo. Takes about a quarter
+Needs Debian's butteraugli, openimageio-tools and python3-matplotlib, and the meshes of glmark2-data and libcgal-demo. Takes about a quarter
 of an hour on two cores."""
 import argparse, base64, csv, io, itertools, json, math, pathlib, re, subprocess, sys
 import numpy
@@ -15,6 +15,7 @@ parser = argparse.ArgumentParser()
 parser.add_argument("programs", type=pathlib.Path)
 parser.add_argument("folder", type=pathlib.Path, help="for the assets that are built")
 parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("docs/predicted-pictures.csv"))
+parser.add_argument("--summary", action="store_true", help="measure nothing, tell of the CSV that is there")
 arguments = parser.parse_args()
 arguments.programs, arguments.folder = arguments.programs.resolve(), arguments.folder.resolve()
 
@@ -142,7 +143,7 @@ def hash_of(text):
     return sum(ord(c) * 31**k for k, c in enumerate(text)) % 2**32
 
 
-def main():
+def measure():
     root = pathlib.Path(__file__).resolve().parents[2]
     rows = list(csv.DictReader((root / "docs" / "light-prior.csv").open()))
     prior = numpy.array([float(row["prior"]) for row in rows if row["prior"]])
@@ -153,13 +154,45 @@ def main():
         writer = csv.DictWriter(file, cells[0].keys(), lineterminator="\n")
         writer.writeheader()
         writer.writerows(cells)
+
+
+def plot(cells):
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as pyplot
+    figure, axis = pyplot.subplots(figsize=(5.6, 5.2))
+    for setting, color in zip(SETTINGS, ["#c8553d", "#588157", "#2a6f97"]):
+        for seen, marker in (("True", "o"), ("False", "^")):
+            own = [c for c in cells if c["setting"] == setting and c["seen_before"] == seen]
+            axis.scatter([100 * float(c["predicted"]) for c in own], [100 * float(c["rendered"]) for c in own], s=22,
+                         color=color, marker=marker, alpha=0.7,
+                         label=f"{setting}, {'tuned on' if seen == 'True' else 'unseen'}")
+    ends = numpy.array([0.15, 25])
+    axis.plot(ends, ends, color="black", linewidth=0.8)
+    axis.fill_between(ends, ends / 1.2, ends / 0.8, color="black", alpha=0.08, linewidth=0)
+    axis.set_xscale("log"), axis.set_yscale("log"), axis.set_xlim(*ends), axis.set_ylim(*ends)
+    for side in (axis.xaxis, axis.yaxis):
+        side.set_major_formatter("{x:g}")
+    axis.set_xlabel("predicted, %"), axis.set_ylabel("rendered, %")
+    axis.legend(frameon=False, fontsize=8)
+    figure.tight_layout()
+    figure.savefig(arguments.output.with_suffix(".png"), dpi=110)
+
+
+def main():
+    if not arguments.summary:
+        measure()
+    cells = list(csv.DictReader(arguments.output.open()))
     ratios = numpy.array([float(cell["predicted"]) / float(cell["rendered"]) for cell in cells])
     within = numpy.mean(abs(ratios - 1) <= 0.2)
     print(f"{len(cells)} cells: predicted over rendered {ratios.mean():.3f} in the mean, {ratios.std():.3f} standard "
           f"deviation, {ratios.min():.2f} to {ratios.max():.2f}; within 20 %: {100 * within:.0f} %")
     predicted = [float(cell["predicted"]) for cell in cells]
     for judge in ("rendered", "butteraugli", "idiff_pixels"):
-        print(f"rank correlation with {judge}: {rank_correlation(predicted, [float(c[judge]) for c in cells]):.3f}")
+        theirs = [float(cell[judge]) for cell in cells]
+        told = f"{rank_correlation(predicted, theirs):.3f}" if len(set(theirs)) > 1 else "none: all scores are alike"
+        print(f"rank correlation with {judge}: {told}")
+    plot(cells)
 
 
 main()

@@ -57,7 +57,8 @@ AssetModel model() {
 TEST(PowerLaw, GoesThroughBothPointsWithinItsExponents) {
   EXPECT_NEAR(power_law(1, 8, 4, 1, 16, -3, 0), 0.125, 1e-12);
   EXPECT_NEAR(power_law(1, 8, 4, 1, 1, -3, 0), 8, 1e-12);
-  EXPECT_NEAR(power_law(1, 8, 4, 1, 16, -0.5, 0), 0.5, 1e-12);  // no steeper than asked
+  EXPECT_NEAR(power_law(1, 8, 4, 1, 16, -0.5, 0), 0.5, 1e-12);  // no steeper than asked beyond the points
+  EXPECT_NEAR(power_law(1, 8, 4, 1, 1, -0.5, 0), 8, 1e-12);     // but as steep as measured between them
   EXPECT_EQ(power_law(1, 1, 4, 2, 16, -3, 0), 2);               // never rises
   EXPECT_EQ(power_law(3, 8, 3, 1, 16, -3, 0), 1);
   EXPECT_EQ(power_law(1, 0, 4, 0, 16, -3, 0), 0);
@@ -143,8 +144,9 @@ class PlanFile : public ::testing::Test {
 
   void SetUp() override {
     write("ball.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    write("pipeline.yaml",
-          "budgets:\n  report.error.total: {max: 0.5}\nassets:\n  ball: {mesh: ball.obj, simplify: {max-error: 0.01}}\n");
+    write(
+        "pipeline.yaml",
+        "budgets:\n  report.error.total: {max: 0.5}\nassets:\n  ball: {mesh: ball.obj, simplify: {max-error: 0.01}}\n");
   }
 
   std::filesystem::path file(const std::string& name) const { return scratch_ / name; }

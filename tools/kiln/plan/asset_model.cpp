@@ -44,7 +44,9 @@ double error_of(const PilotBuild& build, const std::string& cause, int bands) {
 
 double power_law(double x1, double y1, double x2, double y2, double x, double least, double most) {
   if (!(x1 > 0 && x2 > 0 && y1 > 0 && y2 > 0) || x1 == x2) return y2;
-  const double exponent = std::clamp(std::log(y2 / y1) / std::log(x2 / x1), least, most);
+  const double measured = std::min(most, std::log(y2 / y1) / std::log(x2 / x1));
+  // Between the points and below them what was measured counts; beyond the second, no more than is known to last.
+  const double exponent = x > x2 ? std::max(least, measured) : measured;
   return y2 * std::pow(x / x2, exponent);
 }
 

@@ -83,8 +83,9 @@ class AssetModel {
 /// Returns the error that a cause has in a build's first `bands` bands; 0 where the build has no such cause.
 double error_of(const PilotBuild& build, const std::string& cause, int bands);
 
-/// Returns the value at `x` of the power law through (x1, y1) and (x2, y2), whose exponent is kept within `least` to
-/// `most`; beyond two points that are one, or values that are not above 0, the second value.
+/// Returns the value at `x` of the power law through (x1, y1) and (x2, y2), x1 < x2, whose exponent is `most` at most
+/// and, where x is beyond x2, `least` at least; of two points that are one, or values that are not above 0, the second
+/// value.
 double power_law(double x1, double y1, double x2, double y2, double x, double least, double most);
 
 }  // namespace kiln

@@ -9,13 +9,12 @@ namespace kiln {
 namespace {
 
 constexpr double least_reserve = 0.1;  // of the error, for what a pilot cannot know
-constexpr int fewest_triangles = 100;
 constexpr int most_triangles = 200000;
-/// Returns counts that grow by the root of two, up to those of the high mesh.
-std::vector<int> triangle_counts(double input) {
+/// Returns counts that grow by the root of two, from those of the coarse pilot up to those of the high mesh.
+std::vector<int> triangle_counts(const Pilot& pilot) {
   std::vector<int> counts;
-  const int most = std::min(most_triangles, static_cast<int>(std::min(input, 1e9)));
-  for (double count = fewest_triangles; count < most; count *= std::sqrt(2.0)) {
+  const int most = std::min(most_triangles, static_cast<int>(std::min(pilot.input_triangles, 1e9)));
+  for (double count = pilot.coarse.triangles; count < most; count *= std::sqrt(2.0)) {
     // Two digits are enough for people.
     const double unit = std::pow(10, std::floor(std::log10(count)) - 1);
     counts.push_back(static_cast<int>(std::round(count / unit) * unit));
@@ -50,8 +49,8 @@ double cost_of(const Prediction& prediction, PlanCost cost) {
 
 ChoiceGrid full_grid(const AssetModel& model) {
   ChoiceGrid grid;
-  grid.triangles = triangle_counts(model.pilot().input_triangles);
-  grid.sizes = {32, 48, 64, 96, 128, 192, 256, 384, 512, 768, 1024, 1536, 2048, 4096};
+  grid.triangles = triangle_counts(model.pilot());
+  grid.sizes = {64, 96, 128, 192, 256, 384, 512, 768, 1024, 1536, 2048, 4096};
   for (int bands = 1; bands <= model.most_bands(); ++bands) grid.bands.push_back(bands);
   grid.directions = {64,   96,   128,  192,  256,  384,  512,   768,   1024,
                      1536, 2048, 3072, 4096, 6144, 8192, 12288, 16384, 32768};
