@@ -7,9 +7,11 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <fmt/format.h>
+#include <fstream>
 #include <memory>
 #include <new>
 #include <sys/resource.h>
@@ -231,6 +233,10 @@ void CommandLine::finish_without_output(const Json& result) const {
 }
 
 long long peak_memory_bytes() {
+  // Linux counts the memory of this program alone there; ru_maxrss begins with what the process that started it had.
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmHWM:")) return std::strtoll(line.c_str() + 6, nullptr, 10) * 1024;
   rusage usage = {};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<long long>(usage.ru_maxrss) * 1024;
