@@ -26,13 +26,13 @@
 #include "report/transport.h"
 #include "report/verdicts.h"
 #include "scratch.h"
-#include "shapes.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 #include "sh/light_spec.h"
 #include "sh/lights.h"
 #include "sh/transfer.h"
 #include "sh/windows.h"
+#include "shapes.h"
 
 namespace kiln {
 namespace {
