@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/comparison.h"
 
+#include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 
 #include "base/asset_layout.h"
 #include "base/errors.h"
@@ -154,15 +156,25 @@ struct CameraView {
   std::vector<std::string> lights;
 };
 
+/// Returns a light turned about the vertical.
+std::string turned(const std::string& text, double degrees) {
+  LightSpec light = parse_light_spec(text);
+  const double azimuth = light.azimuth_degrees + degrees, turn = degrees * std::numbers::pi / 180;
+  light.azimuth_degrees = azimuth > 360 ? azimuth - 360 : azimuth;
+  const auto [x, y, z] = light.position;
+  light.position = {x * std::cos(turn) + z * std::sin(turn), y, z * std::cos(turn) - x * std::sin(turn)};
+  return to_text(light);
+}
+
 /// Returns the cameras around the asset: the one of the settings, with all lights, then others evenly about the
-/// vertical, each with the first light.
+/// vertical, each with the first light, which turns with the camera so that it sees as much of it.
 std::vector<CameraView> camera_views(const ReportSettings& settings) {
   const std::vector<std::string> lights = list_of(settings.lights);
   parse_lights("lights", lights);  // refuses what is none
   std::vector<CameraView> views = {{settings.camera_azimuth_degrees, lights}};
   for (int k = 1; k < settings.cameras; ++k) {
-    const double azimuth = settings.camera_azimuth_degrees + 360.0 * k / settings.cameras;
-    views.push_back({azimuth > 360 ? azimuth - 360 : azimuth, {lights.front()}});
+    const double turn = 360.0 * k / settings.cameras, azimuth = settings.camera_azimuth_degrees + turn;
+    views.push_back({azimuth > 360 ? azimuth - 360 : azimuth, {turned(lights.front(), turn)}});
   }
   return views;
 }

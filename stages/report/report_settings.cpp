@@ -64,7 +64,7 @@ OptionSet report_options(ReportSettings& settings) {
                  "Of the camera above the horizon, in degrees");
   options.integer("cameras", settings.cameras, 1, 16,
                   "Cameras evenly around the asset, the first where --camera-azimuth says; the others show the first "
-                  "light");
+                  "light, turned with them");
   add_framing_options(options, settings.framing);
   options.integer("picture-size", settings.picture_size, 64, 2048, "Of the rendered pictures, pixels a side");
   options.integer("directions", settings.directions, 16, 65536, "Directions of the reference's transfer integral");

@@ -16,7 +16,7 @@ struct ReportSettings {
   std::string lights = "45,30; -60,20; ambient:1";  ///< in the form of kiln-render, separated by semicolons
   double camera_azimuth_degrees = 20;               ///< where the camera stands: 0 is +Z, 90 is +X
   double camera_elevation_degrees = 12;
-  int cameras = 2;  ///< evenly about the vertical; those beyond the first show the first light alone
+  int cameras = 2;  ///< evenly about the vertical; those beyond the first show the first light alone, turned with them
   FramingSettings framing;
   int picture_size = 512;        ///< pixels a side
   int directions = 1024;         ///< of the reference's transfer integral
