@@ -101,7 +101,7 @@ std::vector<PilotBuild> PilotBuilds::build_at(const std::string& name, const std
     if (!compressed) asset.settings.erase("compress");
     Overrides settings = common_settings;
     settings.insert(settings.end(), overrides.begin(), overrides.end());
-    // What decides the price of a pilot is never kept.
+    // A way of simplifying that is kept is that of the pilots, too.
     std::erase_if(settings, [&](const auto& setting) {
       return is_kept(setting) && (setting.first == "simplify.quality" || setting.first == "simplify.aware");
     });
