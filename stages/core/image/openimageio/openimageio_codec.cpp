@@ -3,8 +3,6 @@
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
-#include <iomanip>
-#include <sstream>
 #include <utility>
 
 #include "image/picture_codec.h"
@@ -13,11 +11,8 @@ namespace kiln {
 
 namespace {
 
-/// Keeps OpenImageIO and OpenEXR from adding threads to the stages' own, which are TBB's and limited by --threads.
-void keep_to_one_thread() {
-  OIIO::attribute("threads", 1);
-  OIIO::attribute("exr_threads", -1);
-}
+/// Keeps OpenImageIO from adding threads to the stages' own, which are TBB's and limited by --threads.
+void keep_to_one_thread() { OIIO::attribute("threads", 1); }
 
 OIIO::TypeDesc type_desc(SampleType type) {
   switch (type) {
@@ -32,27 +27,6 @@ OIIO::TypeDesc type_desc(SampleType type) {
 
 OIIO::stride_t bytes_per_row(const PictureShape& shape, SampleType type) {
   return static_cast<OIIO::stride_t>(type_desc(type).size()) * shape.width * shape.channels;
-}
-
-OIIO::ImageSpec output_spec(const std::string& format, const PictureShape& shape, SampleType type) {
-  OIIO::ImageSpec spec(shape.width, shape.height, shape.channels, type_desc(type));
-  if (format == "png") {
-    spec.attribute("oiio:UnassociatedAlpha", 1);
-    return spec;
-  }
-  spec.attribute("compression", "zip");
-  spec.attribute("DateTime", "");  // otherwise OpenImageIO notes the time of writing
-  if (shape.channels > 4) {
-    // OpenEXR sorts channels by name.
-    spec.channelnames.clear();
-    for (int c = 0; c < shape.channels; ++c) {
-      std::ostringstream name;
-      name << 'c' << std::setw(5) << std::setfill('0') << c;
-      spec.channelnames.push_back(name.str());
-    }
-    spec.alpha_channel = spec.z_channel = -1;
-  }
-  return spec;
 }
 
 class Input : public PictureInput {
@@ -81,18 +55,6 @@ class Input : public PictureInput {
 class OpenImageIoCodec : public PictureCodec {
  public:
   OpenImageIoCodec() { keep_to_one_thread(); }
-
-  std::string write(const std::string& file, const char* format, const PictureShape& shape, SampleType type,
-                    const void* rows) override {
-    const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
-    if (!output) return "OpenImageIO cannot write " + std::string(format) + ": " + OIIO::geterror();
-    if (!output->open(file, output_spec(format, shape, type))) return output->geterror();
-    const OIIO::stride_t row_bytes = bytes_per_row(shape, type);
-    const auto* top = static_cast<const char*>(rows) + row_bytes * (shape.height - 1);
-    if (!output->write_image(type_desc(type), top, OIIO::AutoStride, -row_bytes)) return output->geterror();
-    if (!output->close()) return output->geterror();
-    return {};
-  }
 
   std::unique_ptr<PictureInput> open(const std::string& file, std::string& fault) override {
     OIIO::ImageSpec configuration;
