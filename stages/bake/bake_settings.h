@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bake/engines/shadow_settings.h"
-#include "bake/subsurface/subsurface_settings.h"
+#include "scatter/subsurface_settings.h"
 #include "base/options.h"
 #include "detail/seam_choice.h"
 #include "import/import_settings.h"

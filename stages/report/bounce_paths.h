@@ -7,13 +7,10 @@
 
 #include "material/scene_mesh.h"
 #include "raycast/ray_scene.h"
+#include "report/path_walker.h"
 #include "sh/transfer.h"
 
 namespace kiln {
-
-/// Returns a direction about a unit normal, of density cosine / pi for even numbers of 0 to 1: the squared sine of its
-/// angle with the normal, and its turn about it.
-Eigen::Vector3f cosine_direction(const Eigen::Vector3f& normal, float squared_sine, float turn);
 
 /// Light that arrives at receivers after bounces off a scene's diffuse surfaces, by paths that end in the sky
 /// ([Kajiya 1986]): what the bake computes at points of the surface and interpolates, without such points.
@@ -30,10 +27,7 @@ class BouncePaths {
            std::vector<TransferVectors>& channels) const;
 
  private:
-  const RayScene& scene_;
-  const SceneMesh& surface_;
-  int bounces_;
-  float ray_offset_;
+  PathWalker walker_;
 };
 
 }  // namespace kiln

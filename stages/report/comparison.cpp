@@ -19,6 +19,7 @@
 #include "report/pictures.h"
 #include "report/reference.h"
 #include "report/transport.h"
+#include "scatter/subsurface_settings.h"
 #include "sh/directions.h"
 #include "sh/light_prior.h"
 #include "sh/light_spec.h"
@@ -40,16 +41,20 @@ std::vector<LightSpec> parse_lights(const std::string& option, const std::vector
   return specs;
 }
 
-/// Tells whether the normals stage found or was given an albedo.
+/// Tells whether the normals stage found or was given an albedo, or the bake has a material's.
 bool has_albedo(const AssetFolder& asset) {
-  return asset.record("normals").value("albedo", Json::object()).value("source", "none") != "none";
+  return asset.record("bake").contains("subsurface") ||
+         asset.record("normals").value("albedo", Json::object()).value("source", "none") != "none";
 }
 
-/// Sets options to what the record of a stage has of them.
+/// Sets options to what the record of a stage has of them; an empty text there is the default.
 void take_settings(const OptionSet& options, const Json& record) {
   const Json settings = record.value("settings", Json::object());
-  for (const Option& option : options.options())
-    if (settings.contains(option.name)) option.set(settings.at(option.name).get<std::string>());
+  for (const Option& option : options.options()) {
+    const auto value = settings.find(option.name);
+    if (value == settings.end() || *value == "") continue;
+    option.set(value->is_string() ? value->get<std::string>() : value->dump());
+  }
 }
 
 MaterialSettings material_of(const Json& record) {
@@ -58,6 +63,14 @@ MaterialSettings material_of(const Json& record) {
   add_material_options(options, material);
   take_settings(options, record);
   return material;
+}
+
+SubsurfaceSettings subsurface_of(const Json& record) {
+  SubsurfaceSettings subsurface;
+  OptionSet options;
+  add_subsurface_options(options, subsurface);
+  take_settings(options, record);
+  return subsurface;
 }
 
 /// Returns the high mesh and the bake's surroundings, with the albedos of the bake's settings where light bounces.
@@ -252,41 +265,6 @@ Rendered render(const AssetFolder& asset, const CameraView& view, double albedo,
   return rendered;
 }
 
-/// Difference of two pictures, and the number of pixels that it is taken over.
-struct PictureComparison {
-  ImageDifference difference;
-  std::size_t pixels = 0;
-};
-
-/// Compares two pictures over the pixels that both cover wholly: elsewhere the background would be compared.
-PictureComparison compare(const Image<float>& picture, const Image<float>& reference) {
-  std::vector<float> ours, theirs;
-  for (int j = 0; j < picture.height(); ++j)
-    for (int i = 0; i < picture.width(); ++i) {
-      const std::span<const float> a = picture.pixel(i, j), b = reference.pixel(i, j);
-      if (!is_wholly_covered(a[3]) || !is_wholly_covered(b[3])) continue;
-      ours.insert(ours.end(), a.begin(), a.begin() + 3);
-      theirs.insert(theirs.end(), b.begin(), b.begin() + 3);
-    }
-  const std::size_t pixels = ours.size() / 3;
-  const auto as_image = [&](std::vector<float>& values) {
-    Image<float> image(static_cast<int>(pixels), 1, 3);
-    image.values() = std::move(values);
-    return image;
-  };
-  return {compare_images(as_image(ours), as_image(theirs)), pixels};
-}
-
-double silhouette_difference(const LightComparison& comparison) {
-  std::size_t either = 0, one = 0;
-  for (std::size_t k = 3; k < comparison.asset.values().size(); k += 4) {
-    const bool in_asset = comparison.asset.values()[k] >= 0.5f, in_reference = comparison.reference.values()[k] >= 0.5f;
-    either += in_asset || in_reference;
-    one += in_asset != in_reference;
-  }
-  return either == 0 ? 0 : static_cast<double>(one) / static_cast<double>(either);
-}
-
 }  // namespace
 
 Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high_file, const ReportSettings& settings,
@@ -310,7 +288,7 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
       light.asset = std::move(rendered.pictures[k]);
       if (asset.compressed.empty()) continue;
       light.compressed = std::move(rendered.pictures[view.lights.size() + k]);
-      light.compressed_difference = compare(light.compressed, light.asset).difference;
+      light.compressed_difference = compare_pictures(light.compressed, light.asset);
     }
   }
   comparison.render_seconds = render_watch.seconds();
@@ -325,35 +303,39 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   view.width = view.height = settings.picture_size;
   view.supersample = supersample;
   view.albedo = static_cast<float>(albedo);
-  view.surface_albedo = load_albedo(imported, material_of(asset.record("normals"))).albedo;
+  if (const SubsurfaceSettings subsurface = subsurface_of(asset.record("bake")); subsurface.wanted()) {
+    view.scattering = subsurface_profiles(subsurface);  // has the albedo within
+    view.mm_per_unit = subsurface.mm_per_unit;
+  } else {
+    view.surface_albedo = load_albedo(imported, material_of(asset.record("normals"))).albedo;
+  }
   view.bounces = static_cast<int>(bounces_taken(asset.record("bake")));
   view.scene = scene_of(asset, imported, view.bounces > 0 || error_bounces(asset, settings) > 0);
   view.bands = asset.baked.bands;
   // Take other directions than the bake, so that an error of the bake's does not cancel.
-  const std::vector<Eigen::Vector3f> directions =
-      sample_directions(Sampling::fibonacci, settings.directions, static_cast<std::uint64_t>(run.seed) + 1);
+  const ReferenceRays rays{settings.directions, static_cast<std::uint64_t>(run.seed) + 1};
   auto light = comparison.lights.begin();
   for (std::size_t v = 0; v < views.size(); ++v) {
     view.camera = cameras[v];
     const double begin = static_cast<double>(v) / static_cast<double>(views.size()),
                  end = static_cast<double>(v + 1) / static_cast<double>(views.size());
-    for (ReferencePicture& reference :
-         reference_pictures(high, view, parse_lights("lights", views[v].lights), directions,
+    for (const ReferencePicture& reference :
+         reference_pictures(high, view, parse_lights("lights", views[v].lights), rays,
                             part_of(run.progress, (1 - split_share) * begin, (1 - split_share) * end))) {
-      const PictureComparison compared = compare(light->asset, reference.in_bands);
-      if (light == comparison.lights.begin()) comparison.compared_pixels = compared.pixels;
-      light->difference = compared.difference;
-      light->difference_in_full = compare(light->asset, reference.in_full).difference;
-      light->reference = std::move(reference.in_bands);
-      light->reference_in_full = std::move(reference.in_full);
+      light->difference = compare_pictures(light->asset, reference.in_bands);
+      light->difference_in_full = compare_pictures(light->asset, reference.in_full);
+      light->reference = mean_of(reference.in_bands);
+      light->reference_in_full = mean_of(reference.in_full);
       ++light;
     }
   }
+  comparison.compared_pixels = comparison.lights.front().difference.pixels;
   comparison.error_left_out = left_out(asset);
   if (comparison.error_left_out.empty()) comparison.error = split_error(asset, atlas, high, view.scene, settings, run);
   comparison.predicted = settings.predictions();
   comparison.reference_seconds = reference_watch.seconds();
-  comparison.silhouette_difference = silhouette_difference(comparison.lights.front());
+  comparison.silhouette_difference =
+      silhouette_difference(comparison.lights.front().asset, comparison.lights.front().reference);
   return comparison;
 }
 

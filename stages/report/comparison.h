@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "image/compare.h"
 #include "image/image.h"
 #include "report/error_causes.h"
+#include "report/picture_difference.h"
 #include "report/records.h"
 #include "report/report_settings.h"
 
@@ -22,11 +22,11 @@ struct LightComparison {
   double camera_azimuth_degrees = 0;
   Image<float> asset;
   Image<float> reference;
-  ImageDifference difference;             ///< asset minus reference, over the pixels that both cover wholly
-  Image<float> reference_in_full;         ///< under the light itself, not cut to the asset's bands
-  ImageDifference difference_in_full;     ///< asset minus that
-  Image<float> compressed;                ///< the asset as kiln-compress stored it; empty where there is none
-  ImageDifference compressed_difference;  ///< compressed minus plain asset, over the same pixels
+  PictureDifference difference;             ///< asset minus reference, over the pixels that both cover wholly
+  Image<float> reference_in_full;           ///< under the light itself, not cut to the asset's bands
+  PictureDifference difference_in_full;     ///< asset minus that
+  Image<float> compressed;                  ///< the asset as kiln-compress stored it; empty where there is none
+  PictureDifference compressed_difference;  ///< compressed minus plain asset, over the same pixels
 };
 
 struct Comparison {

@@ -15,8 +15,6 @@ namespace kiln {
 
 namespace {
 
-constexpr int places_of_light = 32;
-
 /// Cap of sky that a light fills, with its radiance; of a directional light the radiance of a white surface that faces
 /// it.
 struct LightCap {
@@ -52,7 +50,7 @@ bool has_few_bands(const LightSpec& light) {
 }
 
 std::vector<Eigen::Vector3f> direct_radiance(const RayScene& scene, const Receivers& receivers, const LightSpec& light,
-                                             float ray_offset, std::uint64_t first) {
+                                             float ray_offset, std::uint64_t first, int most_places) {
   constexpr double golden_angle = 2.399963229728653;
   std::vector<Eigen::Vector3f> radiance(receivers.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, receivers.size(), 256), [&](const auto& range) {
@@ -60,7 +58,7 @@ std::vector<Eigen::Vector3f> direct_radiance(const RayScene& scene, const Receiv
       const LightCap cap = cap_of(light, receivers.positions[r].template cast<double>());
       const Eigen::Vector3d across = cap.axis.unitOrthogonal(), along = cap.axis.cross(across);
       const Eigen::Vector3f origin = receivers.positions[r] + ray_offset * receivers.normals[r];
-      const int places = cap.half_angle == 0 ? 1 : places_of_light;
+      const int places = cap.half_angle == 0 ? 1 : most_places;
       // Numbers of a low discrepancy, so that neighbours' places differ.
       const double number = static_cast<double>((first + r) % 65536), turn = number * golden_angle,
                    shift = std::fmod(number * std::numbers::phi, 1.0);

@@ -142,8 +142,11 @@ std::string relit_section(const AssetFolder& asset, const Report& report, const 
         bounces, bounces == 1 ? "" : "s");
   if (asset.record("bake").contains("subsurface"))
     html +=
-        "<p class=note>The reference has no light that scatters beneath the surface: that is part of the "
-        "difference.</p>\n";
+        "<p class=note>Light scatters beneath its surface, too, by paths from points where it enters, chosen by "
+        "chance: "
+        "without texels and their hierarchy. Points that would send out more than they get, which the bake scales "
+        "down, "
+        "stay as they are.</p>\n";
   const double front = comparison.lights.front().camera_azimuth_degrees;
   for (const LightComparison& light : comparison.lights) {
     const Crop crop = crop_of(light);

@@ -11,6 +11,9 @@
 #include "raycast/ray_transfer.h"
 #include "report/bounce_paths.h"
 #include "report/direct_light.h"
+#include "report/scatter_paths.h"
+#include "sh/basis.h"
+#include "sh/directions.h"
 #include "sh/ray_offset.h"
 
 namespace kiln {
@@ -18,6 +21,7 @@ namespace kiln {
 namespace {
 
 constexpr std::size_t path_step = 2;  // directions for each path: bounced light is a part of all, and may be noisier
+constexpr int line_step = 4;          // directions for each line that light beneath the surface is looked for along
 constexpr std::size_t batch_receivers = 16384;  // bounds the memory of transfer vectors of many bands
 
 /// Surface points that samples of a picture see.
@@ -100,55 +104,143 @@ void add_samples(Image<float>& picture, const VisiblePoints& points, std::size_t
   }
 }
 
+/// Transfer at points of a view: all of it, and that of direct light; one channel or three.
+struct PointTransfer {
+  std::vector<TransferVectors> all, direct;
+};
+
+/// Shades points of a view.
+class Shader {
+ public:
+  /// Keeps references to all.
+  Shader(const TriangleMesh& mesh, const ReferenceView& view, const RayScene& scene, const SceneMesh& surface,
+         std::span<const LightSpec> lights)
+      : view_(view),
+        scene_(scene),
+        lights_(lights),
+        ray_offset_(rounding_offset(surface.mesh.positions)),
+        walker_(scene, surface, view.bounces, ray_offset_) {
+    if (!view.scattering.empty()) beneath_.emplace(mesh, view.scattering, view.mm_per_unit);
+    if (view.bounces > 0) paths_.emplace(scene, surface, view.bounces, ray_offset_);
+  }
+
+  /// Computes the radiance of `size` points from the `begin`-th on, by `directions`, and gives it to `put(light,
+  /// radiance in bands, radiance in full)` for each light. `first` numbers the points among all.
+  template <class Put>
+  void shade(const VisiblePoints& points, std::size_t begin, std::size_t size,
+             std::span<const Eigen::Vector3f> directions, std::uint64_t first, const Put& put) const {
+    const Receivers receivers{std::span(points.positions).subspan(begin, size),
+                              std::span(points.normals).subspan(begin, size)};
+    std::optional<ScatterEntries> entries;
+    if (beneath_)
+      entries = beneath_->entries(receivers, std::max(1, static_cast<int>(directions.size()) / line_step), first);
+    const PointTransfer transfer =
+        entries ? scattered_transfer(*entries, first) : surface_transfer(receivers, directions, first);
+    for (std::size_t light = 0; light < lights_.size(); ++light) {
+      const std::vector<Eigen::Vector3f> in_bands = radiance_of(transfer.all, lights_[light], view_, receivers);
+      std::vector<Eigen::Vector3f> in_full = in_bands;
+      if (!has_few_bands(lights_[light])) {
+        // What bounced stays as the bands have it.
+        const auto cut = radiance_of(transfer.direct, lights_[light], view_, receivers);
+        const auto full = entries ? scattered_radiance(*entries, lights_[light], first)
+                                  : direct_radiance(scene_, receivers, lights_[light], ray_offset_, first);
+        for (std::size_t r = 0; r < size; ++r) in_full[r] += full[r] - cut[r];
+      }
+      put(light, in_bands, in_full);
+    }
+  }
+
+ private:
+  /// Computes the transfer of light that leaves the surface where it arrives.
+  PointTransfer surface_transfer(const Receivers& receivers, std::span<const Eigen::Vector3f> directions,
+                                 std::uint64_t first) const {
+    PointTransfer transfer;
+    transfer.direct = {transfer_by_rays(scene_, receivers, directions, view_.bands, ray_offset_)};
+    transfer.all = transfer.direct;
+    if (paths_) {
+      transfer.all.resize(3, transfer.direct.front());
+      paths_->add(receivers, every_nth(directions, 0, path_step), first, transfer.all);
+    }
+    return transfer;
+  }
+
+  /// Computes the transfer of light that enters at `entries`.
+  PointTransfer scattered_transfer(const ScatterEntries& entries, std::uint64_t first) const {
+    const std::vector<TransferVectors> dark(3, TransferVectors(entries.ends.size(), coefficient_count(view_.bands)));
+    PointTransfer transfer{dark, dark};
+    add_scattered(entries, walker_, first, transfer.all, transfer.direct);
+    return transfer;
+  }
+
+  /// Computes the radiance by light itself, not cut to bands, that arrives at `entries`.
+  std::vector<Eigen::Vector3f> scattered_radiance(const ScatterEntries& entries, const LightSpec& light,
+                                                  std::uint64_t first) const {
+    // The entries of a point are many: some of them, chosen by their number, stand for all, with one place of the
+    // light.
+    constexpr std::size_t step = 4;
+    constexpr int places = 1;
+    std::vector<Eigen::Vector3f> positions, normals;
+    for (std::size_t k = first % step; k < entries.positions.size(); k += step) {
+      positions.push_back(entries.positions[k]);
+      normals.push_back(entries.normals[k]);
+    }
+    const std::vector<Eigen::Vector3f> arrived =
+        direct_radiance(scene_, {positions, normals}, light, ray_offset_, first, places);
+    std::vector<Eigen::Vector3f> radiance(entries.ends.size(), Eigen::Vector3f::Zero());
+    std::size_t r = 0;
+    for (std::size_t s = 0; s < arrived.size(); ++s) {
+      const std::size_t k = first % step + s * step;
+      while (k >= entries.ends[r]) ++r;
+      radiance[r] += static_cast<float>(step) * entries.weights[k].cwiseProduct(arrived[s]);
+    }
+    return radiance;
+  }
+
+  const ReferenceView& view_;
+  const RayScene& scene_;
+  const std::span<const LightSpec> lights_;
+  const float ray_offset_;  // as in kiln-bake
+  const PathWalker walker_;
+  std::optional<BouncePaths> paths_;
+  std::optional<ScatterPaths> beneath_;
+};
+
 }  // namespace
 
 std::vector<ReferencePicture> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
-                                                 std::span<const LightSpec> lights,
-                                                 std::span<const Eigen::Vector3f> directions,
+                                                 std::span<const LightSpec> lights, const ReferenceRays& rays,
                                                  const ProgressFunction& progress) {
   const Image<float> empty(view.width, view.height, 4);
-  std::vector<ReferencePicture> pictures(lights.size(), {empty, empty});
+  std::vector<ReferencePicture> pictures(lights.size(), {{empty, empty}, {empty, empty}});
   if (lights.empty()) return pictures;
   const std::vector<VisiblePoints> places = visible_points(RayScene(mesh), mesh, view);
-  std::size_t count = 0, done = 0;
-  for (const VisiblePoints& points : places) count += points.positions.size();
+  std::size_t count = 0;
+  for (const VisiblePoints& points : places) count += 2 * points.positions.size();
 
   SceneMesh alone;
   if (view.scene.mesh.triangles.empty()) alone.add(mesh);
   const SceneMesh& surface = alone.mesh.triangles.empty() ? view.scene : alone;
   // Embree's rays, not the beams that make bakes, so that the two do not share a fault.
   const RayScene scene(surface.mesh);
-  const float ray_offset = rounding_offset(surface.mesh.positions);  // as in kiln-bake
-  std::optional<BouncePaths> paths;
-  if (view.bounces > 0) paths.emplace(scene, surface, view.bounces, ray_offset);
-  const std::size_t groups = std::min(places.size(), directions.size());
-  for (std::size_t place = 0; place < places.size(); ++place) {
-    const VisiblePoints& points = places[place];
-    const std::vector<Eigen::Vector3f> own = every_nth(directions, place % groups, groups);
-    for (std::size_t begin = 0; begin < points.positions.size(); begin += batch_receivers) {
-      const std::size_t size = std::min(batch_receivers, points.positions.size() - begin);
-      const Receivers receivers{std::span(points.positions).subspan(begin, size),
-                                std::span(points.normals).subspan(begin, size)};
-      std::vector<TransferVectors> channels = {transfer_by_rays(scene, receivers, own, view.bands, ray_offset)};
-      const std::vector<TransferVectors> direct = channels;
-      if (paths) {
-        channels.resize(3, channels.front());
-        paths->add(receivers, every_nth(own, 0, path_step), done, channels);
-      }
+  const Shader shader(mesh, view, scene, surface, lights);
+  std::size_t done = 0;  // receivers, which numbers the random choices of each
+  for (std::size_t estimate = 0; estimate < 2; ++estimate) {
+    const std::vector<Eigen::Vector3f> directions =
+        sample_directions(Sampling::fibonacci, std::max(1, rays.directions / 2), 2 * rays.seed + estimate);
+    const std::size_t groups = std::min(places.size(), directions.size());
+    for (std::size_t place = 0; place < places.size(); ++place) {
+      const std::vector<Eigen::Vector3f> own = every_nth(directions, place % groups, groups);
       const float share = 1.f / static_cast<float>(places.size());
-      for (std::size_t light = 0; light < lights.size(); ++light) {
-        std::vector<Eigen::Vector3f> radiance = radiance_of(channels, lights[light], view, receivers);
-        add_samples(pictures[light].in_bands, points, begin, radiance, share);
-        if (!has_few_bands(lights[light])) {
-          // What bounced stays as the bands have it.
-          const auto cut = radiance_of(direct, lights[light], view, receivers);
-          const auto full = direct_radiance(scene, receivers, lights[light], ray_offset, done);
-          for (std::size_t r = 0; r < size; ++r) radiance[r] += full[r] - cut[r];
-        }
-        add_samples(pictures[light].in_full, points, begin, radiance, share);
+      for (std::size_t begin = 0; begin < places[place].positions.size(); begin += batch_receivers) {
+        const std::size_t size = std::min(batch_receivers, places[place].positions.size() - begin);
+        shader.shade(places[place], begin, size, own, done,
+                     [&](std::size_t light, const auto& bands, const auto& full) {
+                       add_samples(pictures[light].in_bands[estimate], places[place], begin, bands, share);
+                       add_samples(pictures[light].in_full[estimate], places[place], begin, full, share);
+                     });
+        done += size;
+        progress(static_cast<double>(done) / static_cast<double>(count));
       }
-      done += size;
-      progress(static_cast<double>(done) / static_cast<double>(count));
     }
   }
   return pictures;

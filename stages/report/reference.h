@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <Eigen/Core>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -11,6 +11,8 @@
 #include "material/surface_albedo.h"
 #include "mesh/camera.h"
 #include "mesh/triangle_mesh.h"
+#include "report/picture_difference.h"
+#include "scatter/profile.h"
 #include "sh/light_spec.h"
 
 namespace kiln {
@@ -26,26 +28,34 @@ struct ReferenceView {
   SceneMesh scene;               ///< casts shadows, and reflects where light bounces: the mesh first, then what
                                  ///< surrounds it, which is not seen; empty: the mesh alone
   int bounces = 0;               ///< how often light bounces off the scene, which then has albedos
-  int bands = 5;                 ///< number of bands that light is projected on
+  std::vector<ScatterProfile> scattering;  ///< light beneath the mesh's surface, for one colour or three; none: empty
+  double mm_per_unit = 1000;               ///< millimetres to an object unit
+  int bands = 5;                           ///< number of bands that light is projected on
   LightWindow window = LightWindow::hann;
 };
 
-/// Pictures of the reference under one light: RGBA in linear radiance; alpha is coverage and colours are multiplied by
-/// it.
+/// Pictures of the reference under one light, two estimates of each: RGBA in linear radiance; alpha is coverage and
+/// colours are multiplied by it.
 struct ReferencePicture {
-  Image<float> in_bands;  ///< under the light as the asset's bands and window have it
-  Image<float> in_full;   ///< under the light itself, as far as it arrives directly
+  PictureEstimates in_bands;  ///< under the light as the asset's bands and window have it
+  PictureEstimates in_full;   ///< under the light itself, as far as it arrives directly
+};
+
+/// Rays that a reference casts from every pixel.
+struct ReferenceRays {
+  int directions = 1024;  ///< half of them in each of two Fibonacci sets, turned apart at random, for the two estimates
+  std::uint64_t seed = 1;
 };
 
 /// Draws pictures of a mesh under each of `lights`: the first hit of each sample's ray is shaded by the transfer
-/// integral over `directions` (rays against the view's scene, with interpolated normals), and by paths for light that
-/// bounces (report/bounce_paths.h), projected on the view's bands. The samples of a pixel share the directions among
-/// them: sample s of n takes every n-th from the s-th on, so the pixel's mean is over all of them at the price of one
-/// sample (interleaved sampling, [Keller 2001]). A light near the mesh is evaluated at every point. Without atlas,
-/// textures or rasteriser, this is what the baked asset approximates.
+/// integral over the directions of `rays` (against the view's scene, with interpolated normals), and by paths for light
+/// that bounces (report/bounce_paths.h) or scatters beneath the surface (report/scatter_paths.h), projected on the
+/// view's bands. The samples of a pixel share the directions
+/// among them: sample s of n takes every n-th of a set from the s-th on, so the pixel's mean is over all of them at the
+/// price of one sample (interleaved sampling, [Keller 2001]). A light near the mesh is evaluated at every point.
+/// Without atlas, textures or rasteriser, this is what the baked asset approximates.
 std::vector<ReferencePicture> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
-                                                 std::span<const LightSpec> lights,
-                                                 std::span<const Eigen::Vector3f> directions,
+                                                 std::span<const LightSpec> lights, const ReferenceRays& rays,
                                                  const ProgressFunction& progress = no_progress);
 
 }  // namespace kiln

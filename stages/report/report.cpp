@@ -18,6 +18,7 @@ Json Report::to_json() const {
                       {"relative_l2", light.difference.relative_l2},
                       {"root_mean_square", light.difference.root_mean_square},
                       {"largest", light.difference.largest},
+                      {"reference_noise", light.difference.reference_noise},
                       {"relative_l2_in_full", light.difference_in_full.relative_l2}});
     relative_l2 = std::max(relative_l2, light.difference.relative_l2);
     if (light.compressed.width() > 0) {

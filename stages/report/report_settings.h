@@ -19,7 +19,7 @@ struct ReportSettings {
   int cameras = 2;  ///< evenly about the vertical; those beyond the first show the first light alone, turned with them
   FramingSettings framing;
   int picture_size = 512;        ///< pixels a side
-  int directions = 1024;         ///< of the reference's transfer integral
+  int directions = 512;          ///< of the reference's transfer integral
   std::optional<double> albedo;  ///< what the surface's own is multiplied by; nothing: auto
 
   /// Returns that factor; auto is 1 where the asset has an albedo of its own, else 0.8.

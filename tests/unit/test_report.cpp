@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests of what the report computes itself: budgets, pictures, the reference picture, and the text around them.
-#include <cmath>
+// Tests of what the report makes: budgets, pictures and the text around them.
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <numbers>
 
 #include "base/errors.h"
 #include "base/file_names.h"
@@ -12,30 +10,18 @@
 #include "base/outputs.h"
 #include "base/process.h"
 #include "image/image_file.h"
-#include "mesh/surface_point.h"
-#include "raycast/ray_scene.h"
-#include "report/bounce_paths.h"
 #include "report/budget.h"
-#include "report/direct_light.h"
 #include "report/labels.h"
 #include "report/pictures.h"
-#include "report/reference.h"
 #include "report/report_files.h"
 #include "report/report_settings.h"
 #include "report/tradeoff.h"
 #include "report/transport.h"
 #include "report/verdicts.h"
 #include "scratch.h"
-#include "sh/basis.h"
-#include "sh/directions.h"
-#include "sh/light_spec.h"
-#include "sh/lights.h"
-#include "sh/transfer.h"
-#include "sh/windows.h"
-#include "shapes.h"
 
 namespace kiln {
-namespace {
+namespace test_report {
 
 namespace fs = std::filesystem;
 
@@ -188,243 +174,6 @@ TEST(Pictures, ThumbnailKeepsTheMean) {
   EXPECT_EQ(thumbnail(file, 16, 200).width(), 50);  // never enlarged
 }
 
-/// Makes a unit sphere with exact normals, of `rings` by 2 * `rings` cells.
-TriangleMesh sphere(int rings) {
-  TriangleMesh mesh;
-  const int columns = 2 * rings;
-  for (int j = 0; j <= rings; ++j)
-    for (int i = 0; i < columns; ++i) {
-      const double polar = std::numbers::pi * j / rings, azimuth = 2 * std::numbers::pi * i / columns;
-      mesh.positions.emplace_back(std::sin(polar) * std::cos(azimuth), std::cos(polar),
-                                  -std::sin(polar) * std::sin(azimuth));
-    }
-  for (int j = 0; j < rings; ++j)
-    for (int i = 0; i < columns; ++i) {
-      const auto at = [&](int row, int column) { return static_cast<std::uint32_t>(row * columns + column % columns); };
-      if (j > 0) mesh.triangles.push_back({at(j, i), at(j + 1, i), at(j, i + 1)});
-      if (j + 1 < rings) mesh.triangles.push_back({at(j, i + 1), at(j + 1, i), at(j + 1, i + 1)});
-    }
-  mesh.normals = mesh.positions;
-  return mesh;
-}
-
-TEST(Reference, SphereInAFurnaceHasItsAlbedo) {
-  const TriangleMesh mesh = sphere(64);
-  ReferenceView view;
-  view.width = view.height = 24;
-  view.camera = make_camera(mesh.positions, {}, view.width, view.height);
-  view.albedo = 0.6f;
-  view.bands = 3;
-  const LightSpec lights[] = {{.kind = LightSpec::Kind::ambient}};
-  const auto directions = sample_directions(Sampling::fibonacci, 2048, 1);
-  const std::vector<ReferencePicture> pictures = reference_pictures(mesh, view, lights, directions);
-  int whole = 0;
-  for (int j = 0; j < view.height; ++j)
-    for (int i = 0; i < view.width; ++i) {
-      if (pictures[0].in_bands.at(i, j, 3) < 0.9999f) continue;
-      ++whole;
-      // Exact but for the quadrature (2,048 directions: far below 1 %) and for facets that lie inside the sphere.
-      EXPECT_NEAR(pictures[0].in_bands.at(i, j, 1), 0.6, 0.01);
-    }
-  EXPECT_GT(whole, 100);
-  EXPECT_EQ(pictures[0].in_bands.at(0, 0, 3), 0);
-  EXPECT_EQ(pictures[0].in_full.values(), pictures[0].in_bands.values()) << "bands hold all of a furnace";
-}
-
-TEST(Reference, LightNearTheMeshIsThatOfEveryPoint) {
-  const TriangleMesh mesh = sphere(64);
-  ReferenceView view;
-  view.width = view.height = 24;
-  view.supersample = 1;
-  view.camera = make_camera(mesh.positions, {}, view.width, view.height);
-  view.albedo = 1;
-  const LightSpec ball = parse_light_spec("sphere:0.5,1,2,0.1");
-  const auto directions = sample_directions(Sampling::fibonacci, 2048, 1);
-  const Image<float> picture = reference_pictures(mesh, view, std::span(&ball, 1), directions).front().in_bands;
-  const RayScene scene(mesh);
-  const ShBasis basis(5);
-  double nearest = 0, largest = 0;
-  for (int j = 0; j < view.height; ++j)
-    for (int i = 0; i < view.width; ++i) {
-      if (picture.at(i, j, 3) < 0.9999f) continue;
-      const Eigen::Vector3f direction = view.camera.pixel_direction(i, j, view.width, view.height);
-      const Eigen::Vector3f point =
-          view.camera.position + scene.first_hit(view.camera.position, direction, 0, 100).distance * direction;
-      const LightCoefficients light = windowed_light(ball, 5, LightWindow::hann, point.cast<double>());
-      const double expected = dot_product(unoccluded_transfer(basis, point.normalized()), light.channels[0]);
-      largest = std::max(largest, std::abs(picture.at(i, j, 0) - expected));
-      nearest = std::max(nearest, expected);
-    }
-  // Quadrature of 2,048 directions, and facets that shade a little what the light just grazes.
-  EXPECT_LT(largest, 0.02 * nearest);
-  EXPECT_GT(nearest, 2);  // the near side has more than the origin would
-}
-
-TEST(DirectLight, IsThatOfItsFormWhereNothingShadows) {
-  // Receivers in free space, the light at all angles to them.
-  const TriangleMesh far_away = shapes::icosphere(0);
-  std::vector<Eigen::Vector3f> shifted = far_away.positions;
-  for (Eigen::Vector3f& p : shifted) p += Eigen::Vector3f(1000, 0, 0);
-  const RayScene scene(shifted, far_away.triangles);
-  const std::vector<Eigen::Vector3f> normals = sample_directions(Sampling::fibonacci, 512, 3);
-  const std::vector<Eigen::Vector3f> positions(normals.size(), Eigen::Vector3f::Zero());
-  for (const char* text : {"30,40", "cone:30,40,25", "cone:-120,-5,60", "sphere:1,2,-1,0.8"}) {
-    const LightSpec light = parse_light_spec(text);
-    const auto radiance = direct_radiance(scene, {positions, normals}, light, 0, 0);
-    // Irradiance in spherical harmonics: 40 bands, of which those beyond two are exact to (l)^-2.5.
-    const LightCoefficients expected = irradiance(light_coefficients(light, 40));
-    double worst = 0;
-    for (std::size_t r = 0; r < normals.size(); ++r)
-      worst =
-          std::max(worst, std::abs(radiance[r][1] - evaluate_at(expected.channels[1], normals[r]) / std::numbers::pi));
-    // A directional light's clamped cosine of 40 bands is right to 0.005. The others have 32 places of the light: a
-    // receiver that sees part of it may be wrong by most of one, 1 / 32.
-    EXPECT_LT(worst, 0.03) << text;
-    EXPECT_GT(worst, 0) << text;
-  }
-}
-
-TEST(DirectLight, HasTheSharpShadowThatBandsLose) {
-  // A ball above a floor, the light overhead: in full, the floor beneath is dark and the rest has the radiance 1.
-  TriangleMesh floor;
-  floor.positions = {{-4, 0, 4}, {4, 0, 4}, {4, 0, -4}, {-4, 0, -4}};
-  floor.triangles = {{0, 1, 2}, {0, 2, 3}};
-  floor.normals.assign(4, Eigen::Vector3f::UnitY());
-  TriangleMesh ball = shapes::icosphere(3);
-  for (Eigen::Vector3f& p : ball.positions) p += Eigen::Vector3f(0, 1.5f, 0);
-  ReferenceView view;
-  view.scene.add(floor);
-  view.scene.add(ball);
-  view.width = view.height = 32;
-  view.supersample = 1;
-  view.albedo = 1;
-  CameraSettings above;
-  above.azimuth_degrees = 0;
-  above.elevation_degrees = 90;
-  view.camera = make_camera(floor.positions, above, view.width, view.height);
-  const LightSpec light = parse_light_spec("0,90");
-  const ReferencePicture picture =
-      reference_pictures(floor, view, std::span(&light, 1), sample_directions(Sampling::fibonacci, 1024, 1)).front();
-  int dark = 0, lit = 0;
-  for (int j = 0; j < view.height; ++j)
-    for (int i = 0; i < view.width; ++i) {
-      if (picture.in_full.at(i, j, 3) < 0.9999f) continue;
-      (picture.in_full.at(i, j, 0) < 0.5f ? dark : lit) += 1;
-      const float value = picture.in_full.at(i, j, 0);
-      EXPECT_TRUE(value == 0 || std::abs(value - 1) < 1e-5f) << value;
-    }
-  // The shadow has pi / 64 of the floor; a pixel more or less around it.
-  EXPECT_NEAR(static_cast<double>(dark) / (dark + lit), std::numbers::pi / 64, 0.012);
-  EXPECT_GT(picture.in_bands.at(16, 16, 0), 0.1f) << "five bands do not darken it wholly";
-}
-
-TEST(Reference, SurfacesHaveTheirOwnAlbedo) {
-  // Every vertex of the sphere has a colour that tells where it is; in a furnace of radiance 1 that is its radiance.
-  const TriangleMesh mesh = sphere(64);
-  const auto color_at = [](const Eigen::Vector3f& p) { return Eigen::Vector3f(0.5f * (p.array() + 1)); };
-  std::vector<Eigen::Vector3f> colors;
-  for (const Eigen::Vector3f& p : mesh.positions) colors.push_back(color_at(p));
-  ReferenceView view;
-  view.width = view.height = 24;
-  view.camera = make_camera(mesh.positions, {}, view.width, view.height);
-  view.supersample = 1;
-  view.albedo = 0.5f;
-  view.surface_albedo = SurfaceAlbedo::of_vertices(colors, mesh.triangles);
-  view.bands = 3;
-  const LightSpec lights[] = {{.kind = LightSpec::Kind::ambient}};
-  const auto directions = sample_directions(Sampling::fibonacci, 2048, 1);
-  const Image<float> picture = reference_pictures(mesh, view, lights, directions).front().in_bands;
-  const RayScene scene(mesh);
-  int whole = 0;
-  for (int j = 0; j < view.height; ++j)
-    for (int i = 0; i < view.width; ++i) {
-      if (picture.at(i, j, 3) < 0.9999f) continue;
-      ++whole;
-      const Eigen::Vector3f direction = view.camera.pixel_direction(i, j, view.width, view.height);
-      const SurfacePoint hit = scene.first_hit(view.camera.position, direction, 0, 100);
-      const Eigen::Vector3f expected = 0.5f * color_at(view.camera.position + hit.distance * direction);
-      for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture.at(i, j, c), expected[c], 0.01);  // quadrature and facets
-    }
-  EXPECT_GT(whole, 100);
-}
-
-/// Returns the inside of a sphere without its top, which has the share `open` of its area.
-TriangleMesh open_sphere(double open) {
-  TriangleMesh mesh = sphere(128);
-  std::erase_if(mesh.triangles, [&](const Triangle& t) {
-    return (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]).y() / 3 > 1 - 2 * open;
-  });
-  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  for (Eigen::Vector3f& normal : mesh.normals) normal = -normal;
-  return mesh;
-}
-
-TEST(BouncePaths, InAnOpenSphereHaveTheirGeometricSeries) {
-  // From every point of a sphere's inside, the share of the weighted sky that a part of the sphere covers is its share
-  // of the area. With a share f open, n bounces off an albedo rho give f times the sum of (rho (1 - f))^k, k = 0 to n.
-  constexpr double open = 0.25, unoccluded = 0.282095;
-  const TriangleMesh mesh = open_sphere(open);
-  SceneMesh surface;
-  surface.add(mesh, SurfaceAlbedo::constant({0.5f, 0.9f, 0}));
-  const RayScene scene(surface.mesh);
-  std::vector<Eigen::Vector3f> positions, normals;
-  for (std::size_t t = 0; t < mesh.triangles.size(); t += 61) {
-    const SurfacePoint place{static_cast<std::uint32_t>(t), 0.3f, 0.3f, 0};
-    positions.push_back(position_at(mesh, place));
-    normals.push_back(face_normal(mesh, place.triangle));
-  }
-  const Receivers receivers{positions, normals};
-  const auto directions = sample_directions(Sampling::fibonacci, 2048, 1);
-  for (const int bounces : {1, 4, 100}) {
-    SCOPED_TRACE(bounces);
-    std::vector<TransferVectors> channels(3, TransferVectors(receivers.size(), 4));
-    BouncePaths(scene, surface, bounces, 1e-5f).add(receivers, directions, 7, channels);
-    for (int c = 0; c < 3; ++c) {
-      double mean = 0;
-      for (const float value : channels[c].plane(0)) mean += value / static_cast<double>(receivers.size());
-      const double rho = surface.albedos[0].constant_value()[c];
-      double series = 0;
-      for (int k = 1; k <= bounces; ++k) series += std::pow(rho * (1 - open), k);
-      // Some 400 receivers of a thousand paths have a standard error below 0.3 % of the first bounce; facets add 0.3 %.
-      EXPECT_NEAR(mean, unoccluded * open * series, 0.01 * unoccluded * open * (series + 0.1));
-    }
-  }
-}
-
-TEST(Reference, LightBouncesAsOftenAsTheViewSays) {
-  // Half of what a floor sees is a wall of albedo 1, lit by the other half of the sky: a furnace but for the light that
-  // the floor would send back.
-  TriangleMesh mesh;
-  const float far = 1000;
-  mesh.positions = {{0, 0, -far}, {0, 0, far}, {far, 0, far}, {far, 0, -far},
-                    {0, 0, -far}, {0, 0, far}, {0, far, far}, {0, far, -far}};
-  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 7, 6}, {4, 6, 5}};
-  for (int k = 0; k < 8; ++k) mesh.normals.push_back(k < 4 ? Eigen::Vector3f::UnitY() : Eigen::Vector3f::UnitX());
-  ReferenceView view;
-  view.width = view.height = 4;
-  view.supersample = 2;
-  CameraSettings from_above;
-  from_above.azimuth_degrees = 90;
-  from_above.elevation_degrees = 85;
-  view.camera = make_camera(std::vector<Eigen::Vector3f>{{0.5f, 0, 0.5f}, {1.5f, 0, 1.5f}, {1, 0.1f, 1}}, from_above,
-                            view.width, view.height);
-  view.albedo = 1;
-  view.bands = 2;
-  const LightSpec lights[] = {{.kind = LightSpec::Kind::ambient}};
-  const auto directions = sample_directions(Sampling::fibonacci, 8192, 1);
-  const float direct = reference_pictures(mesh, view, lights, directions).front().in_bands.at(2, 2, 0);
-  view.scene.add(mesh, SurfaceAlbedo::constant({1, 1, 1}));
-  view.bounces = 1;
-  const float once = reference_pictures(mesh, view, lights, directions).front().in_bands.at(2, 2, 0);
-  view.bounces = 50;
-  const float often = reference_pictures(mesh, view, lights, directions).front().in_bands.at(2, 2, 0);
-  // Near the corner of two half planes a floor sees half of the sky, by the cosine; one bounce adds half of the half
-  // that the wall covers, and all bounces make it whole. 2,048 directions a sample, half as many paths.
-  EXPECT_NEAR(direct, 0.5, 0.02);
-  EXPECT_NEAR(once, 0.75, 0.03);
-  EXPECT_NEAR(often, 1, 0.04);
-}
-
 TEST(ReportSettings, AlbedoIsAutomaticOrANumber) {
   ReportSettings settings;
   OptionSet options = report_options(settings);
@@ -550,5 +299,5 @@ TEST(Page, TransportNamesEveryBounceAndChannel) {
     EXPECT_NE(beneath.find(word), std::string::npos) << word << " in " << beneath;
 }
 
-}  // namespace
+}  // namespace test_report
 }  // namespace kiln

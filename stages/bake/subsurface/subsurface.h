@@ -5,7 +5,7 @@
 
 #include "bake/bake_reports.h"
 #include "bake/scene/receiver_set.h"
-#include "bake/subsurface/subsurface_settings.h"
+#include "scatter/subsurface_settings.h"
 #include "base/progress.h"
 #include "mesh/triangle_mesh.h"
 #include "sh/transfer.h"

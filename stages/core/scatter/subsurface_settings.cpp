@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bake/subsurface/subsurface_settings.h"
+#include "scatter/subsurface_settings.h"
 
 #include <algorithm>
 #include <array>
