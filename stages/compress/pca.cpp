@@ -2,23 +2,37 @@
 #include "compress/pca.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/SVD>
 #include <algorithm>
 
 namespace kiln {
 
 namespace {
 
-/// Computes eigenvectors by falling eigenvalue; each gets a positive largest entry, so that the result does not depend
-/// on a solver's choice of sign.
-void sorted_eigenvectors(const Eigen::MatrixXd& covariance, Eigen::MatrixXf& vectors, Eigen::VectorXd& values) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
-  values = solver.eigenvalues().reverse().cwiseMax(0);
-  vectors = solver.eigenvectors().rowwise().reverse().cast<float>();
+/// Gives each vector a positive largest entry, so that the result does not depend on a solver's choice of sign.
+void choose_signs(Eigen::MatrixXf& vectors) {
   for (Eigen::Index k = 0; k < vectors.cols(); ++k) {
     Eigen::Index largest = 0;
     vectors.col(k).cwiseAbs().maxCoeff(&largest);
     if (vectors(largest, k) < 0) vectors.col(k) *= -1;
   }
+}
+
+/// Computes eigenvectors by falling eigenvalue.
+void sorted_eigenvectors(const Eigen::MatrixXd& covariance, Eigen::MatrixXf& vectors, Eigen::VectorXd& values) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
+  values = solver.eigenvalues().reverse().cwiseMax(0);
+  vectors = solver.eigenvectors().rowwise().reverse().cast<float>();
+  choose_signs(vectors);
+}
+
+/// Computes the same of the covariance of columns about zero, of which there are fewer than rows: by a singular value
+/// decomposition, whose cost grows with the square of their number, not with the cube of the rows.
+Eigen::MatrixXf few_columns_eigenvectors(const Eigen::MatrixXd& columns) {
+  const Eigen::BDCSVD<Eigen::MatrixXd> decomposition(columns, Eigen::ComputeFullU);
+  Eigen::MatrixXf vectors = decomposition.matrixU().cast<float>();
+  choose_signs(vectors);
+  return vectors;
 }
 
 }  // namespace
@@ -68,7 +82,10 @@ void fit_subspace(const Eigen::MatrixXf& vectors, int components, Eigen::VectorX
   const Eigen::MatrixXd centred = exact.colwise() - centre;
   Eigen::MatrixXf all;
   Eigen::VectorXd values;
-  sorted_eigenvectors(centred * centred.transpose(), all, values);
+  if (centred.cols() < centred.rows())
+    all = few_columns_eigenvectors(centred);
+  else
+    sorted_eigenvectors(centred * centred.transpose(), all, values);
   mean = centre.cast<float>();
   basis = all.leftCols(components);
 }
