@@ -57,7 +57,7 @@ for _ in $(seq 500); do
   sleep 0.02
 done
 [ -n "$held" ] || fail "a build without a lock"
-$kiln build --until bake 2>second
+$kiln build --until bake 2>second || fail "$(cat second)"
 wait $building
 grep -q "nothing to do" second || fail "the second built as well: $(cat second)"
 [ -e out/a/prt/bake.json ] || fail "no bake"
@@ -75,7 +75,7 @@ for directions in 30000 120000 480000; do
   [ ! -e out/a/prt.checkpoint ] || break
 done
 [ $status -eq 143 ] && [ -e out/a/prt.checkpoint ] || fail "exit status $status of a build that was stopped, or no checkpoint"
-$kiln build --until bake 2>resumed
+$kiln build --until bake 2>resumed || fail "$(cat resumed)"
 grep -q "bake goes on from its checkpoint" resumed || fail "$(cat resumed)"
 [ ! -e out/a/prt.checkpoint ] || fail "the checkpoint is still there"
 cp -r out/a/prt resumed_prt
