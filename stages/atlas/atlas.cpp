@@ -150,7 +150,7 @@ AtlasResult make_atlas(const TriangleMesh& low, const AtlasSettings& settings, c
   check_density(settings, surface.area);
   weigh_seams(surface, surface_openness(*mesh, {mesh->positions, mesh->normals}));
   const ChartSettings how_to_cut = chart_settings(settings, surface.area);
-  const auto cutting = [&](double fraction) { progress(0.6 * fraction); };
+  const ProgressFunction cutting = part_of(progress, 0, 0.6);
   ChartSet cut = settings.quality == AtlasQuality::best
                      ? choose_charts(surface, how_to_cut, pack_settings(settings), cutting)
                      : cut_into_charts(surface, how_to_cut, cutting);
@@ -166,7 +166,7 @@ AtlasResult make_atlas(const TriangleMesh& low, const AtlasSettings& settings, c
   const double scaled_seconds = watch.seconds();
 
   // Step 3: place them.
-  const Packing packing = pack(cut.charts, settings, [&](double fraction) { progress(0.6 + 0.4 * fraction); });
+  const Packing packing = pack(cut.charts, settings, part_of(progress, 0.6, 1));
 
   // Step 4: build the mesh with uvs.
   result.mesh = assemble(*mesh, cut.charts, packing);

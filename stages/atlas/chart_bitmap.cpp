@@ -125,64 +125,35 @@ void append_runs(const Bits& bits, int row, std::vector<TexelRun>& runs) {
   }
 }
 
-}  // namespace
-
-Eigen::Vector2d turned(const Eigen::Vector2d& uv, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {c * uv.x() - s * uv.y(), s * uv.x() + c * uv.y()};
-}
-
-ChartOutline chart_outline(const Chart& chart) {
-  ChartOutline outline;
-  for (const auto& [from, to] : border_edges(chart)) outline.emplace_back(chart.uvs[from], chart.uvs[to]);
-  return outline;
-}
-
-ChartBitmap rasterise_chart(const ChartOutline& outline, const BitmapSettings& settings) {
-  ChartOutline turned_outline;
-  turned_outline.reserve(outline.size());
+/// Turns and scales an outline as the settings say.
+ChartOutline outline_in_texels(const ChartOutline& outline, const BitmapSettings& settings) {
   Eigen::Matrix2d turn;
   turn << std::cos(settings.angle), -std::sin(settings.angle), std::sin(settings.angle), std::cos(settings.angle);
   turn *= settings.texels_per_unit;
-  for (const auto& [a, b] : outline) turned_outline.emplace_back(turn * a, turn * b);
-  Eigen::Vector2d lowest = turned_outline[0].first, highest = lowest;
-  for (const auto& [a, b] : turned_outline) {
-    lowest = lowest.cwiseMin(a);
-    highest = highest.cwiseMax(a);
-  }
-  ChartBitmap bitmap;
-  bitmap.angle = settings.angle;
-  bitmap.origin = lowest - Eigen::Vector2d::Constant(settings.margin);
-  const int width = static_cast<int>(std::ceil(highest.x() - bitmap.origin.x() + settings.margin)) + 1;
-  const int height = static_cast<int>(std::ceil(highest.y() - bitmap.origin.y() + settings.margin)) + 1;
-  for (auto& [a, b] : turned_outline) {
-    a -= bitmap.origin;
-    b -= bitmap.origin;
-  }
+  ChartOutline result;
+  result.reserve(outline.size());
+  for (const auto& [a, b] : outline) result.emplace_back(turn * a, turn * b);
+  return result;
+}
 
-  Bits result(width, height);
-  fill_inside(turned_outline, result, width);
-  for (const auto& [a, b] : turned_outline) fill_segment(a, b, settings.margin, 0, result, width);
-  if (settings.every_touched) {
-    for (const auto& [a, b] : turned_outline) fill_segment(a, b, settings.margin, 0.5, result, width);
-  } else if (settings.slivers) {
-    // Texels that are touched but not needed are all touched by the border.
-    Bits touched(width, height), strays(width, height);
-    for (const auto& [a, b] : turned_outline) fill_segment(a, b, settings.margin, 0.5, touched, width);
-    for (int row = 0; row < height; ++row)
-      for (int word = 0; word < result.words_per_row(); ++word)
-        if (const std::uint64_t bits = touched.row_words(row)[word]; bits != 0)
-          strays.row_words(row)[word] = bits & ~result.grown(row, word);
-    for (int row = 0; row < height; ++row)
-      for (int word = 0; word < result.words_per_row(); ++word)
-        result.row_words(row)[word] |= strays.row_words(row)[word];
-  }
+/// Adds the texels that the border touches and that neither are set nor lie beside one that is.
+void add_slivers(const ChartOutline& outline, double margin, int width, Bits& bits) {
+  Bits touched(width, bits.height()), strays(width, bits.height());
+  for (const auto& [a, b] : outline) fill_segment(a, b, margin, 0.5, touched, width);
+  for (int row = 0; row < bits.height(); ++row)
+    for (int word = 0; word < bits.words_per_row(); ++word)
+      if (const std::uint64_t all = touched.row_words(row)[word]; all != 0)
+        strays.row_words(row)[word] = all & ~bits.grown(row, word);
+  for (int row = 0; row < bits.height(); ++row)
+    for (int word = 0; word < bits.words_per_row(); ++word) bits.row_words(row)[word] |= strays.row_words(row)[word];
+}
 
-  // Crop empty rows and columns.
-  bitmap.rows.resize(height);
-  int left = width, right = -1, bottom = height, top = -1;
-  for (int row = 0; row < height; ++row) {
-    append_runs(result, row, bitmap.rows[row]);
+/// Takes the rows and columns that are not empty, and measures them.
+void take_cropped(const Bits& bits, int width, ChartBitmap& bitmap) {
+  bitmap.rows.resize(bits.height());
+  int left = width, right = -1, bottom = bits.height(), top = -1;
+  for (int row = 0; row < bits.height(); ++row) {
+    append_runs(bits, row, bitmap.rows[row]);
     if (bitmap.rows[row].empty()) continue;
     left = std::min(left, bitmap.rows[row].front().first);
     right = std::max(right, bitmap.rows[row].back().last);
@@ -207,6 +178,46 @@ ChartBitmap rasterise_chart(const ChartOutline& outline, const BitmapSettings& s
   bitmap.width = right - left + 1;
   bitmap.height = top - bottom + 1;
   bitmap.origin += Eigen::Vector2d(left, bottom);
+}
+
+}  // namespace
+
+Eigen::Vector2d turned(const Eigen::Vector2d& uv, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {c * uv.x() - s * uv.y(), s * uv.x() + c * uv.y()};
+}
+
+ChartOutline chart_outline(const Chart& chart) {
+  ChartOutline outline;
+  for (const auto& [from, to] : border_edges(chart)) outline.emplace_back(chart.uvs[from], chart.uvs[to]);
+  return outline;
+}
+
+ChartBitmap rasterise_chart(const ChartOutline& outline, const BitmapSettings& settings) {
+  ChartOutline turned_outline = outline_in_texels(outline, settings);
+  Eigen::Vector2d lowest = turned_outline[0].first, highest = lowest;
+  for (const auto& [a, b] : turned_outline) {
+    lowest = lowest.cwiseMin(a);
+    highest = highest.cwiseMax(a);
+  }
+  ChartBitmap bitmap;
+  bitmap.angle = settings.angle;
+  bitmap.origin = lowest - Eigen::Vector2d::Constant(settings.margin);
+  const int width = static_cast<int>(std::ceil(highest.x() - bitmap.origin.x() + settings.margin)) + 1;
+  const int height = static_cast<int>(std::ceil(highest.y() - bitmap.origin.y() + settings.margin)) + 1;
+  for (auto& [a, b] : turned_outline) {
+    a -= bitmap.origin;
+    b -= bitmap.origin;
+  }
+
+  Bits bits(width, height);
+  fill_inside(turned_outline, bits, width);
+  for (const auto& [a, b] : turned_outline) fill_segment(a, b, settings.margin, 0, bits, width);
+  if (settings.every_touched)
+    for (const auto& [a, b] : turned_outline) fill_segment(a, b, settings.margin, 0.5, bits, width);
+  else if (settings.slivers)
+    add_slivers(turned_outline, settings.margin, width, bits);
+  take_cropped(bits, width, bitmap);
   return bitmap;
 }
 

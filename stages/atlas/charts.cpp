@@ -62,7 +62,7 @@ ChartSet cut_into_charts(const Surface& surface, const ChartSettings& settings, 
   progress(0.1);
   result.split_charts = flatten_or_split(disks, charts, disks.ids(), settings, grow_settings);
   progress(0.2);
-  merge_charts(disks, charts, settings, [&](double fraction) { progress(0.2 + 0.6 * fraction); });
+  merge_charts(disks, charts, settings, part_of(progress, 0.2, 0.8));
 
   for (const std::uint32_t id : disks.ids()) result.charts.push_back(std::move(charts[id]));
   // Finally flatten each chart by the best of several ways, its merged uvs among them.

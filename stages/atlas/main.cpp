@@ -2,14 +2,13 @@
 #include "atlas/atlas.h"
 #include "atlas/drawing.h"
 #include "atlas/keep_uv.h"
-#include "atlas/low_mesh.h"
+#include "atlas/load_meshes.h"
 #include "base/asset_layout.h"
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "base/json.h"
 #include "detail/asset_hints.h"
 #include "image/image_file.h"
-#include "import/import_mesh.h"
 
 int main(int argc, char** argv) {
   using namespace kiln;
@@ -30,22 +29,18 @@ int main(int argc, char** argv) {
     const AssetHints hints = read_asset_hints(folder_of(low_file));
     std::vector<std::string> warnings;
     const TriangleMesh low = load_low_mesh(low_file, settings, warnings);
-    TriangleMesh high;
-    if (!high_file.empty()) {
-      ImportedMesh imported = import_mesh(high_file, inherit(settings.import, hints.import), low.frame);
-      warnings.insert(warnings.end(), imported.warnings.begin(), imported.warnings.end());
-      high = std::move(imported.mesh);
-    }
+    std::optional<TriangleMesh> high;
+    if (!high_file.empty())
+      high = load_high_mesh(high_file, inherit(settings.import, hints.import), low.frame, warnings);
     command.warn(warnings, hints.warnings);
     AtlasSettings in_frame = settings;
     in_frame.texels_per_unit *= low.frame.unit();
     OutputSet outputs(folder_of(atlas_file));
 
     // Run.
-    const AtlasResult result = settings.keep_uv
-                                   ? keep_uvs(low, in_frame, low_file.string())
-                                   : make_atlas(low, in_frame, low_file.string(), command.progress("atlas"),
-                                                high_file.empty() ? nullptr : &high);
+    const AtlasResult result = settings.keep_uv ? keep_uvs(low, in_frame, low_file.string())
+                                                : make_atlas(low, in_frame, low_file.string(),
+                                                             command.progress("atlas"), high ? &*high : nullptr);
 
     // Save, and measure what was saved.
     const WrittenAtlas written = write_atlas(outputs.add(atlas_file.filename().string()), result);

@@ -38,7 +38,7 @@ class Packer {
     const double full_scale = std::sqrt(static_cast<double>(settings_.width) * settings_.height / area_);
     const double start = std::min(full_scale * std::sqrt(0.6), scale_that_fills(0.75));
     const std::vector<std::vector<FoundPlan>> found =
-        searched(PackSearch::Aim::raise_scale, start, [&](double fraction) { progress(0.8 * fraction); });
+        searched(PackSearch::Aim::raise_scale, start, part_of(progress, 0, 0.8));
     return best_of(
         found, [&](const std::vector<FoundPlan>& plans) { return best_at_texels(plans); }, progress,
         [](const Packing& a, const Packing& b) { return a.texels_per_unit > b.texels_per_unit; });
@@ -48,8 +48,8 @@ class Packer {
   std::optional<Packing> at_given_scale(const ProgressFunction& progress) {
     set_size(settings_.width, static_cast<int>(1.4 * texel_area() / settings_.width) + 2 * settings_.gutter + 1);
     if (crowd()) return crowd_at_given_scale();
-    const std::vector<std::vector<FoundPlan>> found = searched(PackSearch::Aim::lower_height, settings_.texels_per_unit,
-                                                               [&](double fraction) { progress(0.8 * fraction); });
+    const std::vector<std::vector<FoundPlan>> found =
+        searched(PackSearch::Aim::lower_height, settings_.texels_per_unit, part_of(progress, 0, 0.8));
     return best_of(
         found, [&](const std::vector<FoundPlan>& plans) { return best_at_texels_and_scale(plans); }, progress,
         [](const Packing& a, const Packing& b) { return a.height < b.height; });

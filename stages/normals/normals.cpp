@@ -144,6 +144,60 @@ Image<std::uint8_t> picture_of(const Image<std::uint8_t>& ways) {
   return picture;
 }
 
+/// The two surfaces, and the texels of the low one.
+struct TwoSurfaces {
+  const TriangleMesh& high;
+  const RayScene& high_scene;
+  const TriangleMesh& atlas;
+  const UvRaster& raster;
+};
+
+/// Returns how far rays look for the high surface: `cage` diagonals, or what the surfaces' distance asks for where that
+/// is 0. Names where the distance comes from in `source`.
+double choose_cage(double cage, const AssetHints& hints, const TwoSurfaces& surfaces, std::string& source) {
+  const TriangleMesh& high = surfaces.high;
+  const double diagonal = bounding_box(high).diagonal();
+  source = "option";
+  if (cage != 0) return cage * diagonal;
+  source = hints.hausdorff_distance > 0 ? "simplify.json" : "measured";
+  const double between = hints.hausdorff_distance > 0
+                             ? hints.hausdorff_distance / high.frame.unit()
+                             : measure_distance(high, surfaces.high_scene, surfaces.atlas, surfaces.raster);
+  return std::max(cage_per_hausdorff_distance * between, smallest_cage * diagonal);
+}
+
+/// Counts, as shares of the covered texels, in which ways their high points were found.
+void count_ways(const TexelMatches& matches, const UvRaster& raster, NormalsResult& result) {
+  std::array<std::int64_t, texel_way_colors.size()> found{};
+  for (const std::uint8_t way : matches.way.values()) ++found[way];
+  result.covered_texels = raster.covered_texels;
+  const auto share = [&](TexelWay way) {
+    return static_cast<double>(found[static_cast<std::size_t>(way)]) / static_cast<double>(raster.covered_texels);
+  };
+  result.found_by_ray_outwards = share(TexelWay::ray_outwards);
+  result.found_by_ray_inwards = share(TexelWay::ray_inwards);
+  result.disagreeing = share(TexelWay::disagreeing);
+  result.found_by_nearest_point = share(TexelWay::nearest_point) + result.disagreeing;
+}
+
+/// A normal map before and after its seams were equalised.
+struct MapVersions {
+  const Image<float>& before;
+  const Image<float>& after;
+};
+
+/// Measures what the low normals, quantisation and seams do to the map.
+void measure_maps(const MapVersions& map, const Seams& seams, const TriangleMesh& atlas, const UvRaster& raster,
+                  NormalsResult& result) {
+  const Image<float> shown = dequantise_normals(result.normal);
+  measure_deviation(decode_normals(result.normal, result.space, atlas, raster), atlas, raster, result);
+  result.quantisation_degrees_largest = angles_between(map.after, shown, raster).largest;
+  result.seam_edges = seams.edges().size();
+  result.seam_before = seams.mismatch_degrees(dequantise_normals(quantise_normals(map.before)), result.space);
+  result.seam_after = seams.mismatch_degrees(shown, result.space);
+  result.seam_change_degrees_rms = angles_between(map.before, map.after, raster).rms;
+}
+
 }  // namespace
 
 NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, const NormalsSettings& settings,
@@ -167,20 +221,12 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   const RayScene scene(high);
   const BuriedTest is_buried(high.positions, high.triangles, rounding_offset(high.positions));
   const double diagonal = bounding_box(high).diagonal();
-  double distance = settings.cage * diagonal;
-  result.cage_source = "option";
-  if (settings.cage == 0) {
-    result.cage_source = hints.hausdorff_distance > 0 ? "simplify.json" : "measured";
-    distance =
-        cage_per_hausdorff_distance * (hints.hausdorff_distance > 0 ? hints.hausdorff_distance / high.frame.unit()
-                                                                    : measure_distance(high, scene, atlas, raster));
-    distance = std::max(distance, smallest_cage * diagonal);
-  }
+  const double distance = choose_cage(settings.cage, hints, {high, scene, atlas, raster}, result.cage_source);
   const MatchLimits limits{static_cast<float>(distance), static_cast<float>(surface_tolerance * diagonal)};
 
   // Step 3: find a high point and normal for each texel.
   TexelMatches matches = match_texels({high, scene, albedo, is_buried}, atlas, raster, limits, settings.samples,
-                                      settings.fit, [&](double fraction) { progress(0.9 * fraction); });
+                                      settings.fit, part_of(progress, 0, 0.9));
   const std::vector<std::uint8_t> covered = coverage_of(raster);
   result.position = matches.position;
   Image<std::uint8_t> ways = matches.way;
@@ -208,27 +254,12 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   progress(1);
 
   // Step 5: measure what is written.
-  std::array<std::int64_t, texel_way_colors.size()> found{};
-  for (const std::uint8_t way : matches.way.values()) ++found[way];
-  result.covered_texels = raster.covered_texels;
-  const auto share = [&](TexelWay way) {
-    return static_cast<double>(found[static_cast<std::size_t>(way)]) / static_cast<double>(raster.covered_texels);
-  };
-  result.found_by_ray_outwards = share(TexelWay::ray_outwards);
-  result.found_by_ray_inwards = share(TexelWay::ray_inwards);
-  result.disagreeing = share(TexelWay::disagreeing);
-  result.found_by_nearest_point = share(TexelWay::nearest_point) + result.disagreeing;
+  count_ways(matches, raster, result);
   result.cage_distance = distance * high.frame.unit();
   result.mean_distance = matches.mean_distance / diagonal;
   result.largest_distance = matches.largest_distance / diagonal;
-  const Image<float> shown = dequantise_normals(result.normal);
-  measure_deviation(decode_normals(result.normal, result.space, atlas, raster), atlas, raster, result);
-  result.quantisation_degrees_largest = angles_between(map, shown, raster).largest;
-  result.seam_edges = seams.edges().size();
-  result.seam_before = seams.mismatch_degrees(dequantise_normals(quantise_normals(kept)), settings.space);
-  result.seam_after = seams.mismatch_degrees(shown, settings.space);
-  result.seam_change_degrees_rms = angles_between(kept, map, raster).rms;
-  result.map_error = measure_map_error(high, atlas, shown, settings.space);
+  measure_maps({kept, map}, seams, atlas, raster, result);
+  result.map_error = measure_map_error(high, atlas, dequantise_normals(result.normal), settings.space);
   if (result.albedo_map)
     result.albedo_map->error =
         measure_albedo_error(high, albedo, atlas, linear_from_srgb_bytes(result.albedo_map->picture));

@@ -2,13 +2,14 @@
 #include "report/tradeoff.h"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 #include <map>
+#include <optional>
 
 #include "base/errors.h"
 #include "base/json.h"
 #include "report/labels.h"
+#include "report/log_axis.h"
 
 namespace kiln {
 
@@ -17,6 +18,7 @@ namespace {
 // Size of the plot, in its own units.
 constexpr double plot_width = 1000, plot_height = 460;
 constexpr double left = 64, right = plot_width - 24, top = 24, bottom = plot_height - 56;
+constexpr LogAxis::Layout axis_layout{1.35, 2e3};
 constexpr double mark = 5;  // half of a mark's width
 
 StoredWay read_way(const Json& json, double texels) {
@@ -36,33 +38,6 @@ bool is_same(const StoredWay& a, const StoredWay& b) {
 }
 
 bool is_plottable(const StoredWay& way) { return way.error > 0 && way.bytes_per_texel > 0; }
-
-/// Logarithmic axis from `low` to `high`, which lie at `at_low` and `at_high`.
-struct Axis {
-  double low, high, at_low, at_high;
-
-  double place(double value) const {
-    return at_low + (at_high - at_low) * std::log(value / low) / std::log(high / low);
-  }
-
-  /// Returns 1, 2 and 5 times powers of ten; only the powers where those would be too many.
-  std::vector<double> ticks() const {
-    std::vector<double> all;
-    const bool is_wide = high / low > 2e3;
-    for (int power = static_cast<int>(std::floor(std::log10(low))); std::pow(10.0, power) <= high; ++power)
-      for (const int times : {1, 2, 5})
-        if (const double value = times * std::pow(10.0, power);
-            value >= low && value <= high && (times == 1 || !is_wide))
-          all.push_back(value);
-    return all;
-  }
-};
-
-Axis axis_over(const std::vector<double>& values, double at_low, double at_high) {
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  constexpr double margin = 1.35;  // factor beyond the least and greatest value
-  return {*least / margin, *most * margin, at_low, at_high};
-}
 
 std::string text_at(double x, double y, const std::string& anchor, const std::string& text, const char* kind = "") {
   return fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='{}' class='{}'>{}</text>\n", x, y, anchor, kind,
@@ -107,6 +82,108 @@ std::string legend() {
          "</p>\n";
 }
 
+/// What was tried that can be plotted, by scheme and number of clusters.
+using Series = std::map<std::pair<std::string, int>, std::vector<StoredWay>>;
+
+/// Both axes of the plot.
+struct Axes {
+  LogAxis across, up;
+
+  double x(const StoredWay& way) const { return across.place(way.error); }
+  double y(const StoredWay& way) const { return up.place(way.bytes_per_texel); }
+};
+
+Series series_of(const Tradeoff& tradeoff) {
+  Series series;
+  for (const StoredWay& way : tradeoff.tried)
+    if (way.scheme != "planes" && is_plottable(way))
+      series[{way.scheme, way.clusters}].push_back(is_same(way, tradeoff.chosen) ? tradeoff.chosen : way);
+  return series;
+}
+
+/// Returns the axes over all that is plotted; nothing where nothing is.
+std::optional<Axes> axes_over(const Tradeoff& tradeoff) {
+  std::vector<double> errors, bytes;
+  const auto note = [&](const StoredWay& way) {
+    if (!is_plottable(way)) return;
+    errors.push_back(way.error);
+    bytes.push_back(way.bytes_per_texel);
+  };
+  for (const StoredWay& way : tradeoff.tried)
+    if (way.scheme != "planes") note(way);
+  note(tradeoff.plain);
+  note(tradeoff.chosen);
+  if (errors.empty()) return std::nullopt;
+  if (tradeoff.target_error > 0) errors.push_back(tradeoff.target_error);
+  return Axes{{errors, left, right, axis_layout}, {bytes, bottom, top, axis_layout}};
+}
+
+std::string drawn_axes(const Axes& axes, double target_error) {
+  std::string svg;
+  for (const double tick : axes.across.ticks()) {
+    const double x = axes.across.place(tick);
+    svg += fmt::format("<path class=grid d='M{:.1f} {}V{}'/>", x, top, bottom) +
+           text_at(x, bottom + 20, "middle", fmt::format("{:g} %", 100 * tick));
+  }
+  for (const double tick : axes.up.ticks()) {
+    const double y = axes.up.place(tick);
+    svg += fmt::format("<path class=grid d='M{} {:.1f}H{}'/>", left, y, right) +
+           text_at(left - 10, y + 4, "end", fmt::format("{:g}", tick));
+  }
+  svg +=
+      text_at((left + right) / 2, plot_height - 10, "middle", "expected relighting error against the input", "title");
+  svg += text_at(left, top - 9, "start", "bytes per covered texel", "title");
+  if (target_error > 0) {
+    const double x = axes.across.place(target_error);
+    svg += fmt::format("<path class=target d='M{:.1f} {}V{}'/>", x, top, bottom) +
+           text_at(x + 6, top + 14, "start", "error asked for");
+  }
+  return svg;
+}
+
+/// Draws all candidates, one line for each number of clusters.
+std::string drawn_series(Series series, const StoredWay& chosen, const Axes& axes) {
+  std::string svg;
+  for (auto& [key, ways] : series) {
+    std::stable_sort(ways.begin(), ways.end(),
+                     [](const StoredWay& a, const StoredWay& b) { return a.components < b.components; });
+    std::string line;
+    for (const StoredWay& way : ways)
+      line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? "M" : "L", axes.x(way), axes.y(way));
+    svg += fmt::format("<path class='line {}' d='{}'/>\n", family_of(ways.front()), line);
+  }
+  for (const auto& [key, ways] : series) {
+    for (const StoredWay& way : ways)
+      if (!is_same(way, chosen)) svg += marked(way, axes.x(way), axes.y(way), mark, way.is_feasible ? "" : "beyond");
+    const StoredWay& end = ways.front();
+    const double x = axes.x(end), y = axes.y(end);
+    const bool has_room = x < right - 100;
+    if (!is_same(end, chosen))
+      svg += text_at(has_room ? x + 11 : x, has_room ? y + 4 : y - 12, has_room ? "start" : "end",
+                     key.second == 1 ? "one basis" : fmt::format("{} clusters", key.second), family_of(end));
+  }
+  return svg;
+}
+
+/// Draws the two that matter: plain planes, and what was chosen.
+std::string drawn_ends(const Tradeoff& tradeoff, const Axes& axes) {
+  std::string svg;
+  if (is_plottable(tradeoff.plain)) {
+    const double x = axes.x(tradeoff.plain), y = axes.y(tradeoff.plain);
+    svg += marked(tradeoff.plain, x, y, mark, "") +
+           text_at(x + 13, y + 4, "start", fmt::format("{} planes of 8 bits", tradeoff.plain.components), "strong");
+  }
+  if (is_plottable(tradeoff.chosen)) {
+    const double x = axes.x(tradeoff.chosen), y = axes.y(tradeoff.chosen);
+    const bool has_room = x > left + 220;
+    const std::string anchor = has_room ? "end" : "start";
+    const double text_x = has_room ? x - 16 : x, text_y = has_room ? y - 2 : y + 24;
+    svg += marked(tradeoff.chosen, x, y, 1.5 * mark, "chosen") + text_at(text_x, text_y, anchor, "chosen", "strong") +
+           text_at(text_x, text_y + 17, anchor, tradeoff.chosen.name());
+  }
+  return svg;
+}
+
 }  // namespace
 
 std::string StoredWay::name() const {
@@ -131,87 +208,14 @@ Tradeoff read_tradeoff(const StageRecord& compress) {
 }
 
 std::string tradeoff_plot(const Tradeoff& tradeoff) {
-  std::vector<double> errors, bytes;
-  std::map<std::pair<std::string, int>, std::vector<StoredWay>> series;  // by scheme and clusters
-  const auto note = [&](const StoredWay& way) {
-    if (!is_plottable(way)) return;
-    errors.push_back(way.error);
-    bytes.push_back(way.bytes_per_texel);
-  };
-  for (const StoredWay& way : tradeoff.tried) {
-    if (way.scheme == "planes" || !is_plottable(way)) continue;
-    note(way);
-    series[{way.scheme, way.clusters}].push_back(is_same(way, tradeoff.chosen) ? tradeoff.chosen : way);
-  }
-  note(tradeoff.plain);
-  note(tradeoff.chosen);
-  if (errors.empty()) return "<p class=note>Nothing that was tried has an error to plot.</p>\n";
-  if (tradeoff.target_error > 0) errors.push_back(tradeoff.target_error);
-  const Axis across = axis_over(errors, left, right), up = axis_over(bytes, bottom, top);
-
-  std::string svg = fmt::format(
-      "<svg class=tradeoff viewBox='0 0 {} {}' role=img aria-label='Bytes per covered texel against expected "
-      "relighting "
-      "error'>\n",
-      plot_width, plot_height);
-  // Step 1: draw the axes.
-  for (const double tick : across.ticks()) {
-    const double x = across.place(tick);
-    svg += fmt::format("<path class=grid d='M{:.1f} {}V{}'/>", x, top, bottom) +
-           text_at(x, bottom + 20, "middle", fmt::format("{:g} %", 100 * tick));
-  }
-  for (const double tick : up.ticks()) {
-    const double y = up.place(tick);
-    svg += fmt::format("<path class=grid d='M{} {:.1f}H{}'/>", left, y, right) +
-           text_at(left - 10, y + 4, "end", fmt::format("{:g}", tick));
-  }
-  svg +=
-      text_at((left + right) / 2, plot_height - 10, "middle", "expected relighting error against the input", "title");
-  svg += text_at(left, top - 9, "start", "bytes per covered texel", "title");
-  if (tradeoff.target_error > 0) {
-    const double x = across.place(tradeoff.target_error);
-    svg += fmt::format("<path class=target d='M{:.1f} {}V{}'/>", x, top, bottom) +
-           text_at(x + 6, top + 14, "start", "error asked for");
-  }
-
-  // Step 2: draw all candidates, one line for each number of clusters.
-  for (auto& [key, ways] : series) {
-    std::stable_sort(ways.begin(), ways.end(),
-                     [](const StoredWay& a, const StoredWay& b) { return a.components < b.components; });
-    std::string line;
-    for (const StoredWay& way : ways)
-      line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? "M" : "L", across.place(way.error),
-                          up.place(way.bytes_per_texel));
-    svg += fmt::format("<path class='line {}' d='{}'/>\n", family_of(ways.front()), line);
-  }
-  for (const auto& [key, ways] : series) {
-    for (const StoredWay& way : ways)
-      if (!is_same(way, tradeoff.chosen))
-        svg +=
-            marked(way, across.place(way.error), up.place(way.bytes_per_texel), mark, way.is_feasible ? "" : "beyond");
-    const StoredWay& end = ways.front();
-    const double x = across.place(end.error), y = up.place(end.bytes_per_texel);
-    const bool has_room = x < right - 100;
-    if (!is_same(end, tradeoff.chosen))
-      svg += text_at(has_room ? x + 11 : x, has_room ? y + 4 : y - 12, has_room ? "start" : "end",
-                     key.second == 1 ? "one basis" : fmt::format("{} clusters", key.second), family_of(end));
-  }
-
-  // Step 3: draw the two that matter.
-  if (is_plottable(tradeoff.plain)) {
-    const double x = across.place(tradeoff.plain.error), y = up.place(tradeoff.plain.bytes_per_texel);
-    svg += marked(tradeoff.plain, x, y, mark, "") +
-           text_at(x + 13, y + 4, "start", fmt::format("{} planes of 8 bits", tradeoff.plain.components), "strong");
-  }
-  if (is_plottable(tradeoff.chosen)) {
-    const double x = across.place(tradeoff.chosen.error), y = up.place(tradeoff.chosen.bytes_per_texel);
-    const bool has_room = x > left + 220;
-    const std::string anchor = has_room ? "end" : "start";
-    const double text_x = has_room ? x - 16 : x, text_y = has_room ? y - 2 : y + 24;
-    svg += marked(tradeoff.chosen, x, y, 1.5 * mark, "chosen") + text_at(text_x, text_y, anchor, "chosen", "strong") +
-           text_at(text_x, text_y + 17, anchor, tradeoff.chosen.name());
-  }
-  return svg + "</svg>\n" + legend();
+  const std::optional<Axes> axes = axes_over(tradeoff);
+  if (!axes) return "<p class=note>Nothing that was tried has an error to plot.</p>\n";
+  return fmt::format(
+             "<svg class=tradeoff viewBox='0 0 {} {}' role=img aria-label='Bytes per covered texel against expected "
+             "relighting error'>\n",
+             plot_width, plot_height) +
+         drawn_axes(*axes, tradeoff.target_error) + drawn_series(series_of(tradeoff), tradeoff.chosen, *axes) +
+         drawn_ends(tradeoff, *axes) + "</svg>\n" + legend();
 }
 
 std::string tradeoff_table(const Tradeoff& tradeoff) {

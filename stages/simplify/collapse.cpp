@@ -511,7 +511,7 @@ CollapseSequence collapse_edges_in_two_steps(TriangleMesh mesh, int quick_faces,
   if (first.faces_after(0) <= settings.faces) return first;
   std::vector<VertexPair> features = find_feature_edges(first.start, settings.crease_degrees, settings.feature_edges);
   std::vector<VertexWeight> weights = to_vertex_weights(first.start, settings.vertex_weights);
-  collapse_quickly(first, features, weights, quick_faces, [&](double fraction) { progress(0.2 * fraction); });
+  collapse_quickly(first, features, weights, quick_faces, part_of(progress, 0, 0.2));
   first.close_count = first.collapses.size();
   if (first.collapses.empty()) {
     Collapser(first, features, std::move(weights), settings, first.start, progress).run();

@@ -102,10 +102,4 @@ std::vector<Eigen::Vector3f> nearest_colors(const TriangleMesh& mesh, const Near
   return colors;
 }
 
-Json repairs_to_json(const MeshRepairs& repairs) {
-  Json json = Json::object();
-  for (const auto& [name, count] : MeshRepairs::kinds()) json[name] = repairs.*count;
-  return json;
-}
-
 }  // namespace kiln

@@ -6,8 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "base/json_fwd.h"
-#include "mesh/mesh_repair.h"
 #include "mesh/nearest_surface.h"
 #include "mesh/triangle_mesh.h"
 
@@ -48,8 +46,5 @@ class LowFile {
 /// triangle by barycentric coordinates.
 std::vector<Eigen::Vector3f> nearest_colors(const TriangleMesh& mesh, const NearestSurface& surface,
                                             const std::vector<Eigen::Vector3f>& positions);
-
-/// Writes the counts of repairs, by kind.
-Json repairs_to_json(const MeshRepairs& repairs);
 
 }  // namespace kiln

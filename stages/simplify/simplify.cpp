@@ -154,13 +154,12 @@ SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settin
   std::vector<double> weights;
   if (settings.aware == SimplifyAwareness::transfer) weights = transfer_weights(manifold);
   const Stopwatch reduce_stopwatch;
-  const ProgressFunction reduce_progress = [&](double fraction) { progress(0.9 * fraction); };
   const CandidateDistance distance = [&](const TriangleMesh& candidate) {
     const TriangleMesh form = write(candidate);
     return by_error ? distance_within(measured, form, settings.max_error) : mesh_distance(measured, form);
   };
   const auto reduce = by_error ? reduce_to_error : reduce_to_faces;
-  const Reduced low = reduce(manifold, settings, distance, weights, features, reduce_progress);
+  const Reduced low = reduce(manifold, settings, distance, weights, features, part_of(progress, 0, 0.9));
   result.collapse_seconds = reduce_stopwatch.seconds();
   result.mesh = write(shaded(low, high.frame));
 

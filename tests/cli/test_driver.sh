@@ -35,33 +35,52 @@ pipeline() { # DIRECTIONS ASSET...
   for asset; do echo "  $asset"; done
 }
 
-# One build at a time: the second waits, says so, and finds everything done.
+# One build at a time: a build waits while another holds the lock, and says so.
+pipeline 64 'a: {mesh: ball.obj}' >pipeline.yaml
+$kiln build --until simplify --quiet
+exec 9>>out/.kiln/lock
+flock 9
+$kiln build --until normals 2>waiting 9>&- & building=$!
+for _ in $(seq 500); do grep -q "another build is at work in out" waiting && break; sleep 0.02; done
+grep -q "another build is at work in out" waiting || fail "a build beside another: $(cat waiting)"
+[ ! -e out/a/atlas.json ] || fail "a build did not wait"
+exec 9>&-
+wait $building || fail "a build that has waited: $(cat waiting)"
+[ -e out/a/normals/normals.json ] || fail "no normals"
+
+# A build holds the lock itself; the one after it finds everything done.
 pipeline 10000 'a: {mesh: ball.obj}' >pipeline.yaml
-$kiln build --until normals --quiet
 $kiln build --until bake 2>first & building=$!
-for _ in $(seq 200); do grep -q process out/.kiln/lock && ! flock -n out/.kiln/lock true && break; sleep 0.02; done
-$kiln build --until bake 2>second
+held=
+for _ in $(seq 500); do
+  if grep -q process out/.kiln/lock && ! flock -n out/.kiln/lock true; then held=yes; break; fi
+  sleep 0.02
+done
+[ -n "$held" ] || fail "a build without a lock"
+$kiln build --until bake 2>second || fail "$(cat second)"
 wait $building
-if grep -q "another build is at work in out (process" second; then grep -q "nothing to do" second || fail "the second built as well"; fi
+grep -q "nothing to do" second || fail "the second built as well: $(cat second)"
 [ -e out/a/prt/bake.json ] || fail "no bake"
 
-# An interrupted bake resumes by itself, to the same bytes; a checkpoint of other settings is not used.
-pipeline 30000 'a: {mesh: ball.obj}' >pipeline.yaml
-status=0
-$kiln build --until bake 2>interrupted & building=$!
-sleep 1.5
-kill -TERM $building 2>/dev/null || true
-wait $building || status=$?
-[ $status -eq 143 ] || [ $status -eq 0 ] || fail "exit status $status of a build that was to be stopped: $(cat interrupted)"
-if [ -e out/a/prt.checkpoint ]; then # otherwise the machine was so fast that nothing was left to stop
-  [ $status -eq 143 ] || fail "exit status $status of a build that was stopped"
-  $kiln build --until bake 2>resumed
-  grep -q "bake goes on from its checkpoint" resumed || fail "$(cat resumed)"
-  [ ! -e out/a/prt.checkpoint ] || fail "the checkpoint is still there"
-  cp -r out/a/prt resumed_prt
-  $kiln build --until bake --force --quiet
-  diff -r --exclude bake.json resumed_prt out/a/prt || fail "other bytes than those of one run"
-fi
+# An interrupted bake resumes by itself, to the same bytes; a checkpoint of other settings is not used. Bakes of more
+# and more directions are interrupted, until one leaves a checkpoint.
+for directions in 30000 120000 480000; do
+  pipeline $directions 'a: {mesh: ball.obj}' >pipeline.yaml
+  status=0
+  $kiln build --until bake 2>interrupted & building=$!
+  sleep 1.5
+  kill -TERM $building 2>/dev/null || true
+  wait $building || status=$?
+  [ $status -eq 143 ] || [ $status -eq 0 ] || fail "exit status $status of a build that was to be stopped: $(cat interrupted)"
+  [ ! -e out/a/prt.checkpoint ] || break
+done
+[ $status -eq 143 ] && [ -e out/a/prt.checkpoint ] || fail "exit status $status of a build that was stopped, or no checkpoint"
+$kiln build --until bake 2>resumed || fail "$(cat resumed)"
+grep -q "bake goes on from its checkpoint" resumed || fail "$(cat resumed)"
+[ ! -e out/a/prt.checkpoint ] || fail "the checkpoint is still there"
+cp -r out/a/prt resumed_prt
+$kiln build --until bake --force --quiet
+diff -r --exclude bake.json resumed_prt out/a/prt || fail "other bytes than those of one run"
 mkdir -p out/a/prt.checkpoint
 echo nonsense >out/a/prt.checkpoint/slab_0000.sums
 pipeline 64 'a: {mesh: ball.obj}' >pipeline.yaml

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """test_plan.py PROGRAMS SOURCES: `kiln plan` chooses settings that keep an error, `kiln build --plan` builds them, and the
 report sets what was predicted beside what it measures."""
-import json, pathlib, subprocess, sys, tempfile
+import functools, json, pathlib, sys, tempfile
 import yaml
+from run_kiln import kiln
 
-programs, sources = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+sources = pathlib.Path(sys.argv[2]).resolve()
 # A soft sky, so that few bands serve.
 PIPELINE = """
 output: out
@@ -23,14 +24,9 @@ assets:
 """
 
 
-def run(*words, status=0):
-    result = subprocess.run([programs / "kiln", *words], capture_output=True, text=True, cwd=folder)
-    assert result.returncode == status, f"{words} ended with {result.returncode}: {result.stderr}"
-    return result
-
-
 with tempfile.TemporaryDirectory() as name:
     folder = pathlib.Path(name)
+    run = functools.partial(kiln, folder=folder)
     (folder / "post.obj").write_text((sources / "examples" / "post.obj").read_text())
     (folder / "pipeline.yaml").write_text(PIPELINE)
 

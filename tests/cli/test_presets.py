@@ -1,20 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """test_presets.py PROGRAMS: presets keep what they promise on meshes that their sweep (docs/tradeoffs.md) did not use."""
-import json, pathlib, subprocess, sys, tempfile
+import json, pathlib, tempfile
+from run_kiln import kiln
 
-programs = pathlib.Path(sys.argv[1]).resolve()
 ARCHIVE = "/usr/share/doc/libcgal-dev/data.tar.gz"
 MESHES = {"hand": ["draft", "standard", "final"], "elephant": ["draft", "standard"]}
 
-
-def kiln(*words):
-    done = subprocess.run([programs / "kiln", *words], capture_output=True, text=True)
-    assert done.returncode == 0, f"{words} ended with {done.returncode}: {done.stderr}"
-    return done.stdout
-
-
-promised = {preset["name"]: preset["error"] for preset in json.loads(kiln("presets", "--json"))["presets"]}
+promised = {preset["name"]: preset["error"] for preset in json.loads(kiln("presets", "--json").stdout)["presets"]}
 assert list(promised) == ["draft", "standard", "final"], promised
 assert promised["draft"] > promised["standard"] > promised["final"], promised
 with tempfile.TemporaryDirectory() as name:

@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """test_sweep.py PROGRAMS SOURCES: `kiln sweep` measures a grid, reuses what a setting does not touch, and a second
 sweep builds nothing."""
-import csv, json, pathlib, subprocess, sys, tempfile
+import csv, json, pathlib, sys, tempfile
 import jsonschema
+from run_kiln import kiln
 
-programs, sources = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+sources = pathlib.Path(sys.argv[2]).resolve()
 PIPELINE = """
 output: out
 defaults:
@@ -20,19 +21,13 @@ assets:
 """
 
 
-def run(*words, status=0):
-    result = subprocess.run([programs / "kiln", *words], capture_output=True, text=True)
-    assert result.returncode == status, f"{words} ended with {result.returncode}: {result.stderr}"
-    return result
-
-
 with tempfile.TemporaryDirectory() as folder:
     folder = pathlib.Path(folder)
     (folder / "post.obj").write_text((sources / "examples" / "post.obj").read_text())
     (folder / "pipeline.yaml").write_text(PIPELINE)
     pipeline = str(folder / "pipeline.yaml")
     sweep = ["sweep", pipeline, "--until", "bake", "--set", "bake.directions=16,256", "--set", "atlas.size=16,32"]
-    first = run(*sweep, "--json")
+    first = kiln(*sweep, "--json")
     results = json.loads(first.stdout)
     jsonschema.validate(results, json.loads((sources / "docs/schema/sweep.schema.json").read_text()))
     points = results["results"]
@@ -40,7 +35,7 @@ with tempfile.TemporaryDirectory() as folder:
     grid = {(p["settings"]["atlas.size"], p["settings"]["bake.directions"]): p for p in points[1:]}
     assert len(grid) == 4
     for point in points:
-        assert point["status"] == 0 and point["error"] > 0 and point["cpu_seconds"] > 0 and point["bytes"] > 0, point
+        assert point["status"] == 0 and point["error"] > 0 and point["cpu_seconds"] > 0 and point["bytes"] > 0, (point, first.stderr)
     for size in ("16", "32"):
         assert grid[size, "256"]["error"] < grid[size, "16"]["error"], "more directions, more error"
     assert grid["32", "16"]["bytes"] > grid["16", "16"]["bytes"]
@@ -56,19 +51,19 @@ with tempfile.TemporaryDirectory() as folder:
     # A second sweep bakes nothing and says the same.
     bake = out / "build" / "post" / "prt" / "bake.json"
     before = bake.stat().st_mtime_ns
-    second = run(*sweep, "--json")
+    second = kiln(*sweep, "--json")
     assert bake.stat().st_mtime_ns == before, "the second sweep baked"
     assert json.loads(second.stdout) == results
     assert "5 measured earlier" in second.stderr, second.stderr
 
     # What an earlier sweep has left of later stages is not of these points.
-    whole = json.loads(run("sweep", pipeline, "--set", "bake.directions=32", "--json").stdout)["results"]
+    whole = json.loads(kiln("sweep", pipeline, "--set", "bake.directions=32", "--json").stdout)["results"]
     assert "report.relative_l2" in whole[-1]["metrics"]
-    again = json.loads(run("sweep", pipeline, "--until", "bake", "--set", "bake.directions=24", "--json").stdout)["results"]
+    again = json.loads(kiln("sweep", pipeline, "--until", "bake", "--set", "bake.directions=24", "--json").stdout)["results"]
     assert not [name for name in again[-1]["metrics"] if name.startswith("report.")], again[-1]
 
     # A point that cannot be built is noted, and the others are measured.
-    result = run("sweep", pipeline, "--until", "bake", "--set", "atlas.size=32", "--set", "atlas.gutter=2,64", "--json")
+    result = kiln("sweep", pipeline, "--until", "bake", "--set", "atlas.size=32", "--set", "atlas.gutter=2,64", "--json")
     statuses = [point["status"] for point in json.loads(result.stdout)["results"]]
     assert statuses[:2] == [0, 0] and statuses[2] != 0, statuses
     failed = json.loads(result.stdout)["results"][2]
@@ -76,5 +71,5 @@ with tempfile.TemporaryDirectory() as folder:
 
     for words, said in ((["--set", "bake.direction=3"], "directions"), (["--set", "bake.bits=9"], "bits"),
                         (["--set", "bake.bits=8", "--set", "bake.bits=16"], "twice"), (["--until", "cook"], "stage")):
-        result = run("sweep", pipeline, *words, status=2)
+        result = kiln("sweep", pipeline, *words, status=2)
         assert said in result.stderr, result.stderr

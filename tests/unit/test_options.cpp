@@ -3,6 +3,7 @@
 
 #include "base/errors.h"
 #include "base/json.h"
+#include "base/numbers.h"
 #include "base/options.h"
 
 namespace kiln {
@@ -93,12 +94,23 @@ TEST(OptionSet, LeavesOutThoseOfSomeNames) {
   EXPECT_EQ(width, 640);
 }
 
-TEST(Colors, AreOneNumberOrThree) {
-  EXPECT_EQ(parse_colors("0.5"), (std::array<double, 3>{0.5, 0.5, 0.5}));
-  EXPECT_EQ(parse_colors("1, 2e-3,0"), (std::array<double, 3>{1, 2e-3, 0}));
-  EXPECT_EQ(parse_colors("1;2;3"), (std::array<double, 3>{1, 2, 3}));
-  for (const char* text : {"", "red", "1,2", "1,2,3,4", "1,,3", "1,2,", "nan", "1,2,inf", "1,2,3x"})
-    EXPECT_FALSE(parse_colors(text)) << text;
+TEST(Colors, AreOneNumberOrThreeWithinTheirRange) {
+  using Color = std::array<double, 3>;
+  EXPECT_EQ(color_within("0.5", 0, 1), (Color{0.5, 0.5, 0.5}));
+  EXPECT_EQ(color_within("1, 2e-3,0 ", 0, 1), (Color{1, 2e-3, 0}));
+  EXPECT_EQ(color_within("1;2;3", 1, 3), (Color{1, 2, 3}));
+  for (const char* text : {"", "red", "1,2", "1,2,3,4", "1,,3", "1,2,", "1,2,3,", "nan", "1,2,inf", "1,2,3x", "1 2,1,1",
+                           "-0.1", "1,2,9.01"})
+    EXPECT_FALSE(color_within(text, 0, 9)) << text;
+  EXPECT_EQ(parse_colors("-1;2;3e300"), (Color{-1, 2, 3e300}));
+  EXPECT_FALSE(parse_colors("1,2,inf"));
+  EXPECT_EQ(parse_color("sky", "0.25;0;1", 0, 1), (std::array<float, 3>{0.25f, 0, 1}));
+  try {
+    parse_color("sky", "1,2", 0, 1);
+    FAIL() << "two numbers are a colour";
+  } catch (const WrongUsage& error) {
+    EXPECT_STREQ(error.what(), "sky: found '1,2'; expected one number or R,G,B, each 0 to 1");
+  }
 }
 
 }  // namespace

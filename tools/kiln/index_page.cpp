@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/json.h"
+#include "kiln/page_frame.h"
 #include "kiln/summary.h"
 #include "report/labels.h"
 
@@ -13,15 +14,9 @@ namespace kiln {
 
 namespace {
 
-// Style sheet, in the colours of the reports.
+// Rules of this page.
 constexpr const char* style = R"css(
-:root { color-scheme: light; --ink: #1d1c22; --soft: #65616e; --line: #dedbe2; --paper: #fbfaf8; --card: #fff;
-  --good: #2f6b4f; --bad: #a8322a; --accent: #8a4b2a; }
-* { box-sizing: border-box; }
-body { margin: 0; background: var(--paper); color: var(--ink); font: 15px/1.5 system-ui, sans-serif; }
-main { max-width: 1180px; margin: 0 auto; padding: 32px 24px 48px; }
-h1 { margin: 0; font-size: 28px; letter-spacing: -0.01em; }
-.summary { margin: 4px 0 28px; color: var(--soft); }
+.summary { margin: 4px 0 28px; }
 .assets { display: grid; gap: 20px; grid-template-columns: repeat(auto-fill, minmax(min(100%, 260px), 1fr)); }
 .asset { display: flex; flex-direction: column; min-width: 0; overflow: hidden; background: var(--card);
   border: 1px solid var(--line); border-radius: 10px; color: inherit; text-decoration: none; }
@@ -34,10 +29,8 @@ dl { display: grid; grid-template-columns: auto auto; gap: 1px 12px; margin: 10p
 dt { color: var(--soft); }
 dd { margin: 0; text-align: right; font-variant-numeric: tabular-nums; }
 .badge { font-size: 13px; font-weight: 600; }
-.good { color: var(--good); } .bad { color: var(--bad); } .plain { color: var(--soft); }
+.plain { color: var(--soft); }
 .missed { margin: 6px 0 0; padding: 0; list-style: none; font-size: 13px; color: var(--bad); overflow-wrap: anywhere; }
-footer { margin-top: 32px; color: var(--soft); font-size: 13px; }
-@media (max-width: 560px) { main { padding: 20px 14px 32px; } }
 )css";
 
 /// Finds a metric; null if the stage did not write it.
@@ -110,25 +103,6 @@ std::string card(const IndexEntry& entry) {
 
 }  // namespace
 
-std::string html_escaped(const std::string& text) {
-  std::string html;
-  for (const char c : text) {
-    if (c == '&')
-      html += "&amp;";
-    else if (c == '<')
-      html += "&lt;";
-    else if (c == '>')
-      html += "&gt;";
-    else if (c == '\'')
-      html += "&#39;";
-    else if (c == '"')
-      html += "&quot;";
-    else
-      html += c;
-  }
-  return html;
-}
-
 std::string url_escaped(const std::string& name) {
   std::string url;
   for (const char c : name) {
@@ -155,12 +129,8 @@ std::string index_html(const std::string& pipeline, const std::vector<IndexEntry
   if (built > 0)
     summary += missing == 0 ? ", none misses a budget"
                             : fmt::format(", {} miss{} a budget", missing, missing == 1 ? "es" : "");
-  return fmt::format(
-      "<!doctype html>\n<html lang=en>\n<meta charset=utf-8>\n"
-      "<meta name=viewport content='width=device-width, initial-scale=1'>\n<title>{0} – Kiln</title>\n"
-      "<style>{1}</style>\n<main>\n<h1>{0}</h1>\n<p class=summary>{2}</p>\n<div class=assets>\n{3}</div>\n"
-      "<footer>Kiln {4}</footer>\n</main>\n</html>\n",
-      html_escaped(pipeline), style, summary, cards, KILN_VERSION);
+  const std::string name = html_escaped(pipeline);
+  return framed({name, name, summary, style, "<div class=assets>\n" + cards + "</div>\n"});
 }
 
 }  // namespace kiln

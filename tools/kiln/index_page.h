@@ -20,9 +20,6 @@ struct IndexEntry {
 /// relative, so the folder may be moved.
 std::string index_html(const std::string& pipeline, const std::vector<IndexEntry>& entries);
 
-/// Escapes text for HTML.
-std::string html_escaped(const std::string& text);
-
 /// Escapes a file name for a URL.
 std::string url_escaped(const std::string& name);
 

@@ -25,9 +25,8 @@ void for_each_slab(const Receivers& receivers, const ProgressFunction& progress,
   const auto all = static_cast<double>(receivers.size());
   for (std::size_t first = 0; first < receivers.size(); first += slab_receivers) {
     const std::size_t count = std::min(slab_receivers, receivers.size() - first);
-    visit(
-        first, Receivers{receivers.positions.subspan(first, count), receivers.normals.subspan(first, count)},
-        [&](double fraction) { progress((static_cast<double>(first) + fraction * static_cast<double>(count)) / all); });
+    visit(first, Receivers{receivers.positions.subspan(first, count), receivers.normals.subspan(first, count)},
+          part_of(progress, static_cast<double>(first) / all, static_cast<double>(first + count) / all));
   }
 }
 
@@ -62,15 +61,15 @@ void add_part(GatherEngine& engine, const Receivers& receivers, TracedReceivers&
 void add_gathered(GatherEngine& engine, const Receivers& receivers, std::span<TracedReceivers> traced,
                   std::span<const Eigen::Vector3f> directions, std::vector<TransferVectors>& channels,
                   const ProgressFunction& progress) {
-  std::size_t all = 0, done = 0;
-  for (const TracedReceivers& slab : traced) all += slab.order.size();
+  std::size_t done = 0;
+  double all = 0;
+  for (const TracedReceivers& slab : traced) all += static_cast<double>(slab.order.size());
   const std::size_t most = engine.most_receivers() / beam_lanes * beam_lanes;
   for (TracedReceivers& slab : traced)
     for (std::size_t first = 0; first < slab.order.size(); first += most) {
       const std::size_t count = std::min(most, slab.order.size() - first);
-      add_part(engine, receivers, slab, first, count, directions, channels, [&](double fraction) {
-        progress((static_cast<double>(done) + fraction * static_cast<double>(count)) / static_cast<double>(all));
-      });
+      add_part(engine, receivers, slab, first, count, directions, channels,
+               part_of(progress, static_cast<double>(done) / all, static_cast<double>(done + count) / all));
       done += count;
     }
 }

@@ -54,6 +54,23 @@ std::int64_t blocks_of(std::size_t directions) {
   return static_cast<std::int64_t>((directions + block_directions - 1) / block_directions);
 }
 
+/// Takes up the sums that an earlier run left, if there are any. Throws BadInput where they are of another bake.
+void take_up(const fs::path& path, SumsFile& file) {
+  if (!fs::exists(path)) return;
+  SumsFile earlier = read_sums(path);
+  if (earlier.key != file.key || earlier.first_receiver != file.first_receiver ||
+      earlier.sums.values.size() != file.sums.values.size() || earlier.blocks_all != file.blocks_all)
+    throw BadInput(path.string(), "is a checkpoint of a bake with other inputs or settings", "one of the same command",
+                   "repeat that command, or bake without --resume");
+  file = std::move(earlier);
+}
+
+/// Chooses how many blocks the next step integrates, so that it takes about a second.
+std::int64_t next_step(std::int64_t blocks, double seconds) {
+  if (seconds < step_seconds / 2) return 2 * blocks;
+  return seconds > 2 * step_seconds ? std::max<std::int64_t>(1, blocks / 2) : blocks;
+}
+
 }  // namespace
 
 Shard parse_shard(const std::string& text) {
@@ -180,14 +197,7 @@ SumsFile Integration::sum(std::size_t slab, const Shard& shard, const ProgressFu
   const fs::path path = checkpoints.folder / slab_name(slab);
 
   // Step 1: take up what an earlier run left.
-  if (checkpoints.resume && !checkpoints.folder.empty() && fs::exists(path)) {
-    SumsFile earlier = read_sums(path);
-    if (earlier.key != file.key || earlier.first_receiver != file.first_receiver ||
-        earlier.sums.values.size() != file.sums.values.size() || earlier.blocks_all != file.blocks_all)
-      throw BadInput(path.string(), "is a checkpoint of a bake with other inputs or settings",
-                     "one of the same command", "repeat that command, or bake without --resume");
-    file = std::move(earlier);
-  }
+  if (checkpoints.resume && !checkpoints.folder.empty()) take_up(path, file);
   if (file.complete()) return file;
 
   // Step 2: integrate in steps of about a second, each of whole blocks, with a checkpoint now and then.
@@ -209,17 +219,18 @@ SumsFile Integration::sum(std::size_t slab, const Shard& shard, const ProgressFu
     const auto begin = static_cast<std::size_t>(first * block_directions);
     const std::size_t size = std::min(static_cast<std::size_t>(count * block_directions), directions.size() - begin);
     const Stopwatch stopwatch;
+    const auto all = static_cast<double>(file.blocks_all);
+    const ProgressFunction part =
+        part_of(progress, static_cast<double>(first) / all, static_cast<double>(first + count) / all);
     engine().add(std::span(directions).subspan(begin, size), [&](double fraction) {
       try {
-        progress((static_cast<double>(first) + fraction * static_cast<double>(count)) /
-                 static_cast<double>(file.blocks_all));
+        part(fraction);
       } catch (const Interrupted&) {
         interrupted = true;  // stop after this step, whose sums are then whole
       }
     });
     blocks_added += count;
-    if (stopwatch.seconds() < step_seconds / 2) step_blocks *= 2;
-    if (stopwatch.seconds() > 2 * step_seconds) step_blocks = std::max<std::int64_t>(1, step_blocks / 2);
+    step_blocks = next_step(step_blocks, stopwatch.seconds());
     const bool due = since_checkpoint.seconds() >= checkpoints.seconds;
     if (!checkpoints.folder.empty() && (due || interrupted)) {
       fs::create_directories(checkpoints.folder);

@@ -5,10 +5,12 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 #include <optional>
 
 #include "base/errors.h"
 #include "base/json.h"
+#include "base/numbers.h"
 
 namespace kiln {
 
@@ -33,21 +35,8 @@ std::string Extent::text() const {
 }
 
 std::optional<std::array<double, 3>> parse_colors(const std::string& text) {
-  std::vector<double> values;
-  for (std::string rest = text;;) {
-    const std::size_t end = rest.find_first_of(",;");
-    std::string word = rest.substr(0, end);
-    word.erase(0, word.find_first_not_of(' '));
-    word.erase(word.find_last_not_of(' ') + 1);
-    const std::optional<double> value = parse<double>(word);
-    if (!value || !std::isfinite(*value)) return std::nullopt;
-    values.push_back(*value);
-    if (end == std::string::npos) break;
-    rest.erase(0, end + 1);
-  }
-  if (values.size() == 1) values.resize(3, values[0]);
-  if (values.size() != 3) return std::nullopt;
-  return std::array<double, 3>{values[0], values[1], values[2]};
+  constexpr double largest = std::numeric_limits<double>::max();
+  return color_within(text, -largest, largest);
 }
 
 std::string numbers_text(std::initializer_list<double> numbers) {

@@ -184,33 +184,39 @@ std::vector<CornerPair> pair_sheets(const TriangleMesh& mesh, std::span<const st
   return pairs;
 }
 
-/// Gives every fan of connected triangles a vertex of its own.
-void split_sheets(TriangleMesh& mesh, MeshRepairs& repairs) {
-  // Step 1: find the triangles at each edge, and which of them stay together.
-  const auto corners = static_cast<std::uint32_t>(3 * mesh.triangles.size());
+/// Edges of two or more triangles, by what joins there.
+struct SheetEdges {
+  std::vector<CornerPair> plain;      ///< pairs at edges of two triangles
+  std::vector<SharedEdge> contested;  ///< edges of more triangles
+  std::vector<bool> at_cut;           ///< for each vertex, whether triangles come apart at an edge of it
+};
+
+/// Finds the triangles at each edge, and which of them stay together. Counts the edges where some come apart.
+SheetEdges find_sheet_edges(const TriangleMesh& mesh, const TriangleEdges& edges, MeshRepairs& repairs) {
   const std::span<const Triangle> triangles = mesh.triangles;
-  std::vector<CornerPair> plain;      // pairs at edges of two triangles
-  std::vector<SharedEdge> contested;  // edges of more triangles
-  std::vector<bool> at_cut(mesh.positions.size(), false);
-  const TriangleEdges edges(triangles);
+  SheetEdges found;
+  found.at_cut.resize(mesh.positions.size(), false);
   edges.for_each([&](std::span<const std::uint32_t> sides) {
     if (sides.size() == 1) return;
     if (sides.size() == 2 && run_opposite(triangles, sides[0], sides[1])) {
-      plain.emplace_back(sides[0], sides[1]);
+      found.plain.emplace_back(sides[0], sides[1]);
       return;
     }
     const auto [low, high] = edge_at(triangles, sides[0]);
-    at_cut[low] = at_cut[high] = true;
+    found.at_cut[low] = found.at_cut[high] = true;
     if (sides.size() == 2) {
       ++repairs.unorientable_edges;
     } else {
       ++repairs.nonmanifold_edges;
-      contested.push_back({sides, pair_sheets(mesh, sides)});
+      found.contested.push_back({sides, pair_sheets(mesh, sides)});
     }
   });
+  return found;
+}
 
-  // Step 2: corners connected across pairs become one vertex. A fan that comes back to a contested edge would put too
-  // many triangles on it: no pairs stay together there.
+/// Groups the corners that are connected across pairs; returns the group of each. A fan that comes back to a contested
+/// edge would put too many triangles on it: no pairs stay together there.
+std::vector<std::uint32_t> connect_corners(SheetEdges& edges, std::uint32_t corners) {
   std::vector<std::uint32_t> group;
   for (bool again = true; again;) {
     DisjointSets sets(corners);
@@ -218,12 +224,12 @@ void split_sheets(TriangleMesh& mesh, MeshRepairs& repairs) {
       sets.join(pair.first, next_corner(pair.second));
       sets.join(next_corner(pair.first), pair.second);
     };
-    for (const CornerPair& pair : plain) join(pair);
-    for (const SharedEdge& edge : contested)
+    for (const CornerPair& pair : edges.plain) join(pair);
+    for (const SharedEdge& edge : edges.contested)
       for (const CornerPair& pair : edge.pairs) join(pair);
     group = sets.roots();
     again = false;
-    for (SharedEdge& edge : contested) {
+    for (SharedEdge& edge : edges.contested) {
       std::vector<std::pair<std::uint32_t, std::uint32_t>> directed;
       for (const std::uint32_t corner : edge.corners) directed.emplace_back(group[corner], group[next_corner(corner)]);
       std::sort(directed.begin(), directed.end());
@@ -232,8 +238,16 @@ void split_sheets(TriangleMesh& mesh, MeshRepairs& repairs) {
       again = true;
     }
   }
+  return group;
+}
 
-  // Step 3: the first group of a vertex keeps it, the others get copies.
+/// Gives every fan of connected triangles a vertex of its own: the first group of a vertex keeps it, the others get
+/// copies.
+void split_sheets(TriangleMesh& mesh, MeshRepairs& repairs) {
+  const auto corners = static_cast<std::uint32_t>(3 * mesh.triangles.size());
+  const TriangleEdges all_edges(mesh.triangles);
+  SheetEdges edges = find_sheet_edges(mesh, all_edges, repairs);
+  const std::vector<std::uint32_t> group = connect_corners(edges, corners);
   std::vector<std::uint32_t> vertex_of_group(corners, none_yet), kept_by(mesh.positions.size(), none_yet);
   std::vector<bool> was_split(mesh.positions.size(), false);
   for (std::uint32_t corner = 0; corner < corners; ++corner) {
@@ -246,7 +260,7 @@ void split_sheets(TriangleMesh& mesh, MeshRepairs& repairs) {
       assigned = static_cast<std::uint32_t>(mesh.positions.size());
       mesh.positions.push_back(Eigen::Vector3f(mesh.positions[vertex]));
       if (!mesh.colors.empty()) mesh.colors.push_back(Eigen::Vector3f(mesh.colors[vertex]));
-      if (!was_split[vertex] && !at_cut[vertex]) ++repairs.nonmanifold_vertices;
+      if (!was_split[vertex] && !edges.at_cut[vertex]) ++repairs.nonmanifold_vertices;
       was_split[vertex] = true;
     }
     vertex = assigned;

@@ -7,35 +7,21 @@
 
 #include "base/file_names.h"
 #include "kiln/index_page.h"
+#include "kiln/page_frame.h"
 #include "report/labels.h"
 
 namespace kiln {
 
 namespace {
 
-// Style sheet, in the colours of the reports.
-constexpr const char* style = R"css(
-:root { color-scheme: light; --ink: #1d1c22; --soft: #65616e; --line: #dedbe2; --paper: #fbfaf8; --card: #fff;
-  --good: #2f6b4f; --bad: #a8322a; --accent: #8a4b2a; }
-* { box-sizing: border-box; }
-body { margin: 0; background: var(--paper); color: var(--ink); font: 15px/1.5 system-ui, sans-serif; }
-main { max-width: 1180px; margin: 0 auto; padding: 32px 24px 48px; }
-h1 { margin: 0; font-size: 28px; letter-spacing: -0.01em; }
-h2 { margin: 40px 0 4px; font-size: 20px; overflow-wrap: anywhere; }
-.summary, footer, .note { color: var(--soft); }
-.good { color: var(--good); font-weight: 600; } .bad { color: var(--bad); font-weight: 600; }
+// Rules of this page.
+constexpr const char* comparison_style = R"css(
 .pictures { display: grid; gap: 12px; grid-template-columns: repeat(3, 1fr); margin: 14px 0; }
-figure { margin: 0; background: var(--card); border: 1px solid var(--line); border-radius: 8px; overflow: hidden; }
+figure { overflow: hidden; }
 figure img { display: block; width: 100%; }
 figcaption { padding: 6px 10px; font-size: 13px; color: var(--soft); }
-.scroll { overflow-x: auto; }
-table { border-collapse: collapse; width: 100%; font-size: 14px; }
-th, td { padding: 5px 10px 5px 0; border-bottom: 1px solid var(--line); text-align: left; }
-.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-th { color: var(--soft); font-weight: 600; }
 summary { cursor: pointer; margin: 12px 0; color: var(--accent); }
-footer { margin-top: 40px; font-size: 13px; }
-@media (max-width: 640px) { main { padding: 20px 14px 32px; } .pictures { grid-template-columns: 1fr; } }
+@media (max-width: 640px) { .pictures { grid-template-columns: 1fr; } }
 )css";
 
 /// Order of the kinds on the page, with their names.
@@ -179,15 +165,10 @@ std::string comparison_html(const Gate& gate) {
   const std::string summary =
       failures == 0 ? "<span class=good>✓ nothing fails</span>"
                     : fmt::format("<span class=bad>✗ {} failure{}</span>", failures, failures == 1 ? "" : "s");
-  return fmt::format(
-      "<!doctype html>\n<html lang=en>\n<meta charset=utf-8>\n"
-      "<meta name=viewport content='width=device-width, initial-scale=1'>\n<title>{0} against its baseline – "
-      "Kiln</title>\n"
-      "<style>{1}</style>\n<main>\n<h1>{0} against its baseline</h1>\n<p class=summary>{2}; {3}</p>\n{4}"
-      "<footer>Kiln {5}</footer>\n</main>\n</html>\n",
-      html_escaped(gate.pipeline), style, summary,
-      gate.settings.same_run ? "times are of the same run" : "times are not compared: the baseline is of another run",
-      body, KILN_VERSION);
+  const std::string heading = html_escaped(gate.pipeline) + " against its baseline";
+  const char* times =
+      gate.settings.same_run ? "times are of the same run" : "times are not compared: the baseline is of another run";
+  return framed({heading, heading, summary + "; " + times, comparison_style, body});
 }
 
 Json to_json(const Gate& gate) {

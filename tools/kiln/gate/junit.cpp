@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "kiln/index_page.h"
+#include "kiln/page_frame.h"
 
 namespace kiln {
 

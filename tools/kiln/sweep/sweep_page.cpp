@@ -2,39 +2,24 @@
 #include "kiln/sweep/sweep_page.h"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 
-#include "kiln/index_page.h"
+#include "kiln/page_frame.h"
 #include "report/labels.h"
+#include "report/log_axis.h"
 
 namespace kiln {
 
 namespace {
 
-// Style sheet, in the colours of the reports.
-constexpr const char* style = R"css(
-:root { color-scheme: light; --ink: #1d1c22; --soft: #65616e; --line: #dedbe2; --paper: #fbfaf8; --card: #fff;
-  --good: #2f6b4f; --bad: #a8322a; --accent: #8a4b2a; --blue: #2b5c8a; }
-* { box-sizing: border-box; }
-body { margin: 0; background: var(--paper); color: var(--ink); font: 15px/1.5 system-ui, sans-serif; }
-main { max-width: 1180px; margin: 0 auto; padding: 32px 24px 48px; }
-h1 { margin: 0; font-size: 28px; letter-spacing: -0.01em; }
-h2 { margin: 40px 0 4px; font-size: 20px; overflow-wrap: anywhere; }
-.summary, .note, footer { color: var(--soft); }
+// Rules of this page.
+constexpr const char* sweep_style = R"css(
 .plots { display: grid; gap: 16px; grid-template-columns: repeat(2, 1fr); margin: 14px 0; }
-figure { margin: 0; background: var(--card); border: 1px solid var(--line); border-radius: 8px; padding: 8px; }
+figure { padding: 8px; }
 svg { display: block; width: 100%; height: auto; font: 13px system-ui, sans-serif; }
 .grid { stroke: var(--line); fill: none; } .title { fill: var(--soft); } .front { stroke: var(--good); fill: none; stroke-width: 1.5; }
 .point { fill: #b9b5c0; } .point.best { fill: var(--good); } .named { fill: var(--accent); } .label { fill: var(--accent); font-weight: 600; }
-.scroll { overflow-x: auto; }
-table { border-collapse: collapse; width: 100%; font-size: 14px; }
-th, td { padding: 5px 14px 5px 0; border-bottom: 1px solid var(--line); text-align: left; }
-.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-th { color: var(--soft); font-weight: 600; }
-.good { color: var(--good); font-weight: 600; } .bad { color: var(--bad); font-weight: 600; }
-footer { margin-top: 40px; font-size: 13px; }
-@media (max-width: 760px) { main { padding: 20px 14px 32px; } .plots { grid-template-columns: 1fr; } }
+@media (max-width: 760px) { .plots { grid-template-columns: 1fr; } }
 )css";
 
 // Size of a plot, in its own units.
@@ -50,32 +35,6 @@ double cpu_cost(const SweepResult& result) { return result.cpu_seconds; }
 double byte_cost(const SweepResult& result) { return static_cast<double>(result.bytes); }
 
 constexpr Cost costs[] = {{"CPU seconds of all stages", cpu_cost}, {"bytes that ship", byte_cost}};
-
-/// Logarithmic axis over values, with some room beyond them.
-struct LogAxis {
-  double low, high, at_low, at_high;
-
-  LogAxis(const std::vector<double>& values, double from, double to) : at_low(from), at_high(to) {
-    const auto [least, most] = std::ranges::minmax(values);
-    constexpr double margin = 1.25;
-    low = least / margin;
-    high = most * margin;
-  }
-  double place(double value) const {
-    return at_low + (at_high - at_low) * std::log(value / low) / std::log(high / low);
-  }
-  /// Returns 1, 2 and 5 times powers of ten; only the powers where those would be too many.
-  std::vector<double> ticks() const {
-    std::vector<double> all;
-    const bool is_wide = high / low > 3e2;
-    for (int power = static_cast<int>(std::floor(std::log10(low))); std::pow(10.0, power) <= high; ++power)
-      for (const int times : {1, 2, 5})
-        if (const double value = times * std::pow(10.0, power);
-            value >= low && value <= high && (times == 1 || !is_wide))
-          all.push_back(value);
-    return all;
-  }
-};
 
 bool is_plottable(const SweepResult& result, const Cost& cost) {
   return result.error().value_or(0) > 0 && cost.of(result) > 0;
@@ -128,7 +87,7 @@ std::string plot(const std::vector<SweepResult>& results, const Cost& cost) {
       errors.push_back(*result.error());
     }
   if (places.empty()) return "<p class=note>No point has an error to plot.</p>\n";
-  const LogAxis across(places, left, right), up(errors, bottom, top);
+  const LogAxis across(places, left, right, {}), up(errors, bottom, top, {});
   const std::vector<bool> best = pareto_front(results, cost.of);
   std::string svg =
       fmt::format("<svg viewBox='0 0 {} {}' role=img aria-label='Error against {}'>\n", width, height, cost.title);
@@ -210,14 +169,11 @@ std::string sweep_html(const std::vector<SweepResult>& results) {
     for (const Cost& cost : costs) body += plot(own, cost);
     body += "</div>\n" + table(own) + "</section>\n";
   }
-  return fmt::format(
-      "<!doctype html>\n<html lang=en>\n<meta charset=utf-8>\n"
-      "<meta name=viewport content='width=device-width, initial-scale=1'>\n<title>Sweep – "
-      "Kiln</title>\n<style>{}</style>\n"
-      "<main>\n<h1>Speed against accuracy</h1>\n<p class=summary>{} points. Error: the expected relighting error "
-      "of what a viewer sees; without reports, of the bake against rays. Green: no other point is both cheaper and "
-      "nearer.</p>\n{}<footer>Kiln {}</footer>\n</main>\n</html>\n",
-      style, results.size(), body, KILN_VERSION);
+  const std::string summary = fmt::format(
+      "{} points. Error: the expected relighting error of what a viewer sees; without reports, of the bake against "
+      "rays. Green: no other point is both cheaper and nearer.",
+      results.size());
+  return framed({"Sweep", "Speed against accuracy", summary, sweep_style, body});
 }
 
 }  // namespace kiln

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "atlas/low_mesh.h"
+#include "atlas/load_meshes.h"
 
 #include "import/import_mesh.h"
 #include "import/uv_mesh.h"
@@ -19,6 +19,13 @@ TriangleMesh load_low_mesh(const std::filesystem::path& file, const AtlasSetting
   const ImportedMesh imported = import_mesh(file, settings.import);
   warnings.insert(warnings.end(), imported.warnings.begin(), imported.warnings.end());
   return split_at_hard_edges(imported.mesh);
+}
+
+TriangleMesh load_high_mesh(const std::filesystem::path& file, const ImportSettings& settings, const MeshFrame& frame,
+                            std::vector<std::string>& warnings) {
+  ImportedMesh imported = import_mesh(file, settings, frame);
+  warnings.insert(warnings.end(), imported.warnings.begin(), imported.warnings.end());
+  return std::move(imported.mesh);
 }
 
 }  // namespace kiln

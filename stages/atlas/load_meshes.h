@@ -16,4 +16,8 @@ namespace kiln {
 TriangleMesh load_low_mesh(const std::filesystem::path& file, const AtlasSettings& settings,
                            std::vector<std::string>& warnings);
 
+/// Loads the high mesh into the frame of the low one. Adds to `warnings` likewise. Throws BadInput.
+TriangleMesh load_high_mesh(const std::filesystem::path& file, const ImportSettings& settings, const MeshFrame& frame,
+                            std::vector<std::string>& warnings);
+
 }  // namespace kiln

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/json_fwd.h"
+#include "import/import_mesh.h"
+#include "simplify/low_file.h"
+#include "simplify/simplify.h"
+
+namespace kiln {
+
+/// Throws BadInput where a high mesh does not have what the settings ask of it; `file` is for the message.
+void check_high(const ImportedMesh& high, const SimplifySettings& settings, const std::string& file);
+
+/// Returns the metrics of the stage's record.
+Json metrics_of(const SimplifyResult& result, const ImportedMesh& high, const LowFile& low);
+
+/// Returns what a user should know of a result: parts that were dropped, triangles too many, parts too far apart.
+std::vector<std::string> warnings_of(const SimplifyResult& result, const LowFile& low);
+
+}  // namespace kiln
