@@ -2,8 +2,10 @@
 #include "compress/pca.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <utility>
 
 namespace kiln {
 
@@ -26,11 +28,18 @@ void sorted_eigenvectors(const Eigen::MatrixXd& covariance, Eigen::MatrixXf& vec
   choose_signs(vectors);
 }
 
-/// Computes the same of the covariance of columns about zero, of which there are fewer than rows: by a singular value
-/// decomposition, whose cost grows with the square of their number, not with the cube of the rows.
-Eigen::MatrixXf few_columns_eigenvectors(const Eigen::MatrixXd& columns) {
-  const Eigen::BDCSVD<Eigen::MatrixXd> decomposition(columns, Eigen::ComputeFullU);
-  Eigen::MatrixXf vectors = decomposition.matrixU().cast<float>();
+/// Computes the first `count` eigenvectors of the covariance of columns about zero, of which there are fewer than rows:
+/// by a singular value decomposition, whose cost grows with the square of their number, not with the cube of the rows.
+Eigen::MatrixXf few_columns_eigenvectors(const Eigen::MatrixXd& columns, int count) {
+  const Eigen::BDCSVD<Eigen::MatrixXd> decomposition(columns, Eigen::ComputeThinU);
+  Eigen::MatrixXd found = decomposition.matrixU().leftCols(std::min<Eigen::Index>(count, columns.cols()));
+  if (found.cols() < count) {
+    Eigen::MatrixXd completed =
+        Eigen::HouseholderQR<Eigen::MatrixXd>(found).householderQ() * Eigen::MatrixXd::Identity(columns.rows(), count);
+    completed.leftCols(found.cols()) = found;
+    found = std::move(completed);
+  }
+  Eigen::MatrixXf vectors = found.cast<float>();
   choose_signs(vectors);
   return vectors;
 }
@@ -80,13 +89,14 @@ void fit_subspace(const Eigen::MatrixXf& vectors, int components, Eigen::VectorX
   const Eigen::MatrixXd exact = vectors.cast<double>();
   const Eigen::VectorXd centre = exact.rowwise().mean();
   const Eigen::MatrixXd centred = exact.colwise() - centre;
+  mean = centre.cast<float>();
+  if (centred.cols() < centred.rows()) {
+    basis = few_columns_eigenvectors(centred, components);
+    return;
+  }
   Eigen::MatrixXf all;
   Eigen::VectorXd values;
-  if (centred.cols() < centred.rows())
-    all = few_columns_eigenvectors(centred);
-  else
-    sorted_eigenvectors(centred * centred.transpose(), all, values);
-  mean = centre.cast<float>();
+  sorted_eigenvectors(centred * centred.transpose(), all, values);
   basis = all.leftCols(components);
 }
 
