@@ -6,6 +6,13 @@ source_folder=$1 engine_program=$2
 faults=0
 fault() { echo "FAULT: $*"; faults=1; }
 
+# The top folder holds what ARCHITECTURE.md and CONTRIBUTING.md name, and nothing that a trial left behind.
+top=" .ci .clang-format .clang-tidy .editorconfig .gitignore ARCHITECTURE.md CHANGELOG.md CMakeLists.txt CMakePresets.json \
+CONTRIBUTING.md LICENSE LICENSES Makefile README.md cmake docs examples pipeline.yaml runtime samples shaders stages tests tools "
+for name in $(git -C "$source_folder" ls-files 2>/dev/null | cut -d/ -f1 | sort -u); do
+  [[ $top == *" $name "* ]] || fault "$name is committed at the top of the house"
+done
+
 # Stages include core and themselves.
 stages=$(cd "$source_folder/stages" && ls -d */ | tr -d / | grep -vx core)
 [ "$(wc -w <<< "$stages")" -ge 7 ] || fault "found the stages $stages; expected at least 7"
