@@ -14,8 +14,9 @@ PictureCodec& load_codec() {
   void* handle = dlopen(library, RTLD_LAZY | RTLD_LOCAL);
   void* function = handle != nullptr ? dlsym(handle, "kiln_openimageio_codec") : nullptr;
   if (function == nullptr)
-    throw MachineLacks("pictures can be neither read nor written (" + std::string(dlerror()) + "); install Kiln with " +
-                       library + ", and OpenImageIO (libopenimageio2.4)");
+    throw MachineLacks("pictures other than PNG and OpenEXR cannot be read, nor text be drawn (" +
+                       std::string(dlerror()) + "); install Kiln with " + library +
+                       ", and OpenImageIO (libopenimageio2.4)");
   return *reinterpret_cast<PictureCodec* (*)()>(function)();
 }
 
