@@ -74,7 +74,7 @@ void check_density(const AtlasSettings& settings, double area) {
 }
 
 Packing pack(const std::vector<Chart>& charts, const AtlasSettings& settings, const ProgressFunction& progress) {
-  const Packing packing = pack_charts(charts, pack_settings(settings), progress);
+  Packing packing = pack_charts(charts, pack_settings(settings), progress);
   const int side = std::max(packing.width, packing.height);
   if (side > most_texels) refuse_density(settings.texels_per_unit, side);
   return packing;

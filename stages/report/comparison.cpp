@@ -36,6 +36,7 @@ constexpr double split_share = 0.3;  // share of the progress
 
 std::vector<LightSpec> parse_lights(const std::string& option, const std::vector<std::string>& texts) {
   std::vector<LightSpec> specs;
+  specs.reserve(texts.size());
   for (const std::string& text : texts) specs.push_back(parse_light_spec(text));
   if (specs.empty()) throw WrongUsage(option + ": found none; expected at least one, as in '45,30; ambient:1'");
   return specs;
@@ -52,8 +53,9 @@ void take_settings(const OptionSet& options, const Json& record) {
   const Json settings = record.value("settings", Json::object());
   for (const Option& option : options.options()) {
     const auto value = settings.find(option.name);
-    if (value == settings.end() || *value == "") continue;
-    option.set(value->is_string() ? value->get<std::string>() : value->dump());
+    if (value == settings.end()) continue;
+    const std::string text = value->is_string() ? value->get<std::string>() : value->dump();
+    if (!text.empty()) option.set(text);
   }
 }
 

@@ -129,7 +129,7 @@ void ScatterPaths::enter(const Eigen::Vector3f& position, const Eigen::Vector3f&
   for (int line = 0; line < lines && total_here_.maxCoeff() > 0; ++line) {
     entries.positions.push_back(position);
     entries.normals.push_back(normal);
-    entries.weights.push_back(total_here_ / static_cast<float>(lines));
+    entries.weights.emplace_back(total_here_ / static_cast<float>(lines));
   }
   for (int line = 0; line < lines && !sampled_colors_.empty(); ++line) {
     // Step 1: choose a line.
@@ -170,7 +170,7 @@ void ScatterPaths::enter(const Eigen::Vector3f& position, const Eigen::Vector3f&
         if (share <= certain_share * random.uniform()) continue;
         weight *= certain_share / share;
       }
-      entries.positions.push_back(position + offset);
+      entries.positions.emplace_back(position + offset);
       entries.normals.push_back(normal_at(mesh_, hit));
       entries.weights.push_back(weight);
     }

@@ -142,7 +142,8 @@ std::string drawn_axes(const Axes& axes, double target_error) {
 }
 
 /// Draws all candidates, one line for each number of clusters.
-std::string drawn_series(Series series, const StoredWay& chosen, const Axes& axes) {
+std::string drawn_series(const Series& all, const StoredWay& chosen, const Axes& axes) {
+  Series series = all;
   std::string svg;
   for (auto& [key, ways] : series) {
     std::stable_sort(ways.begin(), ways.end(),

@@ -97,7 +97,7 @@ std::vector<Eigen::Vector3f> nearest_colors(const TriangleMesh& mesh, const Near
       const double share = (next - hit.point).cross(last - hit.point).dot(normal) / normal.squaredNorm();
       color += share * mesh.colors[mesh.triangles[hit.triangle][k]].cast<double>();
     }
-    colors.push_back(color.cwiseMax(0).cwiseMin(1).cast<float>());
+    colors.emplace_back(color.cwiseMax(0).cwiseMin(1).cast<float>());
   }
   return colors;
 }

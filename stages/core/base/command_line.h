@@ -11,7 +11,7 @@
 #include "base/outputs.h"
 #include "base/progress.h"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): the library's own name
 class App;
 }
 

@@ -28,6 +28,7 @@ std::vector<std::string> names_of_channels(int count) {
   if (count == 3) return {"R", "G", "B"};
   if (count == 4) return {"R", "G", "B", "A"};
   std::vector<std::string> names;
+  names.reserve(static_cast<std::size_t>(count));
   for (int c = 0; c < count; ++c) names.push_back(fmt::format("c{:05}", c));  // files sort channels by name
   return names;
 }

@@ -258,8 +258,8 @@ void split_sheets(TriangleMesh& mesh, MeshRepairs& repairs) {
       assigned = vertex;
     } else if (assigned == none_yet) {
       assigned = static_cast<std::uint32_t>(mesh.positions.size());
-      mesh.positions.push_back(Eigen::Vector3f(mesh.positions[vertex]));
-      if (!mesh.colors.empty()) mesh.colors.push_back(Eigen::Vector3f(mesh.colors[vertex]));
+      mesh.positions.push_back(mesh.positions[vertex]);
+      if (!mesh.colors.empty()) mesh.colors.push_back(mesh.colors[vertex]);
       if (!was_split[vertex] && !edges.at_cut[vertex]) ++repairs.nonmanifold_vertices;
       was_split[vertex] = true;
     }
