@@ -170,6 +170,9 @@ struct Shape {
   std::vector<int> faces;
 };
 
+/// Names a shape where GoogleTest prints parameters, which would else be bytes of memory.
+void PrintTo(const Shape& shape, std::ostream* stream) { *stream << shape.name; }
+
 std::vector<Shape> all_shapes() {
   using namespace shapes;
   return {{"sphere", [] { return icosphere(4); }, {50, 400}},
