@@ -48,40 +48,29 @@ bool has_albedo(const AssetFolder& asset) {
          asset.record("normals").value("albedo", Json::object()).value("source", "none") != "none";
 }
 
-/// Sets options to what the record of a stage has of them; an empty text there is the default.
-void take_settings(const OptionSet& options, const Json& record) {
-  const Json settings = record.value("settings", Json::object());
+/// Returns settings as the record of a stage has them; an empty text there is the default. `add_options` makes the
+/// options that hold them.
+template <class Settings>
+Settings settings_of(const Json& record, void (*add_options)(OptionSet&, Settings&)) {
+  Settings settings;
+  OptionSet options;
+  add_options(options, settings);
+  const Json recorded = record.value("settings", Json::object());
   for (const Option& option : options.options()) {
-    const auto value = settings.find(option.name);
-    if (value == settings.end()) continue;
+    const auto value = recorded.find(option.name);
+    if (value == recorded.end()) continue;
     const std::string text = value->is_string() ? value->get<std::string>() : value->dump();
     if (!text.empty()) option.set(text);
   }
+  return settings;
 }
 
-MaterialSettings material_of(const Json& record) {
-  MaterialSettings material;
-  OptionSet options;
-  add_material_options(options, material);
-  take_settings(options, record);
-  return material;
-}
-
-SubsurfaceSettings subsurface_of(const Json& record) {
-  SubsurfaceSettings subsurface;
-  OptionSet options;
-  add_subsurface_options(options, subsurface);
-  take_settings(options, record);
-  return subsurface;
-}
+MaterialSettings material_of(const Json& record) { return settings_of(record, add_material_options); }
 
 /// Returns the high mesh and the bake's surroundings, with the albedos of the bake's settings where light bounces.
 SceneMesh scene_of(const AssetFolder& asset, const ImportedMesh& high, bool bounces) {
   const Json& bake = asset.record("bake");
-  Surroundings surroundings;
-  OptionSet options;
-  add_surroundings_options(options, surroundings);
-  take_settings(options, bake);
+  Surroundings surroundings = settings_of(bake, add_surroundings_options);
   surroundings.neighbours = bake.value("neighbours", surroundings.neighbours);
   const MaterialSettings material = material_of(bake);
   SceneMesh scene;
@@ -305,7 +294,8 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   view.width = view.height = settings.picture_size;
   view.supersample = supersample;
   view.albedo = static_cast<float>(albedo);
-  if (const SubsurfaceSettings subsurface = subsurface_of(asset.record("bake")); subsurface.wanted()) {
+  const SubsurfaceSettings subsurface = settings_of(asset.record("bake"), add_subsurface_options);
+  if (subsurface.wanted()) {
     view.scattering = subsurface_profiles(subsurface);  // has the albedo within
     view.mm_per_unit = subsurface.mm_per_unit;
   } else {

@@ -5,9 +5,9 @@
 
 #include "bake/bake_reports.h"
 #include "bake/scene/receiver_set.h"
-#include "scatter/subsurface_settings.h"
 #include "base/progress.h"
 #include "mesh/triangle_mesh.h"
+#include "scatter/subsurface_settings.h"
 #include "sh/transfer.h"
 
 namespace kiln {
