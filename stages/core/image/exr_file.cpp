@@ -8,7 +8,6 @@
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
-#include <ImfPartType.h>
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -16,7 +15,6 @@
 #include <fmt/format.h>
 #include <stdexcept>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace kiln {
