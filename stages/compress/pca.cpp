@@ -3,7 +3,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <utility>
 
@@ -29,17 +28,15 @@ void sorted_eigenvectors(const Eigen::MatrixXd& covariance, Eigen::MatrixXf& vec
 }
 
 /// Computes the first `count` eigenvectors of the covariance of columns about zero, of which there are fewer than rows:
-/// by a singular value decomposition, whose cost grows with the square of their number, not with the cube of the rows.
+/// from products of the columns, at a cost that grows with the square of their number, not with the cube of the rows.
+/// The QR decomposition makes them orthonormal, and adds others where the columns span less.
 Eigen::MatrixXf few_columns_eigenvectors(const Eigen::MatrixXd& columns, int count) {
-  const Eigen::BDCSVD<Eigen::MatrixXd> decomposition(columns, Eigen::ComputeThinU);
-  Eigen::MatrixXd found = decomposition.matrixU().leftCols(std::min<Eigen::Index>(count, columns.cols()));
-  if (found.cols() < count) {
-    Eigen::MatrixXd completed =
-        Eigen::HouseholderQR<Eigen::MatrixXd>(found).householderQ() * Eigen::MatrixXd::Identity(columns.rows(), count);
-    completed.leftCols(found.cols()) = found;
-    found = std::move(completed);
-  }
-  Eigen::MatrixXf vectors = found.cast<float>();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(columns.transpose() * columns);
+  const Eigen::MatrixXd scaled =
+      columns * solver.eigenvectors().rowwise().reverse().leftCols(std::min<Eigen::Index>(count, columns.cols()));
+  Eigen::MatrixXf vectors = (Eigen::HouseholderQR<Eigen::MatrixXd>(scaled).householderQ() *
+                             Eigen::MatrixXd::Identity(columns.rows(), count))
+                                .cast<float>();
   choose_signs(vectors);
   return vectors;
 }

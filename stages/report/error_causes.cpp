@@ -169,17 +169,19 @@ class PixelSums {
     const auto coefficients = static_cast<std::size_t>(coefficient_count(bands));
     Eigen::ArrayXd first(length), second(length);
     std::size_t begin = 0;
-    for (const std::size_t end : samples_.pixel_ends) {
+    for (std::size_t pixel = 0; pixel < samples_.pixels(); ++pixel) {
+      const std::size_t end = samples_.pixel_ends[pixel];
       first.setZero();
       second.setZero();
       for (std::size_t point = begin; point < end; ++point)
         if (counts(point, points)) add_point(point, first, second);
       const double share = 1 / static_cast<double>(end - begin);
+      const double weight = samples_.pixel_weights[pixel] * share * share;
       double of_pixel = 0;
       for (std::size_t i = 0; i < length; ++i) {
         const auto band = static_cast<std::size_t>(band_of(static_cast<int>(i % coefficients)));
         const auto at = static_cast<Eigen::Index>(i);
-        const double square = prior_[band] * share * share * first[at] * second[at];
+        const double square = weight * prior_[band] * first[at] * second[at];
         squares.by_band[band] += square;
         of_pixel += square;
       }

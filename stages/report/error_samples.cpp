@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include "mesh/surface_point.h"
 #include "raycast/ray_scene.h"
@@ -16,6 +18,8 @@ namespace kiln {
 namespace {
 
 constexpr int cells_per_side = 2;  // points of a pixel along each side
+constexpr std::size_t candidates_per_pixel = 16;
+constexpr std::size_t fewest_candidates = 16384;
 
 /// Marks the texels that no chart covers, and those beside one: the ones that gutters and seams change.
 std::vector<std::uint8_t> border_texels(const DetailMaps& detail) {
@@ -27,6 +31,47 @@ std::vector<std::uint8_t> border_texels(const DetailMaps& detail) {
           if (detail.covered[static_cast<std::size_t>(y * detail.width + x)] == 0)
             border[static_cast<std::size_t>(j * detail.width + i)] = 1;
   return border;
+}
+
+/// Point of the low mesh that a viewer sees, that of the high mesh seen in its place, and the one it stands for.
+struct SeenPoint {
+  SurfacePoint low, seen, stood;
+};
+
+/// Pixel as a viewer sees it.
+struct Candidate {
+  std::array<SeenPoint, cells_per_side * cells_per_side> points;
+  int count = 0;         ///< of points; 0 where one is missing
+  double suspicion = 0;  ///< how large its error may be, as a guess from rays and normals alone
+};
+
+/// Place of the low mesh and a view of it, by numbers of 0 to 1.
+struct Draw {
+  std::uint32_t triangle;
+  float u, v;                   // barycentric
+  float squared_sine, turn;     // of the view
+  Eigen::Vector2f shift{0, 0};  // of a pixel's points, in cells
+};
+
+/// Draws places evenly by area, with views by the cosine: every part of the surface is seen as large as it is.
+std::vector<Draw> draw_places(const TriangleMesh& mesh, std::size_t count, std::uint64_t seed) {
+  std::vector<double> areas;
+  for (const Triangle& t : mesh.triangles) areas.push_back(area_normal(mesh, t).norm());
+  std::mt19937 random(static_cast<std::mt19937::result_type>(seed));
+  std::discrete_distribution<std::uint32_t> triangle(areas.begin(), areas.end());
+  std::uniform_real_distribution<float> number(0, 1);
+  std::vector<Draw> draws(count);
+  for (Draw& draw : draws) {
+    const float root = std::sqrt(number(random)), share = number(random);
+    draw.triangle = triangle(random);
+    draw.u = root * (1 - share);
+    draw.v = root * share;
+    draw.squared_sine = number(random);
+    draw.turn = number(random);
+    draw.shift.x() = number(random);
+    draw.shift.y() = number(random);
+  }
+  return draws;
 }
 
 /// Makes the samples of one asset.
@@ -42,39 +87,91 @@ class Sampler {
         border_(border_texels(detail)) {
     const float diagonal = bounding_box(high).sides().norm();
     reach_ = std::max(0.05f * diagonal, static_cast<float>(sampling.pixel_size));
+    distance_ = diagonal + reach_;
     offset_ = 1e-4f * 0.05f * diagonal;
+    apart_ = 0.005f * diagonal;
   }
 
   ErrorSamples make() {
-    std::vector<double> areas;
-    for (const Triangle& t : low_.triangles) areas.push_back(area_normal(low_, t).norm());
-    std::mt19937 random(static_cast<std::mt19937::result_type>(sampling_.seed));
-    std::discrete_distribution<std::uint32_t> triangle(areas.begin(), areas.end());
-    std::uniform_real_distribution<float> number(0, 1);
-    // Some views are blocked, by a third at most on scans; give up after many.
-    for (std::size_t tries = 0; samples_.pixels() < sampling_.pixels && tries < 8 * sampling_.pixels; ++tries) {
-      const float root = std::sqrt(number(random)), share = number(random);
-      const SurfacePoint place{triangle(random), root * (1 - share), root * share, 0};
-      // By the cosine: every part of the surface is seen as large as it is.
-      const float squared_sine = number(random), turn = number(random);
-      const Eigen::Vector3f view = cosine_direction(normal_at(low_, place), squared_sine, turn);
-      if (!is_visible(place, view)) continue;
-      if (sampling_.pixel_size > 0) {
-        const float column = number(random), row = number(random);
-        add_pixel(position_at(low_, place), view, {column, row});
-      } else {
-        add_point(place, view);
+    const std::size_t wanted = sampling_.pixels;
+    const std::vector<Draw> draws =
+        draw_places(low_, std::max(candidates_per_pixel * wanted, fewest_candidates), sampling_.seed);
+    std::vector<Candidate> candidates(draws.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, draws.size(), 256), [&](const auto& range) {
+      for (std::size_t k = range.begin(); k != range.end(); ++k) {
+        candidates[k] = candidate_of(draws[k]);
+        if (candidates[k].count > 0) candidates[k].suspicion = suspicion_of(candidates[k]);
       }
-      if (samples_.points() > (samples_.pixel_ends.empty() ? 0 : samples_.pixel_ends.back()))
-        samples_.pixel_ends.push_back(samples_.points());
+    });
+    double suspicions = 0;
+    for (const Candidate& candidate : candidates) suspicions += candidate.suspicion;
+    // Chooses a candidate whenever the sum passes a multiple of the step; those above it are all chosen, once.
+    const double step = suspicions / static_cast<double>(wanted);
+    double sum = 0.5 * step;
+    for (const Candidate& candidate : candidates) {
+      sum += candidate.suspicion;
+      if (candidate.count == 0 || sum < step) continue;
+      sum = std::fmod(sum, step);
+      add(candidate);
+      samples_.pixel_weights.push_back(std::max(1.0, step / candidate.suspicion));
     }
     return std::move(samples_);
   }
 
  private:
-  bool is_visible(const SurfacePoint& place, const Eigen::Vector3f& view) const {
-    const Eigen::Vector3f origin = position_at(low_, place) + offset_ * normal_at(low_, place);
-    return !low_rays_.first_hit(origin, view, 0, std::numeric_limits<float>::infinity()).found();
+  Candidate candidate_of(const Draw& draw) const {
+    const SurfacePoint place{draw.triangle, draw.u, draw.v, 0};
+    const Eigen::Vector3f middle = position_at(low_, place);
+    const Eigen::Vector3f view = cosine_direction(normal_at(low_, place), draw.squared_sine, draw.turn);
+    Candidate candidate;
+    if (low_rays_.first_hit(middle + offset_ * normal_at(low_, place), view, 0, infinity).found()) return candidate;
+    if (sampling_.pixel_size <= 0) {
+      add_seen(candidate, place, view);
+      return candidate;
+    }
+    const Eigen::Vector3f across = view.unitOrthogonal(), along = view.cross(across);
+    const auto size = static_cast<float>(sampling_.pixel_size);
+    for (int k = 0; k < cells_per_side * cells_per_side; ++k) {
+      const Eigen::Vector2f cell(static_cast<float>(k % cells_per_side), static_cast<float>(k / cells_per_side));
+      const Eigen::Vector2f at = size * ((cell + draw.shift) / cells_per_side - Eigen::Vector2f::Constant(0.5f));
+      add_seen(candidate, first_seen(low_rays_, middle + at.x() * across + at.y() * along, view), view);
+      if (candidate.count == 0) return candidate;
+    }
+    return candidate;
+  }
+
+  /// Adds a point of the low mesh to a candidate, or empties the candidate where either mesh is not seen from its
+  /// front, or where the point stands for none.
+  void add_seen(Candidate& candidate, const SurfacePoint& low, const Eigen::Vector3f& view) const {
+    const auto fronts = [&](const TriangleMesh& mesh, const SurfacePoint& point) {
+      return point.found() && normal_at(mesh, point).dot(view) > 0;
+    };
+    candidate.count = fronts(low_, low) ? candidate.count + 1 : 0;
+    if (candidate.count == 0) return;
+    const Eigen::Vector3f position = position_at(low_, low);
+    SeenPoint& point = candidate.points[static_cast<std::size_t>(candidate.count - 1)];
+    point.low = low;
+    point.seen = first_seen(high_rays_, position, view);
+    if (fronts(high_, point.seen))
+      point.stood = high_rays_.closest_facing_point(position, normal_at(low_, low), reach_);
+    if (!point.stood.found()) candidate.count = 0;
+  }
+
+  /// Guesses how large the error of a candidate's pixel may be, relative to others.
+  double suspicion_of(const Candidate& candidate) const {
+    Eigen::Vector3f turned = Eigen::Vector3f::Zero();
+    bool at_outline = false;
+    for (int k = 0; k < candidate.count; ++k) {
+      const SeenPoint& point = candidate.points[static_cast<std::size_t>(k)];
+      turned += normal_at(high_, point.seen) - normal_at(high_, point.stood);
+      at_outline = at_outline || (position_at(high_, point.seen) - position_at(high_, point.stood)).norm() > apart_;
+    }
+    return 0.02 + double{turned.norm()} / candidate.count + (at_outline ? 0.3 : 0.0);
+  }
+
+  /// Returns the point of a mesh that a viewer in direction `view` sees on the line through `position`.
+  SurfacePoint first_seen(const RayScene& rays, const Eigen::Vector3f& position, const Eigen::Vector3f& view) const {
+    return rays.first_hit(position + distance_ * view, -view, 0, infinity);
   }
 
   Lookup lookup_at(const Eigen::Vector2f& uv) const {
@@ -93,31 +190,19 @@ class Sampler {
     return lookup;
   }
 
-  /// Adds the points of a pixel around `position`, on a lattice shifted by `shift`, 0 to 1, of its cells.
-  void add_pixel(const Eigen::Vector3f& position, const Eigen::Vector3f& view, const Eigen::Vector2f& shift) {
-    const Eigen::Vector3f across = view.unitOrthogonal(), along = view.cross(across);
-    const auto size = static_cast<float>(sampling_.pixel_size);
-    for (int k = 0; k < cells_per_side * cells_per_side; ++k) {
-      const Eigen::Vector2f cell(static_cast<float>(k % cells_per_side), static_cast<float>(k / cells_per_side));
-      const Eigen::Vector2f place = size * ((cell + shift) / cells_per_side - Eigen::Vector2f::Constant(0.5f));
-      const Eigen::Vector3f eye = position + place.x() * across + place.y() * along + reach_ * view;
-      const SurfacePoint hit = low_rays_.first_hit(eye, -view, 0, 2 * reach_);
-      if (hit.found() && normal_at(low_, hit).dot(view) > 0) add_point(hit, view);
+  void add(const Candidate& candidate) {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(candidate.count); ++k) {
+      const auto& [low, seen, stood] = candidate.points[k];
+      samples_.seen_positions.push_back(position_at(high_, seen));
+      samples_.seen_normals.push_back(normal_at(high_, seen));
+      samples_.stood_positions.push_back(position_at(high_, stood));
+      samples_.stood_normals.push_back(normal_at(high_, stood));
+      samples_.lookups.push_back(lookup_at(interpolate(low_, low_.uvs, low)));
     }
+    samples_.pixel_ends.push_back(samples_.points());
   }
 
-  /// Adds a point of the low mesh, unless the high mesh is not found there.
-  void add_point(const SurfacePoint& place, const Eigen::Vector3f& view) {
-    const Eigen::Vector3f position = position_at(low_, place);
-    const SurfacePoint stood = high_rays_.closest_facing_point(position, normal_at(low_, place), reach_);
-    const SurfacePoint seen = high_rays_.first_hit(position + reach_ * view, -view, 0, 2 * reach_);
-    if (!stood.found() || !seen.found() || normal_at(high_, seen).dot(view) <= 0) return;
-    samples_.seen_positions.push_back(position_at(high_, seen));
-    samples_.seen_normals.push_back(normal_at(high_, seen));
-    samples_.stood_positions.push_back(position_at(high_, stood));
-    samples_.stood_normals.push_back(normal_at(high_, stood));
-    samples_.lookups.push_back(lookup_at(interpolate(low_, low_.uvs, place)));
-  }
+  static constexpr float infinity = std::numeric_limits<float>::infinity();
 
   const TriangleMesh& high_;
   const TriangleMesh& low_;
@@ -125,8 +210,10 @@ class Sampler {
   const ErrorSampling& sampling_;
   const RayScene high_rays_, low_rays_;
   const std::vector<std::uint8_t> border_;
-  float reach_ = 0;   ///< how far the high mesh is looked for
-  float offset_ = 0;  ///< start of a view off the low mesh
+  float reach_ = 0;     ///< how far the point of the high mesh that a texel stands for is looked for
+  float distance_ = 0;  ///< of the viewer, who stands outside both meshes
+  float offset_ = 0;    ///< start of a view off the low mesh
+  float apart_ = 0;     ///< distance of the points seen of both meshes from which on an outline is between
   ErrorSamples samples_;
 };
 

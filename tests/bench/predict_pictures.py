@@ -3,7 +3,7 @@
 """predict_pictures.py PROGRAMS FOLDER [-o CSV]: how well E predicts pictures (docs/error.md, "Does it predict pictures?").
 
 A cell is an asset, its settings and a kind of light: one predicted error, from the report's squares by band and the
-light's own moments, and one rendered error, the relative L2 of pictures over six turns of the light and six cameras.
+light's own moments, and one rendered error, the relative L2 of pictures over turns of the light and cameras.
 Two judges that are not Kiln's look at some of the pictures as well: butteraugli, and OpenImageIO's `idiff -p` after Yee.
 Needs Debian's butteraugli, openimageio-tools and python3-matplotlib, and the meshes of glmark2-data and libcgal-demo. Takes about half
 an hour on two cores."""
@@ -23,9 +23,11 @@ ARCHIVE = "/usr/share/doc/libcgal-dev/data.tar.gz"
 TUNED = ["bunny", "armadillo", "lion-head"]  # seen while anything was tuned
 UNSEEN = ["elephant", "nefertiti", "fandisk", "hand"]
 SETTINGS = {"coarse": (500, 96, 128, 4), "middle": (2000, 192, 512, 5), "fine": (8000, 384, 1536, 6)}
-CAMERAS = [(20, 12), (140, -20), (260, 35), (80, -50), (200, 60), (320, -5)]
+VIEWS = 12
+# Azimuth and elevation, evenly over the sphere, as the points that E is measured at are seen.
+CAMERAS = [((20 + k * 137.50776) % 360, math.degrees(math.asin(1 - (2 * k + 1) / VIEWS))) for k in range(VIEWS)]
 PIXELS = 160
-TURNS = 6
+TURNS = 4
 JUDGED = 2  # turns of a kind that the judges look at, from the first camera
 KINDS = ["cone 10", "cone 45", "cone 90", "hemisphere"]
 
@@ -60,8 +62,8 @@ def report(folder, number, lights, samples):
     """Reports on an asset from the camera of a number, with reference directions of its own."""
     camera = CAMERAS[number]
     command = [arguments.programs / "kiln-report", folder, "-o", arguments.folder / "report" / "report.html", "--json",
-               "--quiet", f"--lights={';'.join(lights)}", f"--camera-azimuth={camera[0]}",
-               f"--camera-elevation={camera[1]}", "--cameras", "1", "--directions", "1024", "--seed", str(10 + number), f"--picture-size={PIXELS}", "--error-samples", str(samples),
+               "--quiet", f"--lights={';'.join(lights)}", f"--camera-azimuth={camera[0]:.3f}",
+               f"--camera-elevation={camera[1]:.3f}", "--cameras", "1", "--directions", "1024", "--seed", str(10 + number), f"--picture-size={PIXELS}", "--error-samples", str(samples),
                "--error-pixels", str(0.9 * PIXELS)]
     done = subprocess.run(command, capture_output=True, text=True, cwd=arguments.folder)
     if done.returncode != 0:
@@ -123,7 +125,7 @@ def cells_of(mesh, setting, prior):
     lights = [turned(kind, random) for kind in KINDS for _ in range(TURNS)]
     differences, references = numpy.zeros(len(KINDS)), numpy.zeros(len(KINDS))
     for number in range(len(CAMERAS)):
-        said, page = report(arguments.folder / f"{mesh}-{setting}", number, lights, 4096 if number == 0 else 64)
+        said, page = report(arguments.folder / f"{mesh}-{setting}", number, lights, 16384 if number == 0 else 64)
         if number == 0:
             squares = said["error"]["squares_by_band"]
             scores = judged(page)

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numeric>
+#include <random>
 
 #include "mesh/uv_raster.h"
 #include "raycast/ray_transfer.h"
@@ -183,6 +184,52 @@ TEST(ErrorCauses, CompressionIsWhatCompressionChanges) {
   }
   const ErrorSplit split = floor.split(&changed);
   EXPECT_NEAR(cause(split, "compression"), 0.02, 0.001);  // everything is 2 % too long
+}
+
+/// Returns a floor of 2 x 2 under a plate of so many across, with uvs.
+TriangleMesh floor_under_plate(float plate) {
+  TriangleMesh mesh;
+  const float half = plate / 2;
+  mesh.positions = {{-1, 0, 1},          {1, 0, 1},          {1, 0, -1},          {-1, 0, -1},
+                    {-half, 0.5f, half}, {half, 0.5f, half}, {half, 0.5f, -half}, {-half, 0.5f, -half}};
+  mesh.uvs = {{0, 0}, {0.5f, 0}, {0.5f, 0.5f}, {0, 0.5f}, {0.6f, 0.6f}, {1, 0.6f}, {1, 1}, {0.6f, 1}};
+  mesh.normals.assign(8, Eigen::Vector3f::UnitY());
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+  return mesh;
+}
+
+TEST(ErrorSamples, ShowOutlinesAsOftenAsAViewerSeesThem) {
+  const TriangleMesh low = floor_under_plate(0.5f), high = floor_under_plate(0.51f);
+  DetailMaps detail;
+  detail.width = detail.height = size;
+  detail.covered.assign(std::size_t{size} * size, 1);
+  const ErrorSamples samples = make_error_samples(high, low, detail, {.pixels = 2000});
+  double outline = 0, all = 0;
+  int found = 0;
+  for (std::size_t k = 0; k < samples.pixels(); ++k) {
+    const bool apart = samples.seen_positions[k].y() > 0.25f && samples.stood_positions[k].y() < 0.25f;
+    (apart ? outline : all) += samples.pixel_weights[k];
+    found += apart ? 1 : 0;
+  }
+  all += outline;
+
+  // Counts views that leave the floor beside the low plate and meet the high one's rim, among all that meet no plate.
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> number(-1, 1);
+  double rim = 0, seen = 0;
+  for (int k = 0; k < 400000; ++k) {
+    const bool on_plate = (number(random) + 1) / 2 < 0.25 / 4.25;
+    const double reach = on_plate ? 0.25 : 1, x = reach * number(random), z = reach * number(random);
+    double across = number(random), along = number(random);
+    while (across * across + along * along >= 1) across = number(random), along = number(random);
+    const double up = std::sqrt(1 - across * across - along * along);  // a disc's points lifted: by the cosine
+    const double px = x + 0.5 * across / up, pz = z + 0.5 * along / up, distance = std::max(std::abs(px), std::abs(pz));
+    if (!on_plate && distance < 0.25) continue;
+    seen += 1;
+    if (!on_plate && distance < 0.255) rim += 1;
+  }
+  EXPECT_NEAR(outline / all, rim / seen, 0.2 * rim / seen) << "some 60 of them were found";
+  EXPECT_GT(found, 5 * 2000 * rim / seen);
 }
 
 }  // namespace
