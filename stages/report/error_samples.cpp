@@ -41,8 +41,8 @@ struct SeenPoint {
 /// Pixel as a viewer sees it.
 struct Candidate {
   std::array<SeenPoint, cells_per_side * cells_per_side> points;
-  int count = 0;         ///< of points; 0 where one is missing
-  double suspicion = 0;  ///< how large its error may be, as a guess from rays and normals alone
+  int count = 0;          ///< of points; 0 where one is missing
+  double importance = 0;  ///< how large its error may be, as a guess from rays and normals alone
 };
 
 /// Place of the low mesh and a view of it, by numbers of 0 to 1.
@@ -100,20 +100,20 @@ class Sampler {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, draws.size(), 256), [&](const auto& range) {
       for (std::size_t k = range.begin(); k != range.end(); ++k) {
         candidates[k] = candidate_of(draws[k]);
-        if (candidates[k].count > 0) candidates[k].suspicion = suspicion_of(candidates[k]);
+        if (candidates[k].count > 0) candidates[k].importance = importance_of(candidates[k]);
       }
     });
-    double suspicions = 0;
-    for (const Candidate& candidate : candidates) suspicions += candidate.suspicion;
+    double importances = 0;
+    for (const Candidate& candidate : candidates) importances += candidate.importance;
     // Chooses a candidate whenever the sum passes a multiple of the step; those above it are all chosen, once.
-    const double step = suspicions / static_cast<double>(wanted);
+    const double step = importances / static_cast<double>(wanted);
     double sum = 0.5 * step;
     for (const Candidate& candidate : candidates) {
-      sum += candidate.suspicion;
+      sum += candidate.importance;
       if (candidate.count == 0 || sum < step) continue;
       sum = std::fmod(sum, step);
       add(candidate);
-      samples_.pixel_weights.push_back(std::max(1.0, step / candidate.suspicion));
+      samples_.pixel_weights.push_back(std::max(1.0, step / candidate.importance));
     }
     return std::move(samples_);
   }
@@ -158,7 +158,7 @@ class Sampler {
   }
 
   /// Guesses how large the error of a candidate's pixel may be, relative to others.
-  double suspicion_of(const Candidate& candidate) const {
+  double importance_of(const Candidate& candidate) const {
     Eigen::Vector3f turned = Eigen::Vector3f::Zero();
     bool at_outline = false;
     for (int k = 0; k < candidate.count; ++k) {

@@ -44,9 +44,9 @@ struct ErrorSampling {
 /// have a size, each has several points spread over it, across the view. Pixels whose middle the low mesh hides, and
 /// those not wholly covered by both meshes, are left out, as where pictures are compared.
 ///
-/// Pixels along outlines within the picture, where either mesh shows another part than the other, are one in a thousand
-/// and decide the error of a good asset. So many candidates are drawn, told apart by rays alone, and a quarter of the
-/// pixels are taken from those along outlines: double sampling for stratification, [Cochran 1977] section 12.2.
+/// Pixels along outlines within the picture, where the high mesh shows another part than the low one, are one in a
+/// thousand and decide the error of a good asset. So rays look at many candidates, and a pixel is chosen with a
+/// probability proportional to a guess of its error, and counts as the inverse of it: [Cochran 1977], chapter 9A.
 ErrorSamples make_error_samples(const TriangleMesh& high, const TriangleMesh& low, const DetailMaps& detail,
                                 const ErrorSampling& sampling);
 
