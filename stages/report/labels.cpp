@@ -79,6 +79,7 @@ constexpr Known known_metrics[] = {
     {"error", "error of the stored planes, relative L²", Unit::share, Better::lower},
     {"relighting_error", "expected relighting error", Unit::share, Better::lower},
     {"relative_l2", "difference, relative L², worst light", Unit::share, Better::lower},
+    {"relative_l2_uncertainty", "more than that at most, 95 % confidence", Unit::share},
     {"root_mean_square", "difference, RMS radiance, worst light", Unit::plain, Better::lower},
     {"compressed_relative_l2", "difference by compression, relative L², worst light", Unit::share, Better::lower},
     {"compress.error", "expected relighting error against the baked planes", Unit::share, Better::lower},

@@ -84,7 +84,8 @@ std::string header(const AssetFolder& asset, const Report& report, const Json& m
             "used, " + value(asset.record("atlas"), "charts") + " charts");
   figure_of("Bake", value(bake, "seconds"), value(bake, "directions") + " directions");
   figure_of("Difference", metric_value("relative_l2", metrics.at("report").at("relative_l2")),
-            "relative L², worst light");
+            fmt::format("relative L², worst light; up to {} more by the reference's noise",
+                        metric_value("relative_l2", metrics.at("report").at("relative_l2_uncertainty"))));
   figure_of("All stages", metric_value("seconds", seconds), "without file access");
   return html + "</dl>\n</header>\n";
 }
@@ -159,11 +160,12 @@ std::string relit_section(const AssetFolder& asset, const Report& report, const 
                    "<b>Reference</b>, high mesh by rays");
     html += figure(image(cropped(shown_difference(light.asset, light.reference, difference_gain), crop),
                          "Difference: " + name, scratch),
-                   fmt::format("<b>Difference × {:g}</b> · RMS {} · relative L² {} · largest {}"
+                   fmt::format("<b>Difference × {:g}</b> · RMS {} · relative L² {} (up to {} more) · largest {}"
                                "<div class=scale></div><div class=axis><span>−{:g} "
                                "darker</span><span>0</span><span>brighter +{:g}</span></div>",
                                difference_gain, rounded(light.difference.root_mean_square, 3),
                                metric_value("relative_l2", light.difference.relative_l2),
+                               metric_value("relative_l2", light.difference.relative_l2_uncertainty),
                                rounded(light.difference.largest, 3), 1 / difference_gain, 1 / difference_gain));
     html +=
         figure(image(cropped(shown_radiance(light.reference_in_full), crop), "In full: " + name, scratch),

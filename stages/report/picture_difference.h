@@ -17,7 +17,8 @@ Image<float> mean_of(const PictureEstimates& estimates);
 /// Difference of a picture from a reference, over the pixels that both cover wholly: elsewhere the background would be
 /// compared.
 struct PictureDifference : ImageDifference {
-  double reference_noise = 0;  ///< relative L2 of the noise in the mean of the reference's estimates
+  double reference_noise = 0;          ///< relative L2 of the noise in the mean of the reference's estimates
+  double relative_l2_uncertainty = 0;  ///< by which that noise may make relative_l2 too small; 95 % confidence
   std::size_t pixels = 0;
 };
 
@@ -26,7 +27,8 @@ PictureDifference compare_pictures(const Image<float>& picture, const Image<floa
 
 /// Compares a picture with two estimates of its reference. The square of the difference is the sum of products of the
 /// differences from either, so that the noise of the estimates, which are independent, has no bias in it; 0 where noise
-/// is all there is. `largest` is the difference from their mean, noise and all.
+/// is all there is. What is left of the noise is the uncertainty, for noise that is one and the same in all of a block
+/// of 8 x 8 pixels and independent between blocks. `largest` is the difference from their mean, noise and all.
 PictureDifference compare_pictures(const Image<float>& picture, const PictureEstimates& reference);
 
 /// Returns the share of the pixels in either silhouette that lie, by half or more, in only one.

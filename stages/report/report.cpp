@@ -8,19 +8,31 @@
 
 namespace kiln {
 
+namespace {
+
+/// Returns the difference under the light where it is largest; not a number where one is not.
+PictureDifference worst_difference(const std::vector<LightComparison>& lights) {
+  PictureDifference worst;
+  for (const LightComparison& light : lights)
+    if (!(light.difference.relative_l2 <= worst.relative_l2)) worst = light.difference;
+  return worst;
+}
+
+}  // namespace
+
 Json Report::to_json() const {
   Json lights = Json::array();
-  double relative_l2 = 0, root_mean_square = 0, compressed_relative_l2 = 0;
+  double root_mean_square = 0, compressed_relative_l2 = 0;
   bool is_compressed = false;
   for (const LightComparison& light : comparison.lights) {
     lights.push_back({{"light", light.light},
                       {"camera_azimuth", light.camera_azimuth_degrees},
                       {"relative_l2", light.difference.relative_l2},
+                      {"relative_l2_uncertainty", light.difference.relative_l2_uncertainty},
                       {"root_mean_square", light.difference.root_mean_square},
                       {"largest", light.difference.largest},
                       {"reference_noise", light.difference.reference_noise},
                       {"relative_l2_in_full", light.difference_in_full.relative_l2}});
-    relative_l2 = std::max(relative_l2, light.difference.relative_l2);
     if (light.compressed.width() > 0) {
       is_compressed = true;
       lights.back()["compressed_relative_l2"] = light.compressed_difference.relative_l2;
@@ -28,7 +40,9 @@ Json Report::to_json() const {
     }
     root_mean_square = std::max(root_mean_square, light.difference.root_mean_square);
   }
-  Json json = {{"relative_l2", relative_l2},
+  const PictureDifference worst = worst_difference(comparison.lights);
+  Json json = {{"relative_l2", worst.relative_l2},
+               {"relative_l2_uncertainty", worst.relative_l2_uncertainty},
                {"root_mean_square", root_mean_square},
                {"silhouette_difference", comparison.silhouette_difference},
                {"compared_pixels", comparison.compared_pixels},

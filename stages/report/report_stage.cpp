@@ -13,7 +13,8 @@ namespace {
 
 /// What is known when budgets are judged: the report's memory is not.
 constexpr const char* metric_names =
-    "relative_l2 root_mean_square silhouette_difference compared_pixels software_renderer render_seconds "
+    "relative_l2 relative_l2_uncertainty root_mean_square silhouette_difference compared_pixels software_renderer "
+    "render_seconds "
     "reference_seconds seconds";
 
 constexpr const char* error_names =

@@ -203,6 +203,8 @@ TEST(PictureDifference, HasNoneOfTheReferencesNoise) {
   // 3 % of the square, so three standard errors are 5 % of the root.
   EXPECT_NEAR(difference.relative_l2, 0.01, 0.0005);
   EXPECT_NEAR(difference.reference_noise, 0.03 / std::sqrt(2), 0.0005);
+  EXPECT_GT(difference.relative_l2_uncertainty, 0.00015);  // the standard error of this noise, and
+  EXPECT_LT(difference.relative_l2_uncertainty, 0.002);    // more, since noise may be alike in a block
   EXPECT_GT(difference.largest, 0.05);
   // Against one noisy picture the noise counts as error.
   EXPECT_GT(compare_pictures(picture, reference[0]).relative_l2, 0.03);
@@ -231,11 +233,17 @@ TEST(PictureDifference, DoesNotDependOnTheRaysOfTheReference) {
     if (k % 4 != 3) picture.values()[k] *= 1.02f;
   constexpr int seeds = 12;
   double square = 0, noise_square = 0;
+  int covered = 0;  // seeds whose uncertainty holds the truth
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    const PictureDifference coarse = compare_pictures(picture, reference(96, seed));
+    const PictureEstimates estimates = reference(96, seed);
+    const PictureDifference coarse = compare_pictures(picture, estimates);
     square += std::pow(coarse.relative_l2, 2) / seeds;
     noise_square += std::pow(coarse.reference_noise, 2) / seeds;
+    covered += coarse.relative_l2 + coarse.relative_l2_uncertainty >= 0.02 ? 1 : 0;
+    // A picture without an error is not known to have none.
+    EXPECT_GT(compare_pictures(mean_of(estimates), estimates).relative_l2_uncertainty, 0.002);
   }
+  EXPECT_GE(covered, seeds - 1);
   // The noise of 48 directions is alike in many pixels: a seed's square is off by some 2 * 0.02 * 0.015, the mean of
   // twelve by 0.0002. Noise counted as error would add its own square.
   EXPECT_GT(noise_square, 0.0009);
