@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tbb/parallel_for.h>
 
 #include "base/errors.h"
+#include "base/parallel.h"
 #include "mesh/uv_raster.h"
 #include "sh/basis.h"
 #include "sh/light_prior.h"
@@ -28,7 +28,7 @@ std::vector<std::uint8_t> coverage_of_mesh(const PrtAsset& asset) {
 
 void for_each_chunk(std::size_t size, const std::function<void(std::size_t, std::size_t)>& body) {
   const std::size_t chunks = (size + chunk_texels - 1) / chunk_texels;
-  tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
+  parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
     const std::size_t first = chunk * chunk_texels;
     body(first, std::min(chunk_texels, size - first));
   });

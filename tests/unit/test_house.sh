@@ -81,6 +81,12 @@ types=$(cd "$source_folder" && grep -rhoE '^(struct|class|enum class) [A-Za-z]+[
 [ "$(wc -l <<< "$types")" -gt 200 ] || fault "found few types in headers"
 for type in $(uniq -d <<< "$types"); do fault "two headers define $type"; done
 
+# Loops are shared among threads by base/parallel.h alone; rooms include TBB for nothing but what each thread keeps to
+# itself, and to hold one thread back.
+grep -rnE '#include <tbb/' "$source_folder"/{stages,runtime,tools,tests} --include=*.h --include=*.cpp |
+  grep -vE '/stages/core/base/parallel(_sort)?\.(h|cpp):|/stages/core/raycast/.*<tbb/(enumerable_thread_specific|task_arena)\.h>' &&
+  fault "threads are shared without base/parallel.h"
+
 # Lists the headers that files include, and those that the house's own include in turn, as "HEADER FILE": FILE includes it.
 reached_headers() {
   local level=("$@") next header file root

@@ -2,9 +2,8 @@
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 
+#include "base/parallel.h"
 #include "detail/detail_maps.h"
 #include "detail/seam_solver.h"
 #include "image/gutter.h"
@@ -181,8 +180,8 @@ TEST_F(TurnedCharts, ChannelsAreSolvedAloneAndThreadsDoNotMatter) {
     }
   solver.equalise(both);
   std::vector<Image<float>> alone = {a, b, a, b};
-  tbb::parallel_for(0, 4, [&](int k) { solver.equalise(alone[static_cast<std::size_t>(k)]); });
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+  parallel_for(0, 4, [&](int k) { solver.equalise(alone[static_cast<std::size_t>(k)]); });
+  const ThreadLimit limit(1);
   Image<float> again = b;
   SeamSolver(seams_, covered_).equalise(again);
   EXPECT_EQ(again.values(), alone[1].values());

@@ -15,7 +15,6 @@
 #include <memory>
 #include <new>
 #include <sys/resource.h>
-#include <tbb/global_control.h>
 #include <thread>
 
 #include "base/errors.h"
@@ -159,7 +158,7 @@ void CommandLine::parse(int argc, char** argv) {
     throw;
   }
   if (threads_ == 0) threads_ = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  thread_limit_ = std::make_shared<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads_);
+  thread_limit_.emplace(static_cast<std::size_t>(threads_));
   for (const fs::path* path : inputs_)
     if (!path->empty()) require_exists(*path);
   for (const auto* list : input_lists_)

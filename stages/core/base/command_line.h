@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/options.h"
 #include "base/outputs.h"
+#include "base/parallel.h"
 #include "base/progress.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the library's own name
@@ -103,7 +105,7 @@ class CommandLine {
   std::vector<std::filesystem::path> also_read_;
   std::vector<std::string> warnings_;
   std::vector<OptionSet> option_sets_;
-  std::shared_ptr<void> thread_limit_;
+  std::optional<ThreadLimit> thread_limit_;
 };
 
 /// Runs the body of a main(): maps exceptions to exit statuses and one message on stderr each, and ends by the signal
