@@ -241,7 +241,7 @@ INSTANTIATE_TEST_SUITE_P(Integration, Cuts,
 TEST(SumsFile, RoundTripsAndRefusesWhatIsNotWhole) {
   const Scratch folder;
   SumsFile file;
-  file.key = {{"what", "a test"}};
+  file.key = R"({"what":"a test"})";
   file.first_receiver = 5;
   file.blocks_done = 2;
   file.blocks_all = 3;
