@@ -5,12 +5,10 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <optional>
 
 #include "base/errors.h"
 #include "base/json.h"
-#include "base/numbers.h"
 
 namespace kiln {
 
@@ -32,11 +30,6 @@ std::string json_text(const Json& value, int indent) {
 
 std::string Extent::text() const {
   return width == height ? std::to_string(width) : fmt::format("{}x{}", width, height);
-}
-
-std::optional<std::array<double, 3>> parse_colors(const std::string& text) {
-  constexpr double largest = std::numeric_limits<double>::max();
-  return color_within(text, -largest, largest);
 }
 
 std::string numbers_text(std::initializer_list<double> numbers) {

@@ -27,10 +27,6 @@ struct Extent {
   std::string text() const;
 };
 
-/// Parses red, green and blue: "0.8" (three times that) or "0.8,0.5,0.2", also with the semicolons that a list of
-/// pipeline.yaml becomes; numbers are finite. Nothing for other text.
-std::optional<std::array<double, 3>> parse_colors(const std::string& text);
-
 /// Numbers between commas, each as short as it reads back.
 std::string numbers_text(std::initializer_list<double> numbers);
 std::string color_text(const std::array<float, 3>& color);
