@@ -7,8 +7,8 @@
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "base/json.h"
-#include "detail/asset_hints.h"
 #include "image/image_file.h"
+#include "maps/asset_hints.h"
 
 int main(int argc, char** argv) {
   using namespace kiln;

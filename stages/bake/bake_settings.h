@@ -6,8 +6,8 @@
 
 #include "bake/engines/shadow_settings.h"
 #include "base/options.h"
-#include "detail/seam_choice.h"
 #include "import/import_settings.h"
+#include "maps/seam_choice.h"
 #include "material/bounce_settings.h"
 #include "material/material_settings.h"
 #include "material/surroundings_settings.h"

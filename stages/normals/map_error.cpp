@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "detail/footprint.h"
+#include "maps/footprint.h"
 #include "mesh/tangent_space.h"
 #include "normals/surface_match.h"
 #include "raycast/ray_scene.h"

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "base/options.h"
-#include "detail/normal_space.h"
-#include "detail/seam_choice.h"
 #include "import/import_settings.h"
+#include "maps/normal_space.h"
+#include "maps/seam_choice.h"
 #include "material/material_settings.h"
 
 namespace kiln {

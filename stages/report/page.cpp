@@ -7,7 +7,7 @@
 
 #include "base/asset_layout.h"
 #include "base/json.h"
-#include "detail/texel_way.h"
+#include "maps/texel_way.h"
 #include "report/error_section.h"
 #include "report/labels.h"
 #include "report/page_style.h"

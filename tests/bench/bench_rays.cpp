@@ -19,8 +19,8 @@
 
 #include "base/parallel.h"
 #include "cost.h"
-#include "detail/detail_maps.h"
 #include "import/import_mesh.h"
+#include "maps/detail_maps.h"
 #include "mesh/draco_file.h"
 #include "mesh/triangle_mesh.h"
 #include "raycast/beam_transfer.h"

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "base/parallel.h"
-#include "detail/detail_maps.h"
-#include "detail/seam_solver.h"
 #include "image/gutter.h"
+#include "maps/detail_maps.h"
+#include "maps/seam_solver.h"
 #include "normals/normals.h"
 #include "shapes.h"
 

@@ -8,10 +8,10 @@
 
 #include "base/errors.h"
 #include "base/outputs.h"
-#include "detail/detail_maps.h"
 #include "image/compare.h"
 #include "image/image_file.h"
 #include "lights/light_file.h"
+#include "maps/detail_maps.h"
 #include "mesh/tangent_space.h"
 #include "prt_folders.h"
 #include "render/output/contact_sheet.h"

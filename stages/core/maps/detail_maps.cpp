@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "detail/detail_maps.h"
+#include "maps/detail_maps.h"
 
 #include <algorithm>
 #include <cmath>

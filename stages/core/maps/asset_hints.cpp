@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "detail/asset_hints.h"
+#include "maps/asset_hints.h"
 
 #include <algorithm>
 
