@@ -101,6 +101,29 @@ void CommandLine::list_option(const std::string& name, std::vector<std::string>&
   app_->add_option("--" + name, texts, help)->expected(1)->take_all()->type_name("")->group(heading);
 }
 
+void CommandLine::paths(const std::string& name, std::vector<fs::path>& paths, const std::string& help) {
+  app_->add_option(name, paths, help)->required();
+}
+
+void CommandLine::text_option(const std::string& name, std::string& text, const std::string& heading,
+                              const std::string& help) {
+  app_->add_option("--" + name, text, help)->type_name("")->group(heading);
+}
+
+void CommandLine::number_option(const std::string& name, double& number, const std::string& heading,
+                                const std::string& help) {
+  app_->add_option("--" + name, number, help)
+      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
+      ->type_name("")
+      ->group(heading);
+}
+
+void CommandLine::flag(const std::string& name, bool& given, const std::string& heading, const std::string& help) {
+  app_->add_flag("--" + name, given, help)->group(heading);
+}
+
+void CommandLine::footer(const std::string& text) { app_->footer(text); }
+
 void CommandLine::options(const std::string& heading, const OptionSet& options) {
   option_sets_.push_back(options);
   for (const Option& option : option_sets_.back().options()) {
