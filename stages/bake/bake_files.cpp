@@ -18,6 +18,7 @@
 #include "material/load_albedo.h"
 #include "material/surroundings.h"
 #include "mesh/draco_file.h"
+#include "sh/directions.h"
 
 namespace kiln {
 

@@ -12,7 +12,7 @@
 #include "material/material_settings.h"
 #include "material/surroundings_settings.h"
 #include "scatter/subsurface_settings.h"
-#include "sh/directions.h"
+#include "sh/sampling.h"
 
 namespace kiln {
 

@@ -27,6 +27,7 @@
 #include "bench_scene.h"
 #include "cost.h"
 #include "sh/basis.h"
+#include "sh/directions.h"
 
 namespace {
 

@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "bounce_stand.h"
 #include "import/import_mesh.h"
+#include "sh/directions.h"
 #include "shapes.h"
 
 namespace kiln {

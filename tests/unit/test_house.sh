@@ -111,6 +111,11 @@ reached=$(reached_headers "$source_folder"/tools/view/state/* "$source_folder/to
 grep -E '^(epoxy|GL|GLFW|EGL|GLES[0-9])/' <<< "$reached" && fault "the viewer's state or the settings of pictures include GL"
 grep -rnE '#include "view/(draw|files|window)/' "$source_folder/tools/view/state" && fault "the viewer's state includes rooms above it"
 
+# Settings of stages are light: the driver links all of them.
+reached=$(reached_headers "$source_folder"/stages/*/*_settings.h "$source_folder"/stages/*/*_stage.h)
+[ "$(wc -l <<< "$reached")" -gt 80 ] || fault "found few headers beneath the stages' settings"
+grep -E '^(Eigen|CGAL|OpenMesh|embree3|epoxy|tbb|nlohmann/json\.hpp|CLI)' <<< "$reached" && fault "the settings of stages include heavy libraries"
+
 # The EGL engine can be carried to a bare machine: besides the C++ runtime it needs EGL, GL and what loads them.
 needed=$(readelf -d "$engine_program" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p')
 grep -qE '^lib(EGL|epoxy)\.' <<< "$needed" || fault "$engine_program does not look like the EGL engine: it needs $needed"

@@ -12,6 +12,7 @@
 #include "base/stopwatch.h"
 #include "raycast/beam_transfer.h"
 #include "sh/basis.h"
+#include "sh/directions.h"
 
 namespace kiln {
 
