@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 
-#include "image/compare.h"
 #include "image/image.h"
 
 namespace kiln {
@@ -16,7 +15,10 @@ Image<float> mean_of(const PictureEstimates& estimates);
 
 /// Difference of a picture from a reference, over the pixels that both cover wholly: elsewhere the background would be
 /// compared.
-struct PictureDifference : ImageDifference {
+struct PictureDifference {
+  double root_mean_square = 0;
+  double largest = 0;
+  double relative_l2 = 0;      ///< length of the difference over the reference's
   double reference_noise = 0;  ///< relative L2 of the noise in the mean of the reference's estimates
   std::size_t pixels = 0;
 };
