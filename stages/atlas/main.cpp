@@ -6,7 +6,9 @@
 #include "base/asset_layout.h"
 #include "base/command_line.h"
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/json.h"
+#include "base/outputs.h"
 #include "image/image_file.h"
 #include "maps/asset_hints.h"
 

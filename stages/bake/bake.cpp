@@ -12,6 +12,7 @@
 #include "bake/integrate/integration.h"
 #include "base/errors.h"
 #include "base/json.h"
+#include "base/progress.h"
 #include "base/stopwatch.h"
 #include "sh/basis.h"
 

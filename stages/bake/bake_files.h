@@ -8,6 +8,7 @@
 #include "bake/bake.h"
 #include "bake/scene/buried_receivers.h"
 #include "base/json.h"
+#include "base/outputs.h"
 
 namespace kiln {
 

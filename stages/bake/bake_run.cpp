@@ -7,6 +7,7 @@
 #include "base/asset_layout.h"
 #include "base/command_line.h"
 #include "base/errors.h"
+#include "base/outputs.h"
 
 namespace kiln {
 

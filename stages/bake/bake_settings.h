@@ -5,6 +5,7 @@
 #include <string>
 
 #include "bake/engines/shadow_settings.h"
+#include "base/extent.h"
 #include "base/options.h"
 #include "import/import_settings.h"
 #include "maps/seam_choice.h"

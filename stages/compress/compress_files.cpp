@@ -8,6 +8,7 @@
 
 #include "asset/write_asset.h"
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/json.h"
 #include "base/outputs.h"
 #include "base/parallel.h"

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "base/errors.h"
+#include "base/extent.h"
 #include "base/json.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"

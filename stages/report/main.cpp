@@ -2,7 +2,9 @@
 
 #include "base/command_line.h"
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/json.h"
+#include "base/outputs.h"
 #include "report/report_files.h"
 
 int main(int argc, char** argv) {

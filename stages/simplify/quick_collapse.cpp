@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "base/parallel_sort.h"
+#include "base/progress.h"
 #include "simplify/thinnest_heights.h"
 #include "simplify/triangle_shape.h"
 #include "simplify/unit_frame.h"

@@ -24,6 +24,7 @@
 
 #include "bake/backends.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "bench_scene.h"
 #include "cost.h"
 #include "sh/basis.h"

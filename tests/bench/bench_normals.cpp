@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <string>
 
+#include "base/extent.h"
 #include "image/image_file.h"
 #include "import/import_mesh.h"
 #include "maps/asset_hints.h"

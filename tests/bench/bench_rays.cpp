@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "cost.h"
 #include "import/import_mesh.h"
 #include "maps/detail_maps.h"

@@ -7,6 +7,7 @@
 #include "base/errors.h"
 #include "base/json.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "image/image_file.h"
 #include "image/srgb.h"
 #include "maps/detail_maps.h"

@@ -12,6 +12,7 @@
 #include "atlas/drawing.h"
 #include "atlas/pack.h"
 #include "base/errors.h"
+#include "base/extent.h"
 #include "base/parallel.h"
 #include "import/import_mesh.h"
 #include "mesh/uv_raster.h"

@@ -12,6 +12,7 @@
 #include "bake/rays/beam_engine.h"
 #include "bake/rays/embree_engine.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "import/import_mesh.h"
 #include "sh/basis.h"
 #include "sh/directions.h"

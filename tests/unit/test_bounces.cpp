@@ -10,6 +10,7 @@
 #include "bake/egl/bundle_engine.h"
 #include "base/errors.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "bounce_stand.h"
 #include "import/import_mesh.h"
 #include "sh/directions.h"

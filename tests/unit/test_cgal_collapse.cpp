@@ -11,8 +11,9 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/hashes.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "hard_shapes.h"
 #include "import/import_mesh.h"
 #include "mesh/hard_edges.h"

@@ -14,6 +14,7 @@
 
 #include "asset/prt_asset.h"
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/outputs.h"
 #include "base/parallel.h"
 #include "compress/clustered_pca.h"

@@ -13,7 +13,8 @@
 #include <thread>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
+#include "base/hashes.h"
 #include "image/gutter.h"
 #include "image/image_file.h"
 #include "scratch.h"

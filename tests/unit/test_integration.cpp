@@ -11,6 +11,8 @@
 #include "bake/integrate/integration.h"
 #include "bake/planes/quantisation_floor.h"
 #include "base/errors.h"
+#include "base/outputs.h"
+#include "base/progress.h"
 #include "import/import_mesh.h"
 #include "scratch.h"
 #include "shapes.h"

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "raycast/gather.h"
 #include "sh/basis.h"
 #include "sh/directions.h"

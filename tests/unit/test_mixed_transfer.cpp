@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "import/import_mesh.h"
 #include "raycast/mixed_transfer.h"
 #include "raycast/ray_transfer.h"

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.h"
+#include "base/extent.h"
 #include "base/json.h"
 #include "base/numbers.h"
 #include "base/options.h"

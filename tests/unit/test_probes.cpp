@@ -7,7 +7,9 @@
 
 #include "asset/probe_set.h"
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/json.h"
+#include "base/outputs.h"
 #include "base/parallel.h"
 #include "mesh/winding.h"
 #include "probes/probe_points.h"

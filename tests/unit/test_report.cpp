@@ -6,6 +6,8 @@
 
 #include "base/errors.h"
 #include "base/file_names.h"
+#include "base/files.h"
+#include "base/hashes.h"
 #include "base/html.h"
 #include "base/json.h"
 #include "base/outputs.h"

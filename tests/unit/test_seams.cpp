@@ -3,6 +3,7 @@
 #include <functional>
 #include <gtest/gtest.h>
 
+#include "base/extent.h"
 #include "base/parallel.h"
 #include "image/gutter.h"
 #include "maps/detail_maps.h"

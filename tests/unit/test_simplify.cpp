@@ -11,8 +11,9 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "base/parallel.h"
+#include "base/progress.h"
 #include "import/import_mesh.h"
 #include "mesh/mesh_distance.h"
 #include "mesh/mesh_repair.h"

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/json.h"
-#include "base/outputs.h"
 #include "base/parallel.h"
 #include "hard_shapes.h"
 #include "import/import_mesh.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "image/image_file.h"
 #include "lights/light_file.h"
 #include "maps/detail_maps.h"

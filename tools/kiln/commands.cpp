@@ -9,9 +9,9 @@
 
 #include "base/errors.h"
 #include "base/file_names.h"
+#include "base/interruption.h"
 #include "base/json.h"
 #include "base/process.h"
-#include "base/progress.h"
 #include "kiln/build.h"
 #include "kiln/clean.h"
 #include "kiln/init.h"

@@ -10,10 +10,11 @@
 #include <unistd.h>
 
 #include "base/errors.h"
+#include "base/files.h"
+#include "base/interruption.h"
 #include "base/json.h"
 #include "base/outputs.h"
 #include "base/process.h"
-#include "base/progress.h"
 #include "base/stopwatch.h"
 #include "kiln/stage_state.h"
 #include "report/judging.h"

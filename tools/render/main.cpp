@@ -2,7 +2,9 @@
 
 #include "base/command_line.h"
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/json.h"
+#include "base/outputs.h"
 #include "base/stopwatch.h"
 #include "lights/light_command.h"
 #include "render/render.h"

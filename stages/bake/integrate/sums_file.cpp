@@ -6,8 +6,9 @@
 #include <fstream>
 
 #include "base/errors.h"
+#include "base/files.h"
+#include "base/hashes.h"
 #include "base/json.h"
-#include "base/outputs.h"
 
 namespace kiln {
 

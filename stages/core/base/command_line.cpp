@@ -19,9 +19,12 @@
 
 #include "base/errors.h"
 #include "base/file_names.h"
+#include "base/hashes.h"
 #include "base/help_pages.h"
+#include "base/interruption.h"
 #include "base/json.h"
 #include "base/process.h"
+#include "base/progress_bar.h"
 #include "base/stopwatch.h"
 
 namespace kiln {

@@ -24,25 +24,6 @@ std::optional<Number> parse(const std::string& text) {
 
 }  // namespace
 
-std::string json_text(const Json& value, int indent) {
-  return value.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
-
-std::string Extent::text() const {
-  return width == height ? std::to_string(width) : fmt::format("{}x{}", width, height);
-}
-
-std::string numbers_text(std::initializer_list<double> numbers) {
-  std::string text;
-  for (const double number : numbers) text += (text.empty() ? "" : ",") + fmt::format("{}", number);
-  return text;
-}
-
-std::string color_text(const std::array<float, 3>& color) {
-  const auto [red, green, blue] = color;
-  return red == green && green == blue ? fmt::format("{}", red) : fmt::format("{},{},{}", red, green, blue);
-}
-
 OptionSet& OptionSet::integer(const std::string& name, int& value, int lowest, int highest, const std::string& help) {
   const std::string range = fmt::format("{} to {}", lowest, highest);
   auto set = [=, &value](const std::string& text) {

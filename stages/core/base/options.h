@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -9,27 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "base/extent.h"
 #include "base/json_fwd.h"
 
 namespace kiln {
-
-/// Width and height of a texture, texels. One number is a square.
-struct Extent {
-  int width = 0;
-  int height = 0;
-
-  Extent() = default;
-  Extent(int side) : width(side), height(side) {}  // NOLINT: a number is a square
-  Extent(int across, int up) : width(across), height(up) {}
-  bool operator==(const Extent&) const = default;
-
-  /// Writes "512" or "1024x512".
-  std::string text() const;
-};
-
-/// Numbers between commas, each as short as it reads back.
-std::string numbers_text(std::initializer_list<double> numbers);
-std::string color_text(const std::array<float, 3>& color);
 
 /// What a setting has a say in, where a stage keeps its work half done: sums of integration, which later settings only
 /// store.

@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/json.h"
-#include "base/outputs.h"
 
 namespace kiln {
 

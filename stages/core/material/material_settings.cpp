@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/errors.h"
+#include "base/number_text.h"
 #include "base/numbers.h"
 
 namespace kiln {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/errors.h"
+#include "base/number_text.h"
 #include "base/numbers.h"
 #include "scatter/materials.h"
 
