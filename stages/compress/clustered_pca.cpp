@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "base/parallel.h"
+#include "compress/chunks.h"
 
 namespace kiln {
 

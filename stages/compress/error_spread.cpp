@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "compress/chunks.h"
 
 namespace kiln {
 

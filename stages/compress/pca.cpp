@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "compress/chunks.h"
+
 namespace kiln {
 
 namespace {

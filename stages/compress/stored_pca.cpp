@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "compress/chunks.h"
 
 namespace kiln {
 
