@@ -14,7 +14,7 @@
 #include "atlas/relax.h"
 #include "atlas/stretch.h"
 #include "base/parallel.h"
-#include "mesh/mesh_components.h"
+#include "mesh/disjoint_sets.h"
 
 namespace kiln {
 

@@ -16,6 +16,7 @@
 #include "base/progress.h"
 #include "hard_shapes.h"
 #include "import/import_mesh.h"
+#include "mesh/disjoint_sets.h"
 #include "mesh/hard_edges.h"
 #include "mesh/mesh_components.h"
 #include "mesh/mesh_repair.h"

@@ -9,7 +9,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
-#include "mesh/mesh_components.h"
+#include "mesh/disjoint_sets.h"
 #include "mesh/same_position.h"
 #include "mesh/triangle_edges.h"
 #include "raycast/exact_side.h"
