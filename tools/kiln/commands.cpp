@@ -15,6 +15,7 @@
 #include "kiln/build.h"
 #include "kiln/clean.h"
 #include "kiln/init.h"
+#include "kiln/made_meshes.h"
 #include "kiln/makefile.h"
 #include "kiln/pipeline.h"
 #include "kiln/plan/plan.h"
