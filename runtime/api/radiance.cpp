@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <numeric>
 #include <string>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
+#include "base/parallel.h"
 #include "sh/lights.h"
 
 namespace kiln::runtime {
@@ -41,9 +40,9 @@ std::vector<float> exit_radiance(const Asset& asset, std::span<const float> ligh
   const std::size_t coefficients = require_light(asset, light), length = asset.vector_length();
   std::vector<float> radiance(3 * asset.points());
   constexpr std::size_t most_at_once = 4096;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, asset.points(), most_at_once), [&](const auto& range) {
-    for (std::size_t first = range.begin(); first < range.end(); first += most_at_once) {
-      std::vector<std::uint32_t> points(std::min(most_at_once, range.end() - first));
+  parallel_ranges(0, asset.points(), most_at_once, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t first = begin; first < end; first += most_at_once) {
+      std::vector<std::uint32_t> points(std::min(most_at_once, end - first));
       std::iota(points.begin(), points.end(), static_cast<std::uint32_t>(first));
       std::vector<float> vectors(points.size() * length);
       asset.transfer(points, vectors);

@@ -5,9 +5,9 @@
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <tbb/parallel_for.h>
 
 #include "base/errors.h"
+#include "base/parallel.h"
 
 namespace kiln {
 
@@ -95,7 +95,7 @@ Image<float> relight_texels(const PrtAsset& asset, const LightCoefficients& ligh
   const float white = std::exp2(static_cast<float>(asset.bits)) - 1;
   Image<float> radiance(asset.width, asset.height, 3);
   const auto relight = [&](const auto& pictures) {
-    tbb::parallel_for(0, asset.height, [&](int j) {
+    parallel_for(0, asset.height, [&](int j) {
       for (int i = 0; i < asset.width; ++i) {
         const std::size_t texel = static_cast<std::size_t>(j) * asset.width + i;
         const PlaneWeights& weights = clusters[asset.clusters ? asset.clusters->of_texel(texel) : 0];

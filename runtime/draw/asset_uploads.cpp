@@ -6,10 +6,10 @@
 #include <string>
 
 #include "base/errors.h"
-#include "detail/detail_maps.h"
-#include "detail/footprint.h"
 #include "gpu/program.h"
 #include "image/image_file.h"
+#include "maps/detail_maps.h"
+#include "maps/footprint.h"
 
 namespace kiln {
 

@@ -12,6 +12,7 @@
 #include "atlas/density.h"
 #include "atlas/pack.h"
 #include "base/errors.h"
+#include "base/extent.h"
 #include "base/json.h"
 #include "base/stopwatch.h"
 #include "mesh/draco_file.h"

@@ -6,6 +6,7 @@
 
 #include "atlas/atlas_settings.h"
 #include "atlas/measure.h"
+#include "base/extent.h"
 #include "base/progress.h"
 #include "mesh/triangle_mesh.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "base/extent.h"
 #include "base/options.h"
 #include "import/import_settings.h"
 

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <numbers>
-#include <tbb/parallel_for.h>
 
 #include "atlas/disks.h"
 #include "atlas/grow.h"
 #include "atlas/merge.h"
 #include "atlas/parameterise.h"
+#include "base/parallel.h"
 
 namespace kiln {
 
@@ -26,7 +26,7 @@ int flatten_or_split(Disks& disks, std::vector<Chart>& charts, std::vector<std::
   int splits = 0;
   while (!ids.empty()) {
     std::vector<std::uint8_t> flat(ids.size());
-    tbb::parallel_for(std::size_t{0}, ids.size(), [&](std::size_t i) {
+    parallel_for(std::size_t{0}, ids.size(), [&](std::size_t i) {
       charts[ids[i]] = chart_of_disk(disks, ids[i]);
       flat[i] = parameterise_quickly(disks.surface(), charts[ids[i]]) &&
                 keeps_bounds(disks.surface(), charts[ids[i]], settings);
@@ -67,7 +67,7 @@ ChartSet cut_into_charts(const Surface& surface, const ChartSettings& settings, 
   for (const std::uint32_t id : disks.ids()) result.charts.push_back(std::move(charts[id]));
   // Finally flatten each chart by the best of several ways, its merged uvs among them.
   std::vector<std::uint8_t> flat(result.charts.size());
-  tbb::parallel_for(std::size_t{0}, flat.size(), [&](std::size_t i) {
+  parallel_for(std::size_t{0}, flat.size(), [&](std::size_t i) {
     Chart best = result.charts[i];
     flat[i] = parameterise(surface, best);
     const auto clear = [&](const Chart& c) { return keeps_clear(surface, c, settings.clearance); };

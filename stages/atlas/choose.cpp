@@ -4,6 +4,8 @@
 #include <array>
 #include <optional>
 
+#include "base/progress.h"
+
 namespace kiln {
 
 ChartSet choose_charts(const Surface& surface, const ChartSettings& charts, const PackSettings& pack,

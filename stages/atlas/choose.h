@@ -3,6 +3,7 @@
 
 #include "atlas/charts.h"
 #include "atlas/pack.h"
+#include "base/progress.h"
 
 namespace kiln {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <tbb/parallel_for.h>
 
+#include "base/parallel.h"
 #include "mesh/uv_raster.h"
 #include "raycast/ray_scene.h"
 #include "raycast/surface_transfer.h"
@@ -70,7 +70,7 @@ Samples sample_charts(const Surface& surface, const std::vector<Chart>& charts, 
 /// Moves samples to the nearest point of `high` that faces the same way.
 void move_to(const TriangleMesh& high, Samples& samples) {
   const RayScene scene(high);
-  tbb::parallel_for(std::size_t{0}, samples.positions.size(), [&](std::size_t k) {
+  parallel_for(std::size_t{0}, samples.positions.size(), [&](std::size_t k) {
     const SurfacePoint found =
         scene.closest_facing_point(samples.positions[k], samples.normals[k], std::numeric_limits<float>::infinity());
     if (!found.found()) return;

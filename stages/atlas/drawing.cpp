@@ -7,6 +7,7 @@
 
 #include "atlas/measure.h"
 #include "atlas/surface.h"
+#include "base/extent.h"
 #include "mesh/uv_raster.h"
 
 namespace kiln {

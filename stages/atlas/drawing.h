@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "base/options.h"
+#include "base/extent.h"
 #include "image/image.h"
 #include "mesh/triangle_mesh.h"
 

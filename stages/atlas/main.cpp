@@ -6,9 +6,11 @@
 #include "base/asset_layout.h"
 #include "base/command_line.h"
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/json.h"
-#include "detail/asset_hints.h"
+#include "base/outputs.h"
 #include "image/image_file.h"
+#include "maps/asset_hints.h"
 
 int main(int argc, char** argv) {
   using namespace kiln;

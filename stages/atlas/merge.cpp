@@ -10,11 +10,11 @@
 #include <numeric>
 #include <optional>
 #include <queue>
-#include <tbb/parallel_for.h>
 
 #include "atlas/relax.h"
 #include "atlas/stretch.h"
-#include "mesh/mesh_components.h"
+#include "base/parallel.h"
+#include "mesh/disjoint_sets.h"
 
 namespace kiln {
 
@@ -304,7 +304,7 @@ class Merger {
       else
         trials.push_back({candidate, disks_.run_through(h), here, there, {}});
     }
-    tbb::parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
+    parallel_for(std::size_t{0}, trials.size(), [&](std::size_t i) {
       Trial& t = trials[i];
       t.result = flattened(disks_.surface(), glued_chart(disks_, t.run, charts_[t.here], charts_[t.there]), settings_);
     });

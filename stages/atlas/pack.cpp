@@ -12,11 +12,11 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
-#include <tbb/parallel_for.h>
 
 #include "atlas/pack_search.h"
 #include "atlas/place.h"
 #include "base/errors.h"
+#include "base/parallel.h"
 
 namespace kiln {
 
@@ -27,7 +27,7 @@ class Packer {
  public:
   Packer(const std::vector<Chart>& charts, const PackSettings& settings)
       : settings_(settings), find_slack_(settings.slack == 0), pieces_(charts.size()) {
-    tbb::parallel_for(std::size_t{0}, charts.size(), [&](std::size_t i) { pieces_[i] = piece_of(charts[i]); });
+    parallel_for(std::size_t{0}, charts.size(), [&](std::size_t i) { pieces_[i] = piece_of(charts[i]); });
     for (const Piece& piece : pieces_) area_ += piece.area;
     if (settings.width > 0 && settings.height > 0) set_size(settings.width, settings.height);
   }
@@ -131,7 +131,7 @@ class Packer {
     std::vector<std::unique_ptr<PackSearch>> chains(chain_count());
     constexpr int slices = 20;  // progress is reported between slices
     for (int slice = 0; slice <= slices; ++slice) {
-      tbb::parallel_for(std::size_t{0}, chains.size(), [&](std::size_t i) {
+      parallel_for(std::size_t{0}, chains.size(), [&](std::size_t i) {
         if (slice == 0) {
           chains[i] = std::make_unique<PackSearch>(pieces_, grid, angles(search_rotations(i)),
                                                    settings_.seed * 1000 + i, bounds());
@@ -152,7 +152,7 @@ class Packer {
   std::optional<Packing> best_of(const std::vector<std::vector<FoundPlan>>& found, const PlacePlanInTexels& place,
                                  const ProgressFunction& progress, const Better& better) const {
     std::vector<std::optional<Packing>> packings(found.size());
-    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) { packings[i] = place(found[i]); });
+    parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) { packings[i] = place(found[i]); });
     progress(1);
     std::optional<Packing> best;
     for (std::optional<Packing>& packing : packings)

@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <tbb/parallel_for.h>
+
+#include "base/parallel.h"
 
 namespace kiln {
 
@@ -74,7 +75,7 @@ PackGrid grid_of(const PackSettings& settings, double zoom) {
 std::vector<Shape> rasterise(const std::vector<Piece>& pieces, const PackGrid& grid, const Angles& angles,
                              double texels_per_unit) {
   std::vector<Shape> shapes(pieces.size());
-  tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
+  parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
     for (const double angle : angles[i]) {
       BitmapSettings bitmap = grid.bitmap;
       bitmap.texels_per_unit = texels_per_unit * grid.zoom;

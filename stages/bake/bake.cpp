@@ -12,6 +12,7 @@
 #include "bake/integrate/integration.h"
 #include "base/errors.h"
 #include "base/json.h"
+#include "base/progress.h"
 #include "base/stopwatch.h"
 #include "sh/basis.h"
 
@@ -123,7 +124,7 @@ BakeResult bake_shard(OutputSet& outputs, const Shard& shard, const BakeJob& job
 BakeResult merge_shards(const std::vector<fs::path>& folders, const BakeJob& given) {
   const Stopwatch stopwatch;
   // Step 1: read from the first shard how many directions there are, and what integrated them.
-  const Json first = read_sums(folders.front() / slab_name(0)).key;
+  const Json first = Json::parse(read_sums(folders.front() / slab_name(0)).key);
   BakeJob job = given;
   BakeSettings& merged = job.settings;
   if (given.settings.max_error.wanted) {
@@ -147,7 +148,7 @@ BakeResult merge_shards(const std::vector<fs::path>& folders, const BakeJob& giv
     for (const fs::path& folder : folders) {
       const fs::path path = folder / slab_name(slab);
       SumsFile part = read_sums(path);
-      const std::string name = part.key.value("shard", "1/1");
+      const std::string name = Json::parse(part.key).value("shard", "1/1");
       const Shard shard = parse_shard(name);
       if (part.key != integration.key(shard, renderer))
         throw BadInput(path.string(), "holds sums of a bake with other inputs, settings or renderer",

@@ -1,136 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/bake_files.h"
 
-#include <optional>
-#include <utility>
-
-#include "bake/backends.h"
 #include "bake/planes/coefficient_planes.h"
 #include "bake/planes/vertex_planes.h"
-#include "bake/scene/vertex_receivers.h"
 #include "bake/verify.h"
 #include "base/command_line.h"
-#include "base/errors.h"
 #include "base/json.h"
-#include "detail/asset_hints.h"
-#include "detail/detail_maps.h"
-#include "import/import_mesh.h"
-#include "material/load_albedo.h"
-#include "material/surroundings.h"
-#include "mesh/draco_file.h"
+#include "base/outputs.h"
+#include "maps/detail_maps.h"
+#include "sh/directions.h"
 
 namespace kiln {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr int default_size_texels = 512;
-
-/// Returns the size that kiln-atlas packed for, from the record beside the atlas.
-Extent packed_size(const fs::path& atlas) {
-  const AssetHints hints = read_asset_hints(folder_of(atlas));
-  return hints.width > 0 ? Extent(hints.width, hints.height) : Extent(default_size_texels);
-}
-
-/// Fills scene.occluders, with albedos where settings need them. Returns the meshes.
-std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSettings& settings, BakeScene& scene) {
-  std::vector<TriangleMesh> meshes;
-  std::vector<fs::path> files = paths.occluders;
-  const AssetHints hints = read_asset_hints(folder_of(paths.atlas));
-  ImportSettings how = inherit(settings.import, hints.import);
-  if (files.empty()) {
-    files.push_back(paths.atlas);
-    if (is_draco_file(paths.atlas)) how = {};  // it is in our axes and units already
-  }
-  const MeshFrame& frame = settings.per_vertex ? scene.vertex_mesh.frame : scene.atlas.frame;
-  if (settings.subsurface.wanted() && frame.exponent != 0)
-    throw BadInput(paths.atlas.string(), "is a million times larger or smaller than one unit",
-                   "a size that light scatters beneath, in millimetres", "make the asset anew with --scale or --unit");
-  std::vector<ImportedMesh> imported;
-  for (const fs::path& file : files) {
-    imported.push_back(import_mesh(file, how, frame));
-    scene.add_warnings(imported.back().warnings);
-  }
-  scene.said_warnings = hints.warnings;
-
-  std::vector<SurfaceAlbedo> albedos;
-  const bool bounces = settings.bounces.any(), with_albedo = bounces || settings.bake_albedo;
-  const auto add_albedo = [&](const std::string& name, const LoadedAlbedo& loaded) {
-    if (bounces && loaded.albedo.source() == SurfaceAlbedo::Source::none)
-      throw WrongUsage("bounces: found no albedo in " + name +
-                       "; expected materials, colours of vertices, --albedo or --albedo-texture");
-    albedos.push_back(loaded.albedo);
-    scene.further_files.insert(scene.further_files.end(), loaded.files.begin(), loaded.files.end());
-    scene.add_warnings(loaded.warnings());
-  };
-  for (std::size_t k = 0; k < files.size() && with_albedo; ++k)
-    add_albedo(files[k].string(), load_albedo(imported[k], settings.material));
-  for (ImportedMesh& mesh : imported) meshes.push_back(std::move(mesh.mesh));
-
-  // Add the surroundings.
-  scene.neighbours = settings.surroundings.neighbours;
-  BoundingBox own;
-  for (const TriangleMesh& mesh : meshes) own.merge(bounding_box(mesh));
-  for (PlacedMesh& placed : load_surroundings(settings.surroundings, own, settings.material, with_albedo, frame)) {
-    scene.add_warnings(placed.warnings);
-    meshes.push_back(std::move(placed.mesh));
-    if (with_albedo) add_albedo(placed.name, placed.material);
-    if (fs::is_regular_file(placed.name)) scene.further_files.emplace_back(placed.name);
-  }
-  scene.occluders = join_occluders(meshes, std::move(albedos));
-  return meshes;
-}
-
-/// Sets aside receivers that are buried in the occluders, if they stand on them: points of the low mesh lie here and
-/// there inside the high one, and are not buried.
-void set_aside_buried(const BakePaths& paths, const BakeSettings& settings, BakeScene& scene) {
-  const bool on_high = settings.receiver == BakeReceiver::high, high_shadows = !paths.occluders.empty();
-  if (settings.buried == BuriedChoice::keep || settings.subsurface.wanted() || on_high != high_shadows) return;
-  const float ray_offset = ray_offset_of(settings, scene.occluders.hull);
-  scene.buried = settings.per_vertex
-                     ? set_aside_buried_vertices(scene.receivers, scene.vertex_mesh, scene.occluders, ray_offset)
-                     : set_aside_buried(scene.receivers, scene.atlas, scene.occluders, ray_offset);
-  if (scene.buried.everything)
-    scene.add_warnings(
-        {"all of the surface stands inside another part of the occluders, where no light comes: it is baked "
-         "as it is"});
-}
-
-/// Tells whether the transfer includes the albedo: then it must not be multiplied again, as if the surface were white.
-bool has_albedo_within(const BakeSettings& settings) { return settings.bake_albedo || settings.subsurface.wanted(); }
-
-BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings) {
-  if (!paths.detail.empty())
-    throw WrongUsage(
-        "per-vertex: found --detail; expected none, which is for texels; --receiver high takes the first "
-        "--occluder as the high mesh");
-  if (settings.adaptive > 0)
-    throw WrongUsage("per-vertex: found --adaptive; expected none, it goes by squares of texels");
-  if (settings.size.width != 0) throw WrongUsage("per-vertex: found --size; expected none, which is for texels");
-  BakeScene scene;
-  std::vector<std::string> warnings;
-  scene.vertex_mesh = load_vertex_mesh(
-      paths.atlas, inherit(settings.import, read_asset_hints(folder_of(paths.atlas)).import), &warnings);
-  scene.add_warnings(warnings);
-  const std::vector<TriangleMesh> occluders = load_occluders(paths, settings, scene);
-  const bool on_high = settings.receiver == BakeReceiver::high && !paths.occluders.empty();
-  VertexReceivers vertices = on_high ? receivers_on_high_of_vertices(scene.vertex_mesh, occluders.front())
-                                     : receivers_on_vertices(scene.vertex_mesh);
-  scene.receivers = std::move(vertices.receivers);
-  if (on_high) scene.high_area = surface_area(occluders.front());
-  for (std::size_t r = 0; r < scene.receivers.slots.size(); ++r)
-    scene.vertex_mesh.normals[scene.receivers.slots[r]] = scene.receivers.normals[r];
-  set_aside_buried(paths, settings, scene);
-  if (settings.bake_albedo) take_albedos(scene.receivers, scene.occluders);
-  scene.vertex_metrics = {{"receiver_distance_largest", vertices.largest_distance},
-                          {"vertices_facing_away", vertices.facing_away}};
-  if (has_albedo_within(settings))
-    scene.albedo = PrtAlbedo::of_transfer();
-  else if (const auto given = settings.material.albedo)
-    scene.albedo = PrtAlbedo::of_constant({(*given)[0], (*given)[1], (*given)[2]});
-  return scene;
-}
 
 Json describe_adaptive(const AdaptiveReport& report, int directions) {
   const auto all = static_cast<double>(report.baked + report.interpolated);
@@ -144,14 +28,6 @@ Json describe_adaptive(const AdaptiveReport& report, int directions) {
           {"interpolated_texels", report.interpolated},
           {"texel_directions_saved", static_cast<double>(report.interpolated) * directions},
           {"share_saved", all > 0 ? static_cast<double>(report.interpolated) / all : 0}};
-}
-
-/// Returns the albedo for ranges.json: that of the settings, else what the normals stage found.
-PrtAlbedo shipped_albedo(const DetailMaps& detail, const MaterialSettings& material) {
-  const auto given = material.albedo;
-  if (given) return PrtAlbedo::of_constant({(*given)[0], (*given)[1], (*given)[2]});
-  if (!detail.albedo.values().empty()) return PrtAlbedo::of_picture(albedo_map_name);
-  return detail.albedo_known ? PrtAlbedo::of_constant(detail.constant_albedo) : PrtAlbedo();
 }
 
 Json describe_subsurface(const SubsurfaceReport& report) {
@@ -201,10 +77,6 @@ Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene&
 
 }  // namespace
 
-void BakeScene::add_warnings(const std::vector<std::string>& further) {
-  warnings.insert(warnings.end(), further.begin(), further.end());
-}
-
 std::vector<std::string> direction_warnings(const BakeSettings& settings) {
   const bool by_error = settings.max_error.wanted;  // then directions are progressive, as many as it takes
   const int most = by_error ? settings.max_directions : settings.directions;
@@ -219,47 +91,6 @@ std::vector<std::string> direction_warnings(const BakeSettings& settings) {
 
 BakeJob make_job(const BakeScene& scene, const BakeSettings& settings, const CommandLine& command) {
   return {scene.receivers, scene.occluders, settings, command.seed(), command.threads()};
-}
-
-BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) {
-  subsurface_profiles(settings.subsurface);  // throws before anything is baked, if settings do not go together
-  if (settings.subsurface.wanted() && settings.bake_albedo)
-    throw WrongUsage("subsurface: found --bake-albedo; expected one of them, the material has its own albedo");
-  if (settings.bits != 8 && settings.bits != 16)
-    throw WrongUsage("bits: found '" + std::to_string(settings.bits) + "'; expected 8 or 16");
-  if (settings.per_vertex) return load_vertex_scene(paths, settings);
-  if (settings.receiver == BakeReceiver::high && paths.detail.empty())
-    throw WrongUsage("receiver high: found no --detail FOLDER; expected the output of kiln-normals, or --receiver low");
-  BakeScene scene;
-  scene.atlas = load_atlas(paths.atlas);
-  const TriangleMesh& atlas = scene.atlas;
-  std::optional<DetailMaps> detail;
-  if (!paths.detail.empty()) {
-    detail = load_detail_maps(paths.detail, atlas);
-    scene.albedo = has_albedo_within(settings) ? PrtAlbedo::of_transfer() : shipped_albedo(*detail, settings.material);
-    scene.normal_space = detail->normal_space;
-  }
-
-  if (settings.receiver == BakeReceiver::high) {
-    scene.receivers = receivers_on_high(*detail);
-  } else {
-    const Extent size = detail                    ? Extent(detail->width, detail->height)
-                        : settings.size.width > 0 ? settings.size
-                                                  : packed_size(paths.atlas);
-    scene.receivers = receivers_on_low(atlas, size.width, size.height, detail ? &*detail : nullptr);
-  }
-  if (scene.receivers.slots.empty())
-    throw BadInput(paths.atlas.string(), "covers no texel", "an atlas packed for this size", "bake at a larger size");
-
-  const std::vector<TriangleMesh> occluders = load_occluders(paths, settings, scene);
-  if (settings.receiver == BakeReceiver::high && !paths.occluders.empty())
-    scene.high_area = surface_area(occluders.front());
-  set_aside_buried(paths, settings, scene);
-  if (settings.bake_albedo && detail && !settings.material.albedo)
-    take_albedos(scene.receivers, *detail);
-  else if (settings.bake_albedo)
-    take_albedos(scene.receivers, scene.occluders);
-  return scene;
 }
 
 Json describe_bake(const BakeScene& scene, const BakeResult& result) {

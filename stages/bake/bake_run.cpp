@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/bake_run.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "bake/subsurface/subsurface.h"
 #include "base/asset_layout.h"
 #include "base/command_line.h"
 #include "base/errors.h"
+#include "base/outputs.h"
 
 namespace kiln {
 
@@ -24,19 +24,13 @@ fs::path checkpoint_folder(const BakePaths& paths) {
 }  // namespace
 
 void add_run_options(CommandLine& command, BakeRun& run) {
-  command.app()
-      .add_option("--shard", run.shard, "K/N: integrate every N-th block of directions from the K-th, for --merge")
-      ->type_name("")
-      ->group("Run");
-  command.app()
-      .add_flag("--resume", run.resume, "Go on from where an interrupted run of the same command was, if there was one")
-      ->group("Run");
-  command.app()
-      .add_option("--checkpoint-seconds", run.checkpoint_seconds,
-                  "Time between two checkpoints, in OUTPUT.checkpoint until the bake is done (default 60; 0 or more)")
-      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
-      ->type_name("")
-      ->group("Run");
+  command.text_option("shard", run.shard, "Run",
+                      "K/N: integrate every N-th block of directions from the K-th, for --merge");
+  command.flag("resume", run.resume, "Run",
+               "Go on from where an interrupted run of the same command was, if there was one");
+  command.number_option(
+      "checkpoint-seconds", run.checkpoint_seconds, "Run",
+      "Time between two checkpoints, in OUTPUT.checkpoint until the bake is done (default 60; 0 or more)");
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bake/bake_files.h"
+#include "base/outputs.h"
 
 namespace kiln {
 

@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "base/errors.h"
+#include "base/number_text.h"
 
 namespace kiln {
 

@@ -5,14 +5,15 @@
 #include <string>
 
 #include "bake/engines/shadow_settings.h"
+#include "base/extent.h"
 #include "base/options.h"
-#include "detail/seam_choice.h"
 #include "import/import_settings.h"
+#include "maps/seam_choice.h"
 #include "material/bounce_settings.h"
 #include "material/material_settings.h"
 #include "material/surroundings_settings.h"
 #include "scatter/subsurface_settings.h"
-#include "sh/directions.h"
+#include "sh/sampling.h"
 
 namespace kiln {
 

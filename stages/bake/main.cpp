@@ -3,6 +3,7 @@
 #include "bake/bake_run.h"
 #include "base/command_line.h"
 #include "base/json.h"
+#include "base/outputs.h"
 
 int main(int argc, char** argv) {
   return kiln::run_program("kiln-bake", [&] {

@@ -8,6 +8,7 @@
 #include "bake/backends.h"
 #include "bake/bounce/bounced_light.h"
 #include "bake/bounce/receiver_albedo.h"
+#include "base/progress.h"
 #include "sh/directions.h"
 
 namespace kiln {

@@ -7,8 +7,10 @@
 #include <limits>
 #include <numeric>
 #include <random>
-#include <tbb/parallel_for.h>
 #include <tuple>
+
+#include "base/parallel.h"
+#include "compress/chunks.h"
 
 namespace kiln {
 
@@ -183,7 +185,7 @@ double assign(const VectorsOf& vectors, const PcaModel& model, Assignment& assig
   for (int c = 0; c < model.clusters(); ++c) means.col(c) = model.means[static_cast<std::size_t>(c)];
   const auto members = members_of(assignment.near, model.clusters());
   std::vector<double> sums(members.size(), 0.0);
-  tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t c) {
+  parallel_for(std::size_t{0}, members.size(), [&](std::size_t c) {
     if (members[c].empty()) return;
     const Tried tried(model, means, c);
     for (std::size_t first = 0; first < members[c].size(); first += most_members) {
@@ -209,7 +211,7 @@ void find_near(const VectorsOf& vectors, const PcaModel& model, Ids& near) {
 /// Computes principal components of every cluster's texels; a cluster without texels keeps its subspace.
 void refit(const VectorsOf& vectors, const Ids& ids, PcaModel& model) {
   const auto members = members_of(ids, model.clusters());
-  tbb::parallel_for(std::size_t{0}, members.size(), [&](std::size_t c) {
+  parallel_for(std::size_t{0}, members.size(), [&](std::size_t c) {
     if (!members[c].empty()) fit_subspace(vectors(members[c]), model.components, model.means[c], model.bases[c]);
   });
 }

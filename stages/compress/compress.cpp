@@ -9,6 +9,7 @@
 
 #include "base/errors.h"
 #include "base/json.h"
+#include "base/number_text.h"
 #include "base/stopwatch.h"
 #include "compress/compress_files.h"
 

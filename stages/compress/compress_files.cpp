@@ -5,12 +5,13 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
-#include <tbb/parallel_for.h>
 
 #include "asset/write_asset.h"
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/json.h"
 #include "base/outputs.h"
+#include "base/parallel.h"
 
 namespace kiln {
 
@@ -27,7 +28,7 @@ struct Work {
 
 EncodedFiles encode_all(const std::vector<Work>& work, PngEffort effort) {
   EncodedFiles files(work.size());
-  tbb::parallel_for(std::size_t{0}, work.size(), [&](std::size_t k) {
+  parallel_for(std::size_t{0}, work.size(), [&](std::size_t k) {
     files[k] = {work[k].name, encode_grey_png(work[k].picture(), work[k].bits, effort)};
   });
   return files;

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tbb/parallel_for.h>
 #include <vector>
+
+#include "base/parallel.h"
+#include "compress/chunks.h"
 
 namespace kiln {
 
@@ -76,7 +78,7 @@ Lengths lengths_of_rows(const TransferSource& source, const TexelErrors& errors,
 ErrorSpread error_spread(const TransferSource& source, const TexelErrors& errors, std::span<const std::uint8_t> ids) {
   const int height = source.asset().height, strips = (height + strip_rows - 1) / strip_rows;
   std::vector<Lengths> parts(static_cast<std::size_t>(strips));
-  tbb::parallel_for(0, strips, [&](int strip) {
+  parallel_for(0, strips, [&](int strip) {
     parts[static_cast<std::size_t>(strip)] =
         lengths_of_rows(source, errors, ids, strip * strip_rows, std::min(height, (strip + 1) * strip_rows));
   });

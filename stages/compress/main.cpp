@@ -2,6 +2,7 @@
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "base/json.h"
+#include "base/outputs.h"
 #include "compress/compress.h"
 #include "compress/compress_files.h"
 

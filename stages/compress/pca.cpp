@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "compress/chunks.h"
+
 namespace kiln {
 
 namespace {

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <tbb/parallel_for.h>
+
+#include "base/parallel.h"
+#include "compress/chunks.h"
 
 namespace kiln {
 
@@ -66,7 +68,7 @@ std::vector<std::uint32_t> gutter_owners(const TransferSource& source, int gutte
   for (const std::uint32_t texel : source.covered()) owners[texel] = texel;
   for (int ring = 0; ring < gutter; ++ring) {
     const std::vector<std::uint32_t> before = owners;
-    tbb::parallel_for(0, height, [&](int j) {
+    parallel_for(0, height, [&](int j) {
       for (int i = 0; i < width; ++i) {
         std::uint32_t& owner = owners[static_cast<std::size_t>(j) * width + i];
         // Neighbours across an edge come first, then those across a corner.

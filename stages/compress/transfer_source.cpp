@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tbb/parallel_for.h>
 
 #include "base/errors.h"
+#include "compress/chunks.h"
 #include "mesh/uv_raster.h"
 #include "sh/basis.h"
 #include "sh/light_prior.h"
@@ -25,22 +25,6 @@ std::vector<std::uint8_t> coverage_of_mesh(const PrtAsset& asset) {
 }
 
 }  // namespace
-
-void for_each_chunk(std::size_t size, const std::function<void(std::size_t, std::size_t)>& body) {
-  const std::size_t chunks = (size + chunk_texels - 1) / chunk_texels;
-  tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
-    const std::size_t first = chunk * chunk_texels;
-    body(first, std::min(chunk_texels, size - first));
-  });
-}
-
-double sum_of_chunks(std::size_t size, const std::function<double(std::size_t, std::size_t)>& body) {
-  std::vector<double> sums((size + chunk_texels - 1) / chunk_texels, 0.0);
-  for_each_chunk(size, [&](std::size_t first, std::size_t count) { sums[first / chunk_texels] = body(first, count); });
-  double sum = 0;
-  for (const double part : sums) sum += part;
-  return sum;
-}
 
 TransferSource::TransferSource(const PrtAsset& asset) : TransferSource(asset, coverage_of_mesh(asset)) {}
 

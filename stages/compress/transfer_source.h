@@ -3,7 +3,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -48,13 +47,5 @@ class TransferSource {
   std::vector<std::uint32_t> places_;  ///< column in known_ of each texel of the atlas
   double squared_norm_ = 0;
 };
-
-/// Runs `body(first, count)` for chunks of a range of `size`, in parallel. The chunks do not depend on the number of
-/// threads; neither do sums per chunk that are added in their order.
-void for_each_chunk(std::size_t size, const std::function<void(std::size_t first, std::size_t count)>& body);
-inline constexpr std::size_t chunk_texels = 4096;
-
-/// Returns the sum over chunks, in their order, of what `body(first, count)` returns.
-double sum_of_chunks(std::size_t size, const std::function<double(std::size_t first, std::size_t count)>& body);
 
 }  // namespace kiln

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "base/json.h"
-#include "detail/seam_solver.h"
 #include "image/gutter.h"
 #include "image/srgb.h"
+#include "maps/seam_solver.h"
 
 namespace kiln {
 

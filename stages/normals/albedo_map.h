@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "base/json_fwd.h"
-#include "detail/seam_choice.h"
-#include "detail/seams.h"
 #include "image/image.h"
+#include "maps/seam_choice.h"
+#include "maps/seams.h"
 #include "material/surface_albedo.h"
 #include "mesh/triangle_mesh.h"
 #include "normals/map_error.h"

@@ -2,8 +2,8 @@
 #include "normals/bilinear_fit.h"
 
 #include <cmath>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+
+#include "base/parallel.h"
 
 namespace kiln {
 
@@ -129,10 +129,9 @@ void BilinearFit::solve(Image<float>& values, float keep) const {
   const std::size_t texels = stencils_.size();
   std::vector<Eigen::Vector3f> x(texels), residual(texels), step(texels, Eigen::Vector3f::Zero());
   const auto in_rows = [&](const auto& body) {
-    tbb::parallel_for(tbb::blocked_range<int>(1, height_ - 1, 16), [&](const tbb::blocked_range<int>& rows) {
-      for (int j = rows.begin(); j < rows.end(); ++j)
-        for (int i = 1; i < width_ - 1; ++i)
-          if (stencils_[index(i, j)][0] > 0) body(index(i, j));
+    parallel_for(1, height_ - 1, 16, [&](int j) {
+      for (int i = 1; i < width_ - 1; ++i)
+        if (stencils_[index(i, j)][0] > 0) body(index(i, j));
     });
   };
   for (std::size_t k = 0; k < texels; ++k) x[k] = Eigen::Map<const Eigen::Vector3f>(values.values().data() + 3 * k);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/asset_layout.h"
 #include "base/command_line.h"
+#include "base/files.h"
 #include "base/json.h"
+#include "base/outputs.h"
 #include "image/image_file.h"
 #include "import/import_mesh.h"
 #include "material/load_albedo.h"

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <vector>
 
-#include "detail/footprint.h"
+#include "base/parallel.h"
+#include "maps/footprint.h"
 #include "mesh/tangent_space.h"
 #include "normals/surface_match.h"
 #include "raycast/ray_scene.h"
@@ -47,14 +46,12 @@ void for_each_sample(const TriangleMesh& high, const TriangleMesh& atlas, int sa
 
   const RayScene low(atlas);
   constexpr float anywhere = std::numeric_limits<float>::infinity();
-  tbb::parallel_for(tbb::blocked_range<int>(0, samples, 512), [&](const tbb::blocked_range<int>& part) {
-    for (int k = part.begin(); k < part.end(); ++k) {
-      const SurfacePoint at_high = sample_at(areas_up_to, k, samples);
-      const Eigen::Vector3f point = position_at(high, at_high);
-      SurfacePoint at_low = low.closest_facing_point(point, normal_at(high, at_high), anywhere);
-      if (!at_low.found()) at_low = low.closest_point(point, anywhere);
-      visit(static_cast<std::size_t>(k), at_high, TexelSource{at_low.triangle, at_low.u, at_low.v});
-    }
+  parallel_for(0, samples, 512, [&](int k) {
+    const SurfacePoint at_high = sample_at(areas_up_to, k, samples);
+    const Eigen::Vector3f point = position_at(high, at_high);
+    SurfacePoint at_low = low.closest_facing_point(point, normal_at(high, at_high), anywhere);
+    if (!at_low.found()) at_low = low.closest_point(point, anywhere);
+    visit(static_cast<std::size_t>(k), at_high, TexelSource{at_low.triangle, at_low.u, at_low.v});
   });
 }
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "detail/normal_space.h"
 #include "image/image.h"
+#include "maps/normal_space.h"
 #include "material/surface_albedo.h"
 #include "mesh/triangle_mesh.h"
 

@@ -7,15 +7,15 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include "base/errors.h"
+#include "base/extent.h"
 #include "base/json.h"
+#include "base/parallel.h"
 #include "base/stopwatch.h"
-#include "detail/seam_solver.h"
 #include "image/gutter.h"
 #include "image/srgb.h"
+#include "maps/seam_solver.h"
 #include "mesh/uv_raster.h"
 #include "normals/texel_match.h"
 #include "raycast/buried_test.h"
@@ -50,10 +50,7 @@ double measure_distance(const TriangleMesh& high, const RayScene& high_scene, co
                         const UvRaster& raster) {
   const auto largest = [](std::size_t count, const auto& distance_of) {
     std::vector<float> distances(count, 0);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024),
-                      [&](const tbb::blocked_range<std::size_t>& part) {
-                        for (std::size_t k = part.begin(); k < part.end(); ++k) distances[k] = distance_of(k);
-                      });
+    parallel_for(std::size_t{0}, count, 1024, [&](std::size_t k) { distances[k] = distance_of(k); });
     return *std::max_element(distances.begin(), distances.end());
   };
   constexpr float anywhere = std::numeric_limits<float>::infinity();

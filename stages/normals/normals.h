@@ -7,10 +7,10 @@
 
 #include "base/json_fwd.h"
 #include "base/progress.h"
-#include "detail/asset_hints.h"
-#include "detail/detail_maps.h"
-#include "detail/seams.h"
 #include "image/image.h"
+#include "maps/asset_hints.h"
+#include "maps/detail_maps.h"
+#include "maps/seams.h"
 #include "material/surface_albedo.h"
 #include "mesh/triangle_mesh.h"
 #include "normals/albedo_map.h"

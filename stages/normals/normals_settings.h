@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "base/extent.h"
 #include "base/options.h"
-#include "detail/normal_space.h"
-#include "detail/seam_choice.h"
 #include "import/import_settings.h"
+#include "maps/normal_space.h"
+#include "maps/seam_choice.h"
 #include "material/material_settings.h"
 
 namespace kiln {

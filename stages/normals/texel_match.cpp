@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <tbb/parallel_for.h>
 #include <vector>
 
+#include "base/parallel.h"
 #include "normals/bilinear_fit.h"
 #include "normals/chart_ring.h"
 #include "normals/own_parts.h"
@@ -78,7 +78,7 @@ void match_ring(const HighSurface& high, const TriangleMesh& atlas, const UvRast
   const std::vector<RingTexel> ring = ring_of_charts(atlas, raster);
   std::vector<SurfacePoint> points(ring.size());
   std::vector<Eigen::Vector3f> positions(ring.size()), normals(ring.size());
-  tbb::parallel_for(std::size_t{0}, ring.size(), [&](std::size_t k) {
+  parallel_for(std::size_t{0}, ring.size(), [&](std::size_t k) {
     const Eigen::Vector3f low_normal = interpolate(atlas, atlas.normals, ring[k].nearest).normalized();
     points[k] = match_surface(high.mesh, high.scene, ring[k].low_point, low_normal, limits).point;
     positions[k] = position_at(high.mesh, points[k]);
@@ -101,7 +101,7 @@ void match_ring(const HighSurface& high, const TriangleMesh& atlas, const UvRast
 void sharpen(Image<float>& normals, const UvRaster& raster, const UvRaster& known) {
   constexpr float share = 1.0f / 12;
   const Image<float> centres = normals;
-  tbb::parallel_for(1, std::max(1, raster.height - 1), [&](int j) {
+  parallel_for(1, std::max(1, raster.height - 1), [&](int j) {
     for (int i = 1; i + 1 < raster.width; ++i) {
       if (!raster.at(i, j).covered()) continue;
       const auto at = [&](int x, int y) { return Eigen::Map<const Eigen::Vector3f>(centres.pixel(x, y).data()); };
@@ -193,7 +193,7 @@ class AlbedoSamples {
   void solve(Image<float>& texels) const {
     fit_.solve(texels, keep_centre);
     const int width = texels.width(), height = texels.height();
-    tbb::parallel_for(0, height, [&](int j) {
+    parallel_for(0, height, [&](int j) {
       for (int i = 0; i < width; ++i)
         for (int c = 0; c < 3; ++c) {
           float low = std::numeric_limits<float>::infinity(), high = -low;
@@ -231,7 +231,7 @@ void match_all_centres(const HighSurface& high, const TriangleMesh& atlas, const
   constexpr int group_rows = 32;
   for (int begin = 0; begin < raster.height; begin += group_rows) {
     const int end = std::min(begin + group_rows, raster.height);
-    tbb::parallel_for(begin, end, [&](int j) {
+    parallel_for(begin, end, [&](int j) {
       rows[static_cast<std::size_t>(j)] = match_centres(j, high, atlas, raster, limits, matches, triangles);
     });
     progress(static_cast<double>(end) / raster.height);
@@ -272,7 +272,7 @@ class SampleMatcher {
         sums.emplace_back(fit_, bands[k].begin, bands[k].end);
         if (albedo_) albedo_sums.emplace_back(albedo_->fit(), bands[k].begin, bands[k].end);
       }
-      tbb::parallel_for(begin, end, [&](std::size_t k) {
+      parallel_for(begin, end, [&](std::size_t k) {
         sample_band(bands[k], matches.position, sums[k - begin], albedo_ ? &albedo_sums[k - begin] : nullptr);
       });
       for (const BilinearFit::Rows& part : sums) fit_.join(part);

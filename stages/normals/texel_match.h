@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "detail/texel_way.h"
 #include "image/image.h"
+#include "maps/texel_way.h"
 #include "material/surface_albedo.h"
 #include "mesh/triangle_mesh.h"
 #include "mesh/uv_raster.h"

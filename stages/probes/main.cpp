@@ -2,6 +2,7 @@
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "base/json.h"
+#include "base/outputs.h"
 #include "base/stopwatch.h"
 #include "probes/probe_files.h"
 #include "probes/probe_points.h"

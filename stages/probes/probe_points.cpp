@@ -8,7 +8,7 @@
 
 #include "asset/probe_set.h"
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "probes/probes_settings.h"
 
 namespace kiln {

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <limits>
 #include <numbers>
-#include <tbb/parallel_for.h>
 
 #include "base/json.h"
+#include "base/parallel.h"
 #include "mesh/winding.h"
 #include "raycast/ray_scene.h"
 #include "sh/basis.h"
@@ -159,7 +159,7 @@ ProbesResult probe_matrices(const TriangleMesh& mesh, const SurfaceLight& light,
   const Looker looker(mesh, light, probes.bands, settings, seed);
   std::vector<double> open(count, 0);
   for (std::size_t first = 0; first < count; first += group_points) {
-    tbb::parallel_for(first, std::min(count, first + group_points), [&](std::size_t k) {
+    parallel_for(first, std::min(count, first + group_points), [&](std::size_t k) {
       const Eigen::Vector3f& point = probes.positions[k];
       if (box.contains(point) && winding_number(mesh, point.cast<double>()) > inside_winding)
         probes.valid[k] = 0;

@@ -10,7 +10,7 @@
 #include "import/import_settings.h"
 #include "material/bounce_settings.h"
 #include "material/material_settings.h"
-#include "sh/directions.h"
+#include "sh/sampling.h"
 
 namespace kiln {
 

@@ -3,9 +3,8 @@
 
 #include <optional>
 #include <stdexcept>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
+#include "base/parallel.h"
 #include "sh/basis.h"
 
 namespace kiln {
@@ -21,10 +20,10 @@ void BouncePaths::add(const Receivers& receivers, std::span<const Eigen::Vector3
   const ShBasis basis(band_of(coefficients - 1) + 1);
   // Each direction stands for 4 pi / n of the sphere, and transfer has 1 / pi of the integral.
   const float weight = 4.f / static_cast<float>(directions.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, receivers.size(), 64), [&](const auto& range) {
+  parallel_ranges(0, receivers.size(), 64, [&](std::size_t begin, std::size_t end) {
     std::vector<float> row(static_cast<std::size_t>(coefficients));
     Eigen::ArrayXXd sums(coefficients, 3);
-    for (std::size_t r = range.begin(); r != range.end(); ++r) {
+    for (std::size_t r = begin; r != end; ++r) {
       PathRandom random(first + r);
       sums.setZero();
       const Eigen::Vector3f& normal = receivers.normals[r];

@@ -7,6 +7,7 @@
 
 #include "base/asset_layout.h"
 #include "base/errors.h"
+#include "base/interruption.h"
 #include "base/json.h"
 #include "base/process.h"
 #include "base/stopwatch.h"

@@ -6,9 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
+#include "base/parallel.h"
 #include "sh/directions.h"
 
 namespace kiln {
@@ -53,31 +52,29 @@ std::vector<Eigen::Vector3f> direct_radiance(const RayScene& scene, const Receiv
                                              float ray_offset, std::uint64_t first, int most_places) {
   constexpr double golden_angle = 2.399963229728653;
   std::vector<Eigen::Vector3f> radiance(receivers.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, receivers.size(), 256), [&](const auto& range) {
-    for (std::size_t r = range.begin(); r != range.end(); ++r) {
-      const LightCap cap = cap_of(light, receivers.positions[r].template cast<double>());
-      const Eigen::Vector3d across = cap.axis.unitOrthogonal(), along = cap.axis.cross(across);
-      const Eigen::Vector3f origin = receivers.positions[r] + ray_offset * receivers.normals[r];
-      const int places = cap.half_angle == 0 ? 1 : most_places;
-      // Numbers of a low discrepancy, so that neighbours' places differ.
-      const double number = static_cast<double>((first + r) % 65536), turn = number * golden_angle,
-                   shift = std::fmod(number * std::numbers::phi, 1.0);
-      double sum = 0;
-      for (int k = 0; k < places; ++k) {
-        const double cosine = 1 - (1 - std::cos(cap.half_angle)) * (k + shift) / places;
-        const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)), azimuth = turn + golden_angle * k;
-        const Eigen::Vector3d direction =
-            cosine * cap.axis + sine * (std::cos(azimuth) * across + std::sin(azimuth) * along);
-        const double facing = receivers.normals[r].template cast<double>().dot(direction);
-        if (facing <= 0) continue;
-        const Eigen::Vector3f towards = direction.cast<float>();
-        if (!scene.first_hit(origin, towards, 0, std::numeric_limits<float>::infinity()).found()) sum += facing;
-      }
-      // A white surface sends out the irradiance over pi; a cap has 2 pi (1 - cos) steradians.
-      const double share = cap.half_angle == 0 ? 1 : 2 * (1 - std::cos(cap.half_angle)) * cap.radiance;
-      for (int c = 0; c < 3; ++c)
-        radiance[r][c] = static_cast<float>(share * sum / places) * light.color[static_cast<std::size_t>(c)];
+  parallel_for(std::size_t{0}, receivers.size(), 256, [&](std::size_t r) {
+    const LightCap cap = cap_of(light, receivers.positions[r].cast<double>());
+    const Eigen::Vector3d across = cap.axis.unitOrthogonal(), along = cap.axis.cross(across);
+    const Eigen::Vector3f origin = receivers.positions[r] + ray_offset * receivers.normals[r];
+    const int places = cap.half_angle == 0 ? 1 : most_places;
+    // Numbers of a low discrepancy, so that neighbours' places differ.
+    const double number = static_cast<double>((first + r) % 65536), turn = number * golden_angle,
+                 shift = std::fmod(number * std::numbers::phi, 1.0);
+    double sum = 0;
+    for (int k = 0; k < places; ++k) {
+      const double cosine = 1 - (1 - std::cos(cap.half_angle)) * (k + shift) / places;
+      const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)), azimuth = turn + golden_angle * k;
+      const Eigen::Vector3d direction =
+          cosine * cap.axis + sine * (std::cos(azimuth) * across + std::sin(azimuth) * along);
+      const double facing = receivers.normals[r].cast<double>().dot(direction);
+      if (facing <= 0) continue;
+      const Eigen::Vector3f towards = direction.cast<float>();
+      if (!scene.first_hit(origin, towards, 0, std::numeric_limits<float>::infinity()).found()) sum += facing;
     }
+    // A white surface sends out the irradiance over pi; a cap has 2 pi (1 - cos) steradians.
+    const double share = cap.half_angle == 0 ? 1 : 2 * (1 - std::cos(cap.half_angle)) * cap.radiance;
+    for (int c = 0; c < 3; ++c)
+      radiance[r][c] = static_cast<float>(share * sum / places) * light.color[static_cast<std::size_t>(c)];
   });
   return radiance;
 }

@@ -8,7 +8,7 @@
 #include "asset/prt_asset.h"
 #include "base/json_fwd.h"
 #include "base/progress.h"
-#include "detail/detail_maps.h"
+#include "maps/detail_maps.h"
 #include "material/scene_mesh.h"
 #include "report/error_samples.h"
 

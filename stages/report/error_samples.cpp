@@ -6,9 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
+#include "base/parallel.h"
 #include "mesh/surface_point.h"
 #include "raycast/ray_scene.h"
 #include "report/bounce_paths.h"
@@ -97,11 +96,9 @@ class Sampler {
     const std::vector<Draw> draws =
         draw_places(low_, std::max(candidates_per_pixel * wanted, fewest_candidates), sampling_.seed);
     std::vector<Candidate> candidates(draws.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, draws.size(), 256), [&](const auto& range) {
-      for (std::size_t k = range.begin(); k != range.end(); ++k) {
-        candidates[k] = candidate_of(draws[k]);
-        if (candidates[k].count > 0) candidates[k].importance = importance_of(candidates[k]);
-      }
+    parallel_for(std::size_t{0}, draws.size(), 256, [&](std::size_t k) {
+      candidates[k] = candidate_of(draws[k]);
+      if (candidates[k].count > 0) candidates[k].importance = importance_of(candidates[k]);
     });
     double importances = 0;
     for (const Candidate& candidate : candidates) importances += candidate.importance;

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "detail/detail_maps.h"
+#include "maps/detail_maps.h"
 #include "mesh/triangle_mesh.h"
 
 namespace kiln {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <map>
 
+#include "base/html.h"
 #include "report/labels.h"
 
 namespace kiln {
@@ -78,7 +79,7 @@ std::string promise(const std::map<std::string, double>& predicted, double measu
 std::string error_section(const Comparison& comparison) {
   std::string html = "<section><h2>Where the error comes from</h2>\n";
   if (!comparison.error)
-    return html + "<p class=note>Not measured: " + escaped(comparison.error_left_out) + ".</p></section>\n";
+    return html + "<p class=note>Not measured: " + html_escaped(comparison.error_left_out) + ".</p></section>\n";
   const ErrorSplit& split = *comparison.error;
   html += fmt::format(
       "<p class=note>The expected relighting error of what a viewer sees against the high mesh, at {} points of the "
@@ -93,7 +94,7 @@ std::string error_section(const Comparison& comparison) {
   std::ranges::stable_sort(causes, std::greater<>(), &ErrorCause::error);
   for (const ErrorCause& cause : causes) {
     const auto* text = std::ranges::find_if(texts, [&](const CauseText& each) { return cause.name == each.name; });
-    html += text == std::end(texts) ? rows.row(cause.name, escaped(cause.name), cause.error, "")
+    html += text == std::end(texts) ? rows.row(cause.name, html_escaped(cause.name), cause.error, "")
                                     : rows.row(cause.name, text->label, cause.error, text->remedy);
   }
   return html + "</tbody></table></section>\n";

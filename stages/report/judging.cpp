@@ -3,6 +3,8 @@
 
 #include "base/errors.h"
 #include "base/file_names.h"
+#include "base/files.h"
+#include "base/hashes.h"
 #include "base/json.h"
 #include "report/verdicts.h"
 

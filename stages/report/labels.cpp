@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <string_view>
 
+#include "base/html.h"
 #include "base/json.h"
 #include "sh/light_spec.h"
 
@@ -177,8 +178,8 @@ std::string metric_label(const std::string& key) {
 std::string metric_value(const std::string& key, const Json& value) {
   if (value.is_null()) return "not finite";
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
-  if (value.is_string()) return escaped(value.get<std::string>());
-  if (!value.is_number()) return escaped(value.dump());
+  if (value.is_string()) return html_escaped(value.get<std::string>());
+  if (!value.is_number()) return html_escaped(value.dump());
   const double number = value.get<double>();
   switch (unit_of(key)) {
     case Unit::share:
@@ -193,29 +194,6 @@ std::string metric_value(const std::string& key, const Json& value) {
       break;
   }
   return value.is_number_integer() ? grouped(value.get<long long>()) : rounded(number, 4);
-}
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
 }
 
 std::string light_label(const std::string& light) {

@@ -30,9 +30,6 @@ std::string rounded(double value, int digits);
 /// Formats a whole number with its digits in groups of three, between narrow no-break spaces, and with a minus sign.
 std::string grouped(long long value);
 
-/// Escapes the characters that HTML reserves.
-std::string escaped(const std::string& text);
-
 /// Describes a light: "from azimuth 45°, elevation 30°".
 std::string light_label(const std::string& light);
 

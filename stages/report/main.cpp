@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <CLI/CLI.hpp>
 
 #include "base/command_line.h"
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/json.h"
+#include "base/outputs.h"
 #include "report/report_files.h"
 
 int main(int argc, char** argv) {
@@ -25,17 +26,10 @@ int main(int argc, char** argv) {
     command.input_option("compressed", compressed, "The asset as kiln-compress stored it, to show beside it");
     command.input_option("probes", probes, "What kiln-probes found around the asset, to list with the other stages");
     command.options("Pictures", report_options(settings));
-    command.app()
-        .add_option("--budget", budgets,
-                    "A limit, 'STAGE.METRIC<=NUMBER' or '>='; may be repeated; exit status 4 where one is missed")
-        ->expected(1)
-        ->take_all()
-        ->type_name("")
-        ->group("Budgets");
-    command.app()
-        .add_flag("--reuse", reuses,
-                  "Where a report of these inputs and settings is there, judge what it has measured and draw nothing")
-        ->group("Budgets");
+    command.list_option("budget", budgets, "Budgets",
+                        "A limit, 'STAGE.METRIC<=NUMBER' or '>='; may be repeated; exit status 4 where one is missed");
+    command.flag("reuse", reuses, "Budgets",
+                 "Where a report of these inputs and settings is there, judge what it has measured and draw nothing");
     command.parse(argc, argv);
 
     // Load.

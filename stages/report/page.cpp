@@ -6,8 +6,9 @@
 #include <fmt/format.h>
 
 #include "base/asset_layout.h"
+#include "base/html.h"
 #include "base/json.h"
-#include "detail/texel_way.h"
+#include "maps/texel_way.h"
 #include "report/error_section.h"
 #include "report/labels.h"
 #include "report/page_style.h"
@@ -32,7 +33,7 @@ constexpr int pyramid_pixels = 192;
 constexpr int sheet_pixels = 96;
 
 std::string image(const std::string& source, const std::string& description, int width, int height) {
-  return fmt::format("<img src='{}' alt='{}' width={} height={}>", source, escaped(description), width, height);
+  return fmt::format("<img src='{}' alt='{}' width={} height={}>", source, html_escaped(description), width, height);
 }
 
 std::string image(const Image<std::uint8_t>& picture, const std::string& description, const fs::path& scratch) {
@@ -53,7 +54,7 @@ std::string software_alarm(const AssetFolder& asset, const Report& report) {
   if (report.comparison.software_renderer)
     who += (who.empty() ? "The pictures were drawn by " : "; the pictures were drawn by ") + report.comparison.renderer;
   if (who.empty()) return "";
-  return "<div class=alarm><strong>⚠ Software renderer</strong>" + escaped(who) +
+  return "<div class=alarm><strong>⚠ Software renderer</strong>" + html_escaped(who) +
          ". The results hold; the timings say nothing of a GPU.</div>\n";
 }
 
@@ -68,7 +69,7 @@ std::string header(const AssetFolder& asset, const Report& report, const Json& m
   seconds += metrics.at("report").at("seconds").get<double>();
 
   std::string html =
-      fmt::format("<header>\n<p class=overline>Kiln asset report</p>\n<h1>{}</h1>\n", escaped(asset.name));
+      fmt::format("<header>\n<p class=overline>Kiln asset report</p>\n<h1>{}</h1>\n", html_escaped(asset.name));
   html += fmt::format(
       "<p class=lead>A mesh of {} triangles as {} triangles, a texture atlas, a normal map and {} transfer coefficient "
       "planes of {} bits.</p>\n",
@@ -154,7 +155,7 @@ std::string relit_section(const AssetFolder& asset, const Report& report, const 
     std::string name = light_label(light.light);
     if (light.camera_azimuth_degrees != front)
       name += fmt::format(", seen from azimuth {:g}°", light.camera_azimuth_degrees);
-    html += "<div class=light><h3>" + escaped(name) + "</h3>\n<div class=quartet>\n";
+    html += "<div class=light><h3>" + html_escaped(name) + "</h3>\n<div class=quartet>\n";
     html += figure(image(cropped(shown_radiance(light.asset), crop), "Asset: " + name, scratch), "<b>Asset</b>");
     html += figure(image(cropped(shown_radiance(light.reference), crop), "Reference: " + name, scratch),
                    "<b>Reference</b>, high mesh by rays");
@@ -250,9 +251,10 @@ std::string textures_section(const AssetFolder& asset, const fs::path& scratch) 
           value(normals, "found_by_nearest_point")));
   if (const fs::path albedo = layout::stage_folder(asset.folder, "normals") / layout::albedo_map;
       has_albedo_map(normals) && fs::exists(albedo))
-    html += figure(image(thumbnail(albedo, 8, texture_pixels), "Albedo", scratch),
-                   fmt::format("<b>Albedo</b> · from {}; off the high mesh's by {} (root mean square, linear)",
-                               escaped(normals["albedo"].value("source", "")), value(normals["albedo"], "error_rms")));
+    html +=
+        figure(image(thumbnail(albedo, 8, texture_pixels), "Albedo", scratch),
+               fmt::format("<b>Albedo</b> · from {}; off the high mesh's by {} (root mean square, linear)",
+                           html_escaped(normals["albedo"].value("source", "")), value(normals["albedo"], "error_rms")));
   if (const fs::path match = layout::stage_folder(asset.folder, "normals") / layout::match_map; fs::exists(match))
     html += match_figure(match, scratch);
   return html + "</div></section>\n";
@@ -299,7 +301,7 @@ std::string footer(const Json& metrics) {
   std::string html = "<footer>";
   html += fmt::format(
       "<p>Kiln {}. All figures of this page are in metrics.json beside it.</p>\n<details><summary>Inputs</summary>\n",
-      escaped(metrics.at("version").get<std::string>()));
+      html_escaped(metrics.at("version").get<std::string>()));
   std::vector<std::string> seen;
   for (const auto& [stage, result] : metrics.items()) {
     if (!result.is_object()) continue;
@@ -308,7 +310,7 @@ std::string footer(const Json& metrics) {
       if (std::find(seen.begin(), seen.end(), file) != seen.end()) continue;
       seen.push_back(file);
       html += fmt::format("<div><code>{}</code> {}</div>\n",
-                          escaped(hash.is_string() ? hash.get<std::string>() : hash.dump()), escaped(file));
+                          html_escaped(hash.is_string() ? hash.get<std::string>() : hash.dump()), html_escaped(file));
     }
   }
   return html + "</details></footer>\n";
@@ -331,7 +333,7 @@ std::string page_html(const AssetFolder& asset, const Report& report, const Json
   const fs::path scratch = scratch_folder / "picture.png";
   return "<!doctype html>\n<html lang=en>\n<head>\n<meta charset=utf-8>\n<meta name=viewport "
          "content='width=device-width, initial-scale=1'>\n<title>" +
-         escaped(asset.name) + " · Kiln report</title>\n<style>\n" + page_style() +
+         html_escaped(asset.name) + " · Kiln report</title>\n<style>\n" + page_style() +
          "</style>\n</head>\n<body><main>\n" + header(asset, report, metrics) +
          relit_section(asset, report, metrics, scratch) + marked_budgets(report.budgets) +
          error_section(report.comparison) + compression_section(asset, report, scratch) +

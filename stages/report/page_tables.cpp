@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
+#include "base/html.h"
 #include "base/json.h"
 #include "report/labels.h"
 
@@ -23,7 +24,7 @@ constexpr std::array stage_colors = {StageColor{"simplify", "#7a5c3e"}, StageCol
                                      StageColor{"report", "#5a5568"}};
 
 std::string row(const std::string& label, const std::string& value) {
-  return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", escaped(label), value);
+  return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", html_escaped(label), value);
 }
 
 /// Makes the rows of a stage's metrics; those of an inner object as "outer: inner", unless zero.
@@ -48,9 +49,9 @@ std::string metric_rows(const std::string& stage, const Json& metrics) {
 std::string settings_rows(const Json& settings) {
   std::string html;
   for (const auto& [key, value] : settings.items())
-    html += row(key, value.is_string()    ? escaped(value.get<std::string>())
+    html += row(key, value.is_string()    ? html_escaped(value.get<std::string>())
                      : value.is_boolean() ? (value.get<bool>() ? "yes" : "no")
-                                          : escaped(value.dump()));
+                                          : html_escaped(value.dump()));
   return html;
 }
 
@@ -71,7 +72,7 @@ std::string verification_section(const AssetFolder& asset) {
       "found in "
       "photographed environments.</p>\n<table><tbody>\n";
   for (const auto& [key, value] : verification.items())
-    html += fmt::format("<tr><td>{}<td class=number>{}\n", escaped(metric_label(key)), metric_value(key, value));
+    html += fmt::format("<tr><td>{}<td class=number>{}\n", html_escaped(metric_label(key)), metric_value(key, value));
   return html + "</tbody></table></section>\n";
 }
 

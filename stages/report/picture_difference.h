@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 
-#include "image/compare.h"
 #include "image/image.h"
 
 namespace kiln {
@@ -16,9 +15,12 @@ Image<float> mean_of(const PictureEstimates& estimates);
 
 /// Difference of a picture from a reference, over the pixels that both cover wholly: elsewhere the background would be
 /// compared.
-struct PictureDifference : ImageDifference {
+struct PictureDifference {
+  double root_mean_square = 0;
+  double largest = 0;
+  double relative_l2 = 0;              ///< length of the difference over the reference's
+  double relative_l2_uncertainty = 0;  ///< by which the reference's noise may make that too small; 95 % confidence
   double reference_noise = 0;          ///< relative L2 of the noise in the mean of the reference's estimates
-  double relative_l2_uncertainty = 0;  ///< by which that noise may make relative_l2 too small; 95 % confidence
   std::size_t pixels = 0;
 };
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "base/outputs.h"
+#include "base/files.h"
 #include "image/image_file.h"
 #include "image/srgb.h"
 

@@ -5,8 +5,8 @@
 
 #include "base/errors.h"
 #include "base/file_names.h"
+#include "base/files.h"
 #include "base/json.h"
-#include "base/outputs.h"
 
 namespace kiln {
 

@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
+#include "base/parallel.h"
 #include "raycast/ray_scene.h"
 #include "raycast/ray_transfer.h"
 #include "report/bounce_paths.h"
@@ -37,12 +36,11 @@ struct VisiblePoints {
 std::vector<VisiblePoints> visible_points(const RayScene& scene, const TriangleMesh& mesh, const ReferenceView& view) {
   const int columns = view.width * view.supersample, rows = view.height * view.supersample;
   std::vector<SurfacePoint> hits(static_cast<std::size_t>(columns) * rows);
-  tbb::parallel_for(tbb::blocked_range<int>(0, rows), [&](const tbb::blocked_range<int>& range) {
-    for (int row = range.begin(); row != range.end(); ++row)
-      for (int column = 0; column < columns; ++column)
-        hits[static_cast<std::size_t>(row) * columns + column] =
-            scene.first_hit(view.camera.position, view.camera.pixel_direction(column, row, columns, rows), 0,
-                            std::numeric_limits<float>::infinity());
+  parallel_for(0, rows, [&](int row) {
+    for (int column = 0; column < columns; ++column)
+      hits[static_cast<std::size_t>(row) * columns + column] =
+          scene.first_hit(view.camera.position, view.camera.pixel_direction(column, row, columns, rows), 0,
+                          std::numeric_limits<float>::infinity());
   });
   std::vector<VisiblePoints> places(static_cast<std::size_t>(view.supersample) * view.supersample);
   for (std::size_t k = 0; k < hits.size(); ++k) {
@@ -73,21 +71,21 @@ std::vector<Eigen::Vector3f> radiance_of(const std::vector<TransferVectors>& cha
   std::vector<Eigen::Vector3f> radiance(receivers.size());
   const bool is_local = light.kind == LightSpec::Kind::sphere;
   const LightCoefficients far = windowed_light(light, view.bands, view.window);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, receivers.size(), 512), [&](const auto& range) {
+  parallel_ranges(0, receivers.size(), 512, [&](std::size_t first, std::size_t last) {
     // Go plane after plane, so that memory is read in order.
-    std::vector<Eigen::Vector3d> sums(range.size(), Eigen::Vector3d::Zero());
+    std::vector<Eigen::Vector3d> sums(last - first, Eigen::Vector3d::Zero());
     std::vector<LightCoefficients> near;
-    for (std::size_t r = range.begin(); is_local && r != range.end(); ++r)
-      near.push_back(windowed_light(light, view.bands, view.window, receivers.positions[r].template cast<double>()));
+    for (std::size_t r = first; is_local && r != last; ++r)
+      near.push_back(windowed_light(light, view.bands, view.window, receivers.positions[r].cast<double>()));
     for (int c = 0; c < 3; ++c) {
       const TransferVectors& transfer = channels[channels.size() == 1 ? 0 : static_cast<std::size_t>(c)];
       for (int i = 0; i < transfer.coefficients; ++i) {
         const std::span<const float> plane = transfer.plane(i);
-        for (std::size_t k = 0; k < range.size(); ++k)
-          sums[k][c] += (is_local ? near[k] : far).channels[c][i] * plane[range.begin() + k];
+        for (std::size_t k = 0; k < last - first; ++k)
+          sums[k][c] += (is_local ? near[k] : far).channels[c][i] * plane[first + k];
       }
     }
-    for (std::size_t k = 0; k < range.size(); ++k) radiance[range.begin() + k] = sums[k].cast<float>();
+    for (std::size_t k = 0; k < last - first; ++k) radiance[first + k] = sums[k].cast<float>();
   });
   return radiance;
 }

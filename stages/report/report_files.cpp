@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "base/file_names.h"
+#include "base/files.h"
+#include "base/hashes.h"
 #include "base/json.h"
 #include "image/image_file.h"
 #include "report/page.h"

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "base/errors.h"
+#include "base/number_text.h"
 
 namespace kiln {
 

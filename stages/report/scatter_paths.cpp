@@ -8,9 +8,8 @@
 #include <numbers>
 #include <optional>
 #include <stdexcept>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
+#include "base/parallel.h"
 #include "mesh/surface_point.h"
 #include "sh/basis.h"
 
@@ -181,7 +180,7 @@ ScatterEntries ScatterPaths::entries(const Receivers& receivers, int lines, std:
   ScatterEntries all;
   const std::size_t blocks = (receivers.size() + block_receivers - 1) / block_receivers;
   std::vector<ScatterEntries> parts(blocks);
-  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
+  parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
     const std::size_t end = std::min(receivers.size(), (block + 1) * block_receivers);
     for (std::size_t r = block * block_receivers; r < end; ++r) {
       PathRandom random(2 * (first + r));
@@ -203,10 +202,10 @@ void add_scattered(const ScatterEntries& entries, const PathWalker& walker, std:
                    std::vector<TransferVectors>& channels, std::vector<TransferVectors>& direct) {
   const int coefficients = channels.front().coefficients;
   const ShBasis basis(band_of(coefficients - 1) + 1);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, entries.ends.size(), block_receivers), [&](const auto& range) {
+  parallel_ranges(0, entries.ends.size(), block_receivers, [&](std::size_t begin, std::size_t end) {
     std::vector<float> row(static_cast<std::size_t>(coefficients));
     Eigen::ArrayXXd all(coefficients, 3), unbounced(coefficients, 3);
-    for (std::size_t r = range.begin(); r != range.end(); ++r) {
+    for (std::size_t r = begin; r != end; ++r) {
       PathRandom random(2 * (first + r) + 1);
       const ShiftedSequence<2> sequence(random);
       all.setZero();

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/errors.h"
+#include "base/html.h"
 #include "base/json.h"
 #include "report/labels.h"
 #include "report/log_axis.h"
@@ -41,7 +42,7 @@ bool is_plottable(const StoredWay& way) { return way.error > 0 && way.bytes_per_
 
 std::string text_at(double x, double y, const std::string& anchor, const std::string& text, const char* kind = "") {
   return fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='{}' class='{}'>{}</text>\n", x, y, anchor, kind,
-                     escaped(text));
+                     html_escaped(text));
 }
 
 const char* family_of(const StoredWay& way) {
@@ -64,8 +65,8 @@ std::string marked(const StoredWay& way, double x, double y, double size, const 
   const std::string element = shape(way, x, y, size, kind);
   const std::string name = element.substr(1, element.find(' ') - 1);
   return fmt::format("{}<title>{}: {} bytes per covered texel, error {} %, {} lookups</title></{}>\n", element,
-                     escaped(way.name()), rounded(way.bytes_per_texel, 3), rounded(100 * way.error, 3), way.lookups,
-                     name);
+                     html_escaped(way.name()), rounded(way.bytes_per_texel, 3), rounded(100 * way.error, 3),
+                     way.lookups, name);
 }
 
 std::string legend() {
@@ -225,9 +226,9 @@ std::string tradeoff_table(const Tradeoff& tradeoff) {
       "class=number>Lookups<th>"
       "</thead><tbody>\n";
   const auto row = [&](const StoredWay& way, const char* remark) {
-    html +=
-        fmt::format("<tr><td>{}<td class=number>{}<td class=number>{}<td class=number>{}<td>{}\n", escaped(way.name()),
-                    metric_value("relighting_error", way.error), rounded(way.bytes_per_texel, 3), way.lookups, remark);
+    html += fmt::format("<tr><td>{}<td class=number>{}<td class=number>{}<td class=number>{}<td>{}\n",
+                        html_escaped(way.name()), metric_value("relighting_error", way.error),
+                        rounded(way.bytes_per_texel, 3), way.lookups, remark);
   };
   row(tradeoff.plain, "plain, 8 bits");
   for (const StoredWay& way : tradeoff.tried) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "base/html.h"
 #include "base/json.h"
 #include "report/labels.h"
 
@@ -35,7 +36,7 @@ std::string bounces_table(const Json& bake) {
       "<table><thead><tr><th>Light<th class=number>Of direct<th><th class=number>Time</thead><tbody>\n",
       metric_value("cache_points", bounces.value("cache_points", Json(0))),
       metric_value("cache_triangles", bounces.value("cache_triangles", Json(0))),
-      escaped(bounces.value("renderer", std::string())));
+      html_escaped(bounces.value("renderer", std::string())));
   html += light_row("direct", 1, bake.value("seconds", 0.0) - of_others);
   if (bounces.contains("cache_seconds"))
     html += fmt::format("<tr><td>direct, at the points<td><td><td class=number>{}\n",

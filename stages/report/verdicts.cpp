@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <stdexcept>
 
+#include "base/html.h"
 #include "report/labels.h"
 
 namespace kiln {
@@ -49,7 +50,7 @@ std::string budgets_section(std::span<const BudgetVerdict> verdicts) {
         "<tr><td><code>{}</code><td class=note>{}<td class=number>{}<td class=number>{} {}<td><div class='meter {}'><i "
         "style='width:{:.0f}%'></i></div>"
         "<td class='verdict {}'>{}\n",
-        escaped(verdict.budget.metric), escaped(metric_label(key)), metric_value(key, verdict.value),
+        html_escaped(verdict.budget.metric), html_escaped(metric_label(key)), metric_value(key, verdict.value),
         verdict.budget.is_highest ? "≤" : "≥", metric_value(key, verdict.budget.limit), tone,
         100 * std::min(1.0, budget_use(verdict)), tone, verdict.met ? "met" : "missed");
   }

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
-#include <tbb/parallel_for.h>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "base/parallel.h"
 #include "mesh/nearest_surface.h"
 #include "simplify/collapsing_mesh.h"
 #include "simplify/lindstrom_turk.h"
@@ -80,10 +80,9 @@ class Collapser {
     const std::size_t vertices = sequence.start.positions.size();
     positions_.resize(vertices);
     planes_.resize(mesh_.triangles().size());
-    tbb::parallel_for(std::size_t{0}, vertices,
-                      [&](std::size_t i) { positions_[i] = frame_.from_object(sequence.start.positions[i]); });
-    tbb::parallel_for(std::size_t{0}, planes_.size(),
-                      [&](std::size_t i) { update_plane(static_cast<std::uint32_t>(i)); });
+    parallel_for(std::size_t{0}, vertices,
+                 [&](std::size_t i) { positions_[i] = frame_.from_object(sequence.start.positions[i]); });
+    parallel_for(std::size_t{0}, planes_.size(), [&](std::size_t i) { update_plane(static_cast<std::uint32_t>(i)); });
     versions_.resize(vertices, 0);
     if (!features.empty()) feature_points_.resize(vertices);
     points_.resize(vertices);
@@ -404,7 +403,7 @@ class Collapser {
     constexpr std::size_t chunk = 4096;
     for (std::size_t begin = 0; begin < heap.size(); begin += 64 * chunk) {
       const std::size_t end = std::min(heap.size(), begin + 64 * chunk);
-      tbb::parallel_for(std::size_t{0}, (end - begin + chunk - 1) / chunk, [&](std::size_t c) {
+      parallel_for(std::size_t{0}, (end - begin + chunk - 1) / chunk, [&](std::size_t c) {
         for (std::size_t i = begin + c * chunk; i < std::min(end, begin + (c + 1) * chunk); ++i)
           heap[i] = candidate(heap[i].a, heap[i].b);
       });

@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tbb/parallel_for.h>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "base/parallel.h"
 #include "mesh/nearest_surface.h"
 #include "simplify/thinnest_heights.h"
 #include "simplify/triangle_shape.h"
@@ -201,7 +201,7 @@ class Fit {
     from_high_.resize(samples_.size());
     constexpr std::size_t chunk = 512;
     const auto in_chunks = [&](std::size_t size, const auto& work) {
-      tbb::parallel_for(std::size_t{0}, (size + chunk - 1) / chunk, [&](std::size_t c) {
+      parallel_for(std::size_t{0}, (size + chunk - 1) / chunk, [&](std::size_t c) {
         for (std::size_t i = c * chunk; i < std::min(size, (c + 1) * chunk); ++i) work(i);
       });
     };
@@ -336,8 +336,8 @@ class Fit {
     for (int attempt = 0; attempt < 8; ++attempt) {
       for (std::size_t i = 0; i < positions_.size(); ++i) positions_[i] = start[i] + step[i];
       std::vector<std::uint8_t> is_bad(triangles_.size());
-      tbb::parallel_for(std::size_t{0}, triangles_.size(),
-                        [&](std::size_t i) { is_bad[i] = !may_become(before[i], triangles_[i]); });
+      parallel_for(std::size_t{0}, triangles_.size(),
+                   [&](std::size_t i) { is_bad[i] = !may_become(before[i], triangles_[i]); });
       std::vector<bool> shorter(positions_.size(), false);
       bool any = false;
       for (std::size_t i = 0; i < triangles_.size(); ++i)

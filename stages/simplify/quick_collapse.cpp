@@ -7,10 +7,11 @@
 #include <boost/container/small_vector.hpp>
 #include <cmath>
 #include <limits>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_sort.h>
 #include <tuple>
 
+#include "base/parallel.h"
+#include "base/parallel_sort.h"
+#include "base/progress.h"
 #include "simplify/thinnest_heights.h"
 #include "simplify/triangle_shape.h"
 #include "simplify/unit_frame.h"
@@ -94,16 +95,16 @@ class QuickCollapser {
         thinnest_(thinnest_heights(sequence.start, frame_.diagonal)) {
     const std::size_t vertices = sequence.start.positions.size();
     positions_.resize(vertices);
-    tbb::parallel_for(std::size_t{0}, vertices,
-                      [&](std::size_t i) { positions_[i] = frame_.from_object(sequence.start.positions[i]); });
+    parallel_for(std::size_t{0}, vertices,
+                 [&](std::size_t i) { positions_[i] = frame_.from_object(sequence.start.positions[i]); });
     is_fixed_.resize(vertices, 0);
     for (const auto& [a, b] : features) is_fixed_[a] = is_fixed_[b] = 1;
     became_.resize(vertices);
     for (std::uint32_t i = 0; i < vertices; ++i) became_[i] = i;
     list_triangles_around();
     quadrics_.resize(vertices);
-    tbb::parallel_for(std::size_t{0}, vertices,
-                      [&](std::size_t i) { quadrics_[i] = quadric_of(static_cast<std::uint32_t>(i)); });
+    parallel_for(std::size_t{0}, vertices,
+                 [&](std::size_t i) { quadrics_[i] = quadric_of(static_cast<std::uint32_t>(i)); });
   }
 
   void run(int target, const ProgressFunction& progress) {
@@ -213,7 +214,7 @@ class QuickCollapser {
         if (a < b && !(is_fixed_[a] && is_fixed_[b])) candidates_.push_back({0, a, b});
       }
     constexpr std::size_t chunk = 4096;
-    tbb::parallel_for(std::size_t{0}, (candidates_.size() + chunk - 1) / chunk, [&](std::size_t c) {
+    parallel_for(std::size_t{0}, (candidates_.size() + chunk - 1) / chunk, [&](std::size_t c) {
       for (std::size_t i = c * chunk; i < std::min(candidates_.size(), (c + 1) * chunk); ++i)
         candidates_[i].cost = static_cast<float>(1e20 * placement(candidates_[i].a, candidates_[i].b).cost);
     });
@@ -229,7 +230,7 @@ class QuickCollapser {
           std::partition(middle, candidates_.end(), [&](const Candidate& c) { return c.cost <= largest; }) -
           candidates_.begin());
     }
-    tbb::parallel_sort(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(considered));
+    parallel_sort(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(considered));
 
     is_touched_.assign(positions_.size(), 0);
     for (std::size_t i = 0; i < considered && faces_ > target; ++i) try_collapse(candidates_[i].a, candidates_[i].b);

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "base/progress.h"
 #include "simplify/collapse.h"
 #include "simplify/vertex_weight.h"
 

@@ -20,9 +20,9 @@
 #include <vector>
 
 #include "asset/prt_asset.h"
-#include "detail/asset_hints.h"
 #include "image/image_file.h"
 #include "import/import_mesh.h"
+#include "maps/asset_hints.h"
 #include "mesh/draco_file.h"
 #include "mesh/uv_raster.h"
 #include "obj_writer.h"

@@ -9,10 +9,10 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
-#include <tbb/global_control.h>
 #include <unistd.h>
 
 #include "atlas/atlas.h"
+#include "base/parallel.h"
 #include "cost.h"
 #include "import/import_mesh.h"
 #include "import/uv_mesh.h"
@@ -86,7 +86,7 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"standard", "best", "both"}));
   app.add_option("--threads", threads, "Of kiln-atlas")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  const ThreadLimit limit(static_cast<std::size_t>(threads));
 
   if (!measured.empty()) {
     print_row(name, measured.filename().string(), {seconds, cpu_seconds}, "-",

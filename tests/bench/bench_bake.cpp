@@ -7,6 +7,7 @@
 #include "bake/bake.h"
 #include "bake/egl/egl_engine.h"
 #include "bake/rays/embree_engine.h"
+#include "base/progress.h"
 #include "import/import_mesh.h"
 #include "sh/directions.h"
 #include "sh/ray_offset.h"

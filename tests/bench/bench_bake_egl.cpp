@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "bake/egl/egl_engine.h"
+#include "base/progress.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 

@@ -14,6 +14,7 @@
 
 #include "bake/backends.h"
 #include "bake/bounce/bounced_light.h"
+#include "base/progress.h"
 #include "bench_scene.h"
 #include "cost.h"
 #include "sh/basis.h"

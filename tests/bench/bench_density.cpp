@@ -10,6 +10,7 @@
 #include <random>
 
 #include "atlas/atlas.h"
+#include "base/progress.h"
 #include "cost.h"
 #include "image/gutter.h"
 #include "import/import_mesh.h"

@@ -20,13 +20,15 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
-#include <tbb/global_control.h>
 #include <vector>
 
 #include "bake/backends.h"
+#include "base/parallel.h"
+#include "base/progress.h"
 #include "bench_scene.h"
 #include "cost.h"
 #include "sh/basis.h"
+#include "sh/directions.h"
 
 namespace {
 
@@ -148,7 +150,7 @@ int main(int argc, char** argv) {
       for (Series& series : list) series.directions = directions;
     for (const Series& series : list) parse(series.setting);  // before the first bake starts
 
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    const ThreadLimit limit(static_cast<std::size_t>(threads));
     const BakeScene scene = load_bench_scene(asset, mesh_file);
     const Truth truth(scene, reference, static_cast<std::size_t>(sample), threads);
     std::fprintf(stderr, "%zu triangles, %zu receivers, reference of %d directions from %zu of them\n",

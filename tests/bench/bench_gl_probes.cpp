@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "bake/egl/egl_engine.h"
+#include "base/progress.h"
 #include "bench_scene.h"
 #include "cost.h"
 #include "gpu/egl_context.h"

@@ -13,11 +13,12 @@
 #include <filesystem>
 #include <string>
 
-#include "detail/asset_hints.h"
-#include "detail/detail_maps.h"
-#include "detail/seams.h"
+#include "base/extent.h"
 #include "image/image_file.h"
 #include "import/import_mesh.h"
+#include "maps/asset_hints.h"
+#include "maps/detail_maps.h"
+#include "maps/seams.h"
 #include "mesh/draco_file.h"
 #include "normals/map_error.h"
 #include "normals/normals.h"

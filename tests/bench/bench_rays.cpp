@@ -15,14 +15,13 @@
 #include <limits>
 #include <memory>
 #include <string>
-#include <tbb/blocked_range.h>
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 #include <vector>
 
+#include "base/parallel.h"
+#include "base/progress.h"
 #include "cost.h"
-#include "detail/detail_maps.h"
 #include "import/import_mesh.h"
+#include "maps/detail_maps.h"
 #include "mesh/draco_file.h"
 #include "mesh/triangle_mesh.h"
 #include "raycast/beam_transfer.h"
@@ -78,10 +77,10 @@ class Probe {
     const std::size_t streams = (receivers.size() + stream - 1) / stream;
     for (const Eigen::Vector3f& direction : directions) {
       basis.evaluate<float>(direction, row);
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, streams), [&](const auto& range) {
+      parallel_ranges(0, streams, 1, [&](std::size_t first, std::size_t last) {
         std::array<RTCRay, stream> rays;
         std::array<std::uint32_t, stream> receiver;
-        for (std::size_t s = range.begin(); s != range.end(); ++s) {
+        for (std::size_t s = first; s != last; ++s) {
           unsigned count = 0;
           for (std::size_t r = s * stream; r < std::min(receivers.size(), (s + 1) * stream); ++r) {
             const Eigen::Vector3f& n = receivers.normals[r];
@@ -224,7 +223,7 @@ int main(int argc, char** argv) {
   app.add_option("--share", share, "one run in so many of 1,024 neighbouring receivers")->capture_default_str();
   app.add_flag("--skip-probe", skip_probe, "only the engine");
   CLI11_PARSE(app, argc, argv);
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  const ThreadLimit limit(static_cast<std::size_t>(threads));
 
   const TriangleMesh mesh = load_mesh(mesh_file);
   const float ray_offset = rounding_offset(mesh.positions);

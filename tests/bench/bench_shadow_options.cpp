@@ -28,6 +28,7 @@
 #include "bake/rays/embree_engine.h"
 #include "bake/rays/embree_shadow_rays.h"
 #include "bake/scene/occluders.h"
+#include "base/progress.h"
 #include "gpu/egl_context.h"
 #include "gpu/program.h"
 #include "import/import_mesh.h"

@@ -33,9 +33,9 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
-#include <tbb/global_control.h>
 #include <vector>
 
+#include "base/parallel.h"
 #include "cost.h"
 #include "import/import_mesh.h"
 #include "mesh/mesh_distance.h"
@@ -302,7 +302,7 @@ int main(int argc, char** argv) {
   app.add_option("--write", write_file, "just writes the mesh, an OBJ file");
   CLI11_PARSE(app, argc, argv);
   try {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    const ThreadLimit limit(static_cast<std::size_t>(threads));
     if (!measured.empty()) {
       const TriangleMesh high = load_mesh(measured.front());
       for (std::size_t i = 1; i < measured.size(); ++i)

@@ -29,7 +29,7 @@
 #include <sys/stat.h>
 #include <vector>
 
-#include "base/outputs.h"
+#include "base/files.h"
 #include "base/process.h"
 
 namespace fs = std::filesystem;

@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "asset/format.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "image/image_file.h"
 #include "meshes.h"
 #include "subjects.h"

@@ -9,6 +9,7 @@
 #include "bake/backends.h"
 #include "bake/bake.h"
 #include "bake/bounce/bounces.h"
+#include "base/progress.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 

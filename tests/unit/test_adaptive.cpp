@@ -2,11 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 #include <vector>
 
 #include "bake/adaptive/adaptive.h"
 #include "bake/bake.h"
+#include "base/parallel.h"
 #include "sh/basis.h"
 #include "shapes.h"
 
@@ -167,7 +167,7 @@ TEST(Adaptive, AnyNumberOfThreadsGivesTheSameBits) {
   Scene scene(BakeBackend::beams);
   scene.settings.adaptive = 0.01;
   const BakeResult many = bake({scene.receivers, scene.occluders, scene.settings, 1, 0});
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const ThreadLimit one(1);
   const BakeResult single = bake({scene.receivers, scene.occluders, scene.settings, 1, 1});
   EXPECT_EQ(many.channels[0].values, single.channels[0].values);
   EXPECT_EQ(many.adaptive->error, single.adaptive->error);

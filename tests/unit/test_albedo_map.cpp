@@ -3,13 +3,14 @@
 #include <cmath>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include "base/errors.h"
 #include "base/json.h"
-#include "detail/detail_maps.h"
+#include "base/parallel.h"
+#include "base/progress.h"
 #include "image/image_file.h"
 #include "image/srgb.h"
+#include "maps/detail_maps.h"
 #include "normals/normals.h"
 #include "scratch.h"
 #include "shapes.h"
@@ -114,7 +115,7 @@ TEST(AlbedoMap, OneThreadAndManyGiveTheSameBytes) {
   const TriangleMesh high = shapes::icosphere(5), low = shapes::cube_sphere(4);
   const SurfaceAlbedo albedo = painted(high, checkered);
   const auto run = [&](int threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    const ThreadLimit limit(static_cast<std::size_t>(threads));
     return make(high, low, {.size = 96, .samples = 4}, albedo).albedo_map->picture.values();
   };
   EXPECT_EQ(run(1), run(4));

@@ -6,6 +6,7 @@
 #include "asset/prt_asset.h"
 #include "bake/planes/coefficient_planes.h"
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/json.h"
 #include "base/outputs.h"
 #include "compress/compress_files.h"

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 #include <map>
 #include <set>
-#include <tbb/global_control.h>
 
 #include "atlas/atlas.h"
 #include "atlas/chart_bitmap.h"
@@ -13,6 +12,8 @@
 #include "atlas/drawing.h"
 #include "atlas/pack.h"
 #include "base/errors.h"
+#include "base/extent.h"
+#include "base/parallel.h"
 #include "import/import_mesh.h"
 #include "mesh/uv_raster.h"
 #include "scratch.h"
@@ -220,7 +221,7 @@ TEST(Atlas, IsTheSameWithOneThreadAndMany) {
   for (const AtlasQuality quality : {AtlasQuality::standard, AtlasQuality::best}) {
     SCOPED_TRACE(static_cast<int>(quality));
     const auto with_threads = [&](std::size_t threads) {
-      const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+      const ThreadLimit limit(threads);
       AtlasSettings settings = quick_settings(96, 2);
       settings.quality = quality;
       return make_atlas(shapes::torus(8), settings).mesh;

@@ -15,6 +15,7 @@
 #include "atlas/drawing.h"
 #include "atlas/keep_uv.h"
 #include "base/errors.h"
+#include "base/extent.h"
 #include "base/json.h"
 #include "import/uv_mesh.h"
 #include "mesh/uv_raster.h"

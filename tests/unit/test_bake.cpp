@@ -4,7 +4,6 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
-#include <tbb/global_control.h>
 
 #include "bake/bake.h"
 #include "bake/egl/egl_engine.h"
@@ -12,6 +11,8 @@
 #include "bake/planes/coefficient_planes.h"
 #include "bake/rays/beam_engine.h"
 #include "bake/rays/embree_engine.h"
+#include "base/parallel.h"
+#include "base/progress.h"
 #include "import/import_mesh.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
@@ -182,7 +183,7 @@ TEST(BakeEgl, AgreesWithRaysOnTheBunny) {
 TEST(BakeRays, ThreadsGiveTheSameBytes) {
   const Stand bench = furnace();
   const TransferVectors streams = bench.embree(), beams = bench.beams();
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const ThreadLimit one(1);
   EXPECT_EQ(streams.values, bench.embree().values);
   EXPECT_EQ(beams.values, bench.beams().values);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Bounced light against an independent path tracer.
 #include <gtest/gtest.h>
-#include <tbb/parallel_for.h>
 
+#include "base/parallel.h"
 #include "bounce_stand.h"
 #include "import/import_mesh.h"
 #include "path_tracer.h"
@@ -66,7 +66,7 @@ TEST(BouncePaths, BunnyOnAColoredFloor) {
 
   const std::size_t receivers = stand.positions.size();
   std::vector<Eigen::Vector3d> truth(receivers), variance(receivers);
-  tbb::parallel_for(std::size_t{0}, receivers, [&](std::size_t r) {
+  parallel_for(std::size_t{0}, receivers, [&](std::size_t r) {
     std::mt19937 random(static_cast<unsigned>(r) + 1);
     Eigen::Vector3d sum = Eigen::Vector3d::Zero(), squares = Eigen::Vector3d::Zero();
     for (int k = 0; k < paths; ++k) {

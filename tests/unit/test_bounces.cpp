@@ -5,13 +5,15 @@
 #include <functional>
 #include <gtest/gtest.h>
 #include <numbers>
-#include <tbb/global_control.h>
 
 #include "bake/bake.h"
 #include "bake/egl/bundle_engine.h"
 #include "base/errors.h"
+#include "base/parallel.h"
+#include "base/progress.h"
 #include "bounce_stand.h"
 #include "import/import_mesh.h"
+#include "sh/directions.h"
 #include "shapes.h"
 
 namespace kiln {
@@ -272,7 +274,7 @@ TEST(BounceRays, ThreadsGiveTheSameBytes) {
     stand.backend = backend;
     stand.settings.directions = 64;
     const BakeResult many = stand.bake();
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const ThreadLimit one(1);
     const BakeResult single = stand.bake();
     for (int c = 0; c < 3; ++c) EXPECT_EQ(many.channels[c].values, single.channels[c].values);
     EXPECT_EQ(many.bounces->energy, single.bounces->energy);

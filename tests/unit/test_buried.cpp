@@ -5,14 +5,14 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <malloc.h>
-#include <tbb/global_control.h>
 
 #include "bake/planes/coefficient_planes.h"
 #include "bake/scene/buried_receivers.h"
 #include "bake/scene/occluders.h"
 #include "bake/scene/receiver_set.h"
-#include "detail/footprint.h"
+#include "base/parallel.h"
 #include "image/gutter.h"
+#include "maps/footprint.h"
 #include "raycast/buried_test.h"
 #include "raycast/ray_transfer.h"
 #include "sh/directions.h"
@@ -138,7 +138,7 @@ TEST(Buried, SameForAnyThreads) {
   const TriangleMesh mesh = shapes::joined(shapes::icosphere(4, 0.6f), shapes::cube(3), {0.1f, 0.2f, 0});
   const Points points = points_on(mesh, 0, mesh.triangles.size(), 5000);
   const auto marks = [&](int threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    const ThreadLimit limit(static_cast<std::size_t>(threads));
     return buried(mesh, points);
   };
   EXPECT_EQ(marks(1), marks(4));

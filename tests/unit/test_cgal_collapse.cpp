@@ -7,14 +7,16 @@
 #include <map>
 #include <set>
 #include <string>
-#include <tbb/global_control.h>
 #include <utility>
 #include <vector>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/hashes.h"
+#include "base/parallel.h"
+#include "base/progress.h"
 #include "hard_shapes.h"
 #include "import/import_mesh.h"
+#include "mesh/disjoint_sets.h"
 #include "mesh/hard_edges.h"
 #include "mesh/mesh_components.h"
 #include "mesh/mesh_repair.h"
@@ -316,7 +318,7 @@ class CgalThreads : public testing::Test, protected Scratch {};
 
 TEST_F(CgalThreads, GiveTheSameFile) {
   const auto hash_with = [&](std::size_t threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const ThreadLimit limit(threads);
     LowFile file(folder() / "low.drc");
     SimplifySettings settings = by_cgal(300, CollapseCost::probabilistic_plane);
     settings.envelope = 0.01;

@@ -10,12 +10,13 @@
 #include <nlohmann/json.hpp>
 #include <random>
 #include <string>
-#include <tbb/global_control.h>
 #include <vector>
 
 #include "asset/prt_asset.h"
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/outputs.h"
+#include "base/parallel.h"
 #include "compress/clustered_pca.h"
 #include "compress/compress.h"
 #include "compress/compress_files.h"
@@ -417,7 +418,7 @@ TEST(Compress, GivesTheSameFilesWithAnyThreads) {
   settings.components = 3;
   std::vector<std::pair<std::string, std::string>> files[2];
   for (const int threads : {1, 4}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    const ThreadLimit limit(static_cast<std::size_t>(threads));
     files[threads == 4] = compress(asset, settings).files;
   }
   EXPECT_EQ(files[0], files[1]);

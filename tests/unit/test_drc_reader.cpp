@@ -3,7 +3,7 @@
 #include <draco/point_cloud/point_cloud_builder.h>
 #include <gtest/gtest.h>
 
-#include "base/outputs.h"
+#include "base/files.h"
 #include "import/readers.h"
 #include "import_support.h"
 #include "mesh/draco_file.h"

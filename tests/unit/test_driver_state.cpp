@@ -6,8 +6,9 @@
 #include <sys/stat.h>
 
 #include "base/file_names.h"
+#include "base/files.h"
+#include "base/hashes.h"
 #include "base/json.h"
-#include "base/outputs.h"
 #include "kiln/index_page.h"
 #include "kiln/nearest.h"
 #include "kiln/stage_state.h"

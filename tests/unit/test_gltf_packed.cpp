@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <meshoptimizer.h>
 
-#include "base/outputs.h"
+#include "base/files.h"
 #include "gltf_builder.h"
 #include "import/readers.h"
 #include "import_support.h"

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-#include "base/outputs.h"
 #include "gltf_builder.h"
 #include "import/readers.h"
 #include "import_support.h"

@@ -81,6 +81,12 @@ types=$(cd "$source_folder" && grep -rhoE '^(struct|class|enum class) [A-Za-z]+[
 [ "$(wc -l <<< "$types")" -gt 200 ] || fault "found few types in headers"
 for type in $(uniq -d <<< "$types"); do fault "two headers define $type"; done
 
+# Loops are shared among threads by base/parallel.h alone; rooms include TBB for nothing but what each thread keeps to
+# itself, and to hold one thread back.
+grep -rnE '#include <tbb/' "$source_folder"/{stages,runtime,tools,tests} --include=*.h --include=*.cpp |
+  grep -vE '/stages/core/base/parallel(_sort)?\.(h|cpp):|/stages/core/raycast/.*<tbb/(enumerable_thread_specific|task_arena)\.h>' &&
+  fault "threads are shared without base/parallel.h"
+
 # Lists the headers that files include, and those that the house's own include in turn, as "HEADER FILE": FILE includes it.
 reached_headers() {
   local level=("$@") next header file root
@@ -104,6 +110,11 @@ reached=$(reached_headers "$source_folder"/tools/view/state/* "$source_folder/to
 [ "$(wc -l <<< "$reached")" -gt 200 ] || fault "found few headers beneath the viewer's state"
 grep -E '^(epoxy|GL|GLFW|EGL|GLES[0-9])/' <<< "$reached" && fault "the viewer's state or the settings of pictures include GL"
 grep -rnE '#include "view/(draw|files|window)/' "$source_folder/tools/view/state" && fault "the viewer's state includes rooms above it"
+
+# Settings of stages are light: the driver links all of them.
+reached=$(reached_headers "$source_folder"/stages/*/*_settings.h "$source_folder"/stages/*/*_stage.h)
+[ "$(wc -l <<< "$reached")" -gt 80 ] || fault "found few headers beneath the stages' settings"
+grep -E '^(Eigen|CGAL|OpenMesh|embree3|epoxy|tbb|nlohmann/json\.hpp|CLI)' <<< "$reached" && fault "the settings of stages include heavy libraries"
 
 # The EGL engine can be carried to a bare machine: besides the C++ runtime it needs EGL, GL and what loads them.
 needed=$(readelf -d "$engine_program" | sed -n 's/.*(NEEDED).*\[\(.*\)\]/\1/p')

@@ -13,8 +13,8 @@
 #include <thread>
 
 #include "base/errors.h"
-#include "base/outputs.h"
-#include "image/compare.h"
+#include "base/files.h"
+#include "base/hashes.h"
 #include "image/gutter.h"
 #include "image/image_file.h"
 #include "scratch.h"
@@ -271,21 +271,6 @@ TEST(Gutter, FewAndManyCoveredTexels) {
   for (float value : all.values()) EXPECT_EQ(value, 2);
 
   EXPECT_THROW(fill_gutters(all, std::vector<std::uint8_t>(24, 1)), std::invalid_argument);
-}
-
-TEST(Compare, KnownDifferences) {
-  Image<float> a(2, 2, 1), b(2, 2, 1, 2);
-  a.values() = {2, 2, 2, 6};
-  const ImageDifference difference = compare_images(a, b);
-  EXPECT_DOUBLE_EQ(difference.root_mean_square, 2);  // sqrt(16 / 4)
-  EXPECT_DOUBLE_EQ(difference.largest, 4);
-  EXPECT_DOUBLE_EQ(difference.relative_l2, 1);  // sqrt(16 / 16)
-  EXPECT_EQ(compare_images(b, b).relative_l2, 0);
-  EXPECT_TRUE(std::isinf(compare_images(a, Image<float>(2, 2, 1)).relative_l2));
-  a.values()[0] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_TRUE(std::isnan(compare_images(a, b).root_mean_square));
-  EXPECT_TRUE(std::isnan(compare_images(a, b).largest));
-  EXPECT_THROW(compare_images(a, Image<float>(2, 3, 1)), std::invalid_argument);
 }
 
 }  // namespace

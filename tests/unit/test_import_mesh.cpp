@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "import/import_mesh.h"
 #include "mesh/draco_file.h"
 #include "mesh/hard_edges.h"

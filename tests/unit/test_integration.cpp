@@ -11,6 +11,8 @@
 #include "bake/integrate/integration.h"
 #include "bake/planes/quantisation_floor.h"
 #include "base/errors.h"
+#include "base/outputs.h"
+#include "base/progress.h"
 #include "import/import_mesh.h"
 #include "scratch.h"
 #include "shapes.h"
@@ -241,7 +243,7 @@ INSTANTIATE_TEST_SUITE_P(Integration, Cuts,
 TEST(SumsFile, RoundTripsAndRefusesWhatIsNotWhole) {
   const Scratch folder;
   SumsFile file;
-  file.key = {{"what", "a test"}};
+  file.key = R"({"what":"a test"})";
   file.first_receiver = 5;
   file.blocks_done = 2;
   file.blocks_all = 3;

@@ -2,9 +2,10 @@
 // Tests of kept rays: they equal what a new search finds, and sums have the same bits whatever is kept.
 #include <algorithm>
 #include <gtest/gtest.h>
-#include <tbb/parallel_for.h>
 #include <vector>
 
+#include "base/parallel.h"
+#include "base/progress.h"
 #include "raycast/gather.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
@@ -145,7 +146,7 @@ TEST(KnownRays, FirstHitsAreFoundOnce) {
 TEST(KnownRays, MemoryIsNeverMoreThanThereIs) {
   RayMemory memory(1000);
   std::atomic<int> taken = 0;
-  tbb::parallel_for(0, 500, [&](int) { taken += memory.take(7) ? 1 : 0; });
+  parallel_for(0, 500, [&](int) { taken += memory.take(7) ? 1 : 0; });
   EXPECT_EQ(taken, 142);
   EXPECT_EQ(memory.left(), 6u);
   EXPECT_TRUE(memory.take(6));

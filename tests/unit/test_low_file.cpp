@@ -5,7 +5,7 @@
 #include <string>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "import/import_mesh.h"
 #include "scratch.h"
 #include "shapes.h"

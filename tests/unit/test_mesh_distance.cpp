@@ -3,9 +3,9 @@
 #include <cmath>
 #include <cstdint>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 #include <vector>
 
+#include "base/parallel.h"
 #include "mesh/mesh_distance.h"
 #include "mesh/nearest_surface.h"
 #include "shapes.h"
@@ -61,7 +61,7 @@ TEST(MeshDistance, ScalesWithTheFirstDiagonal) {
 TEST(MeshDistance, IsTheSameOnOneThreadAndTwo) {
   const TriangleMesh fine = shapes::icosphere(4), coarse = shapes::icosphere(2);
   const auto measure = [&](std::size_t threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const ThreadLimit limit(threads);
     return mesh_distance(fine, coarse);
   };
   const MeshDistance one = measure(1), two = measure(2);

@@ -3,8 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
+#include "base/parallel.h"
+#include "base/progress.h"
 #include "import/import_mesh.h"
 #include "raycast/mixed_transfer.h"
 #include "raycast/ray_transfer.h"
@@ -97,7 +98,7 @@ TEST_F(MixedTransferTest, AnyNumberOfThreadsGivesTheSameBits) {
   const std::vector<Eigen::Vector3f> directions = coherent(256);
   std::vector<std::int64_t> values[2];
   for (std::size_t threads : {1u, 2u}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const ThreadLimit limit(threads);
     MixedTransfer transfer = mixed(directions);
     transfer.add(directions, no_progress);
     values[threads - 1] = transfer.sums().values;

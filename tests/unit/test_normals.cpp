@@ -7,16 +7,16 @@
 #include <gtest/gtest.h>
 #include <random>
 #include <string>
-#include <tbb/global_control.h>
 
 #include "base/errors.h"
 #include "base/json.h"
 #include "base/outputs.h"
-#include "detail/asset_hints.h"
-#include "detail/detail_maps.h"
-#include "detail/texel_way.h"
+#include "base/parallel.h"
 #include "image/image_file.h"
 #include "import/import_mesh.h"
+#include "maps/asset_hints.h"
+#include "maps/detail_maps.h"
+#include "maps/texel_way.h"
 #include "normals/normals.h"
 #include "raycast/ray_scene.h"
 #include "scratch.h"
@@ -497,7 +497,7 @@ TEST(Normals, ErrorOfTheMapIsTheAngleToTheHighNormals) {
 TEST(Normals, OneThreadAndManyGiveTheSameBytes) {
   const TriangleMesh high = dented_sphere(), low = shapes::cube_sphere(6);
   const auto run = [&](int threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    const ThreadLimit limit(static_cast<std::size_t>(threads));
     return make_normals(high, low, {.space = NormalSpace::tangent, .size = 128, .samples = 4});
   };
   NormalsResult one = run(1), many = run(4);

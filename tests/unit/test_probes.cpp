@@ -4,11 +4,13 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <numbers>
-#include <tbb/global_control.h>
 
 #include "asset/probe_set.h"
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/json.h"
+#include "base/outputs.h"
+#include "base/parallel.h"
 #include "mesh/winding.h"
 #include "probes/probe_points.h"
 #include "probes/probes.h"
@@ -237,7 +239,7 @@ TEST(Probes, TheSameWithAnyThreads) {
   settings.directions = 300;
   std::vector<float> matrices[2];
   for (const int threads : {1, 4}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    const ThreadLimit limit(static_cast<std::size_t>(threads));
     matrices[threads == 4] = lit(shapes::torus(16), {0.5f, 0.6f, 0.7f}, {}, settings).probes.matrices;
   }
   EXPECT_EQ(matrices[0], matrices[1]);

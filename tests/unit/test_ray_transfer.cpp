@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 #include <vector>
 
+#include "base/parallel.h"
 #include "import/import_mesh.h"
 #include "raycast/beam_transfer.h"
 #include "raycast/ray_transfer.h"
@@ -261,7 +261,7 @@ TEST(RayTransfer, SameBitsForAnyThreadsAndAnyCuts) {
   const Points points = vertices_of(mesh, 1);
   const std::vector<Eigen::Vector3f> directions = coherent(1000, 5);
   const auto sums = [&](int threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    const ThreadLimit limit(static_cast<std::size_t>(threads));
     return by_beams(mesh, points, directions).values;
   };
   const std::vector<std::int64_t> one = sums(1);

@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 #include <limits>
 #include <random>
-#include <tbb/global_control.h>
 #include <vector>
 
+#include "base/parallel.h"
 #include "raycast/ray_scene.h"
 #include "shapes.h"
 
@@ -145,7 +145,7 @@ TEST(RayScene, OneThreadAndManyBuildTheSameTree) {
   // Rays through shared edges and vertices: which triangle is reported depends on the tree.
   const TriangleMesh mesh = shapes::cube_sphere(40);
   const auto queries = [&](int threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    const ThreadLimit limit(static_cast<std::size_t>(threads));
     const RayScene scene(mesh);
     std::vector<std::uint32_t> triangles;
     for (const Eigen::Vector3f& p : mesh.positions) {

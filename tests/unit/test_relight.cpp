@@ -15,7 +15,7 @@
 
 #include "asset/prt_asset.h"
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "gpu/egl_context.h"
 #include "image/gutter.h"
 #include "image/image_file.h"

@@ -6,6 +6,9 @@
 
 #include "base/errors.h"
 #include "base/file_names.h"
+#include "base/files.h"
+#include "base/hashes.h"
+#include "base/html.h"
 #include "base/json.h"
 #include "base/outputs.h"
 #include "base/process.h"
@@ -193,7 +196,7 @@ TEST(Labels, Numbers) {
   EXPECT_EQ(metric_value("hausdorff", 0.0064), "0.640&#8239;%");
   EXPECT_EQ(metric_value("manifold", true), "yes");
   EXPECT_EQ(metric_value("anything", nullptr), "not finite");
-  EXPECT_EQ(escaped("<a href=\"x\">&"), "&lt;a href=&quot;x&quot;&gt;&amp;");
+  EXPECT_EQ(html_escaped("<a href=\"x\">&"), "&lt;a href=&quot;x&quot;&gt;&amp;");
   EXPECT_EQ(light_label("-60,20"), "Directional, azimuth −60°, elevation 20°");
 }
 

@@ -2,12 +2,12 @@
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 
-#include "detail/detail_maps.h"
-#include "detail/seam_solver.h"
+#include "base/extent.h"
+#include "base/parallel.h"
 #include "image/gutter.h"
+#include "maps/detail_maps.h"
+#include "maps/seam_solver.h"
 #include "normals/normals.h"
 #include "shapes.h"
 
@@ -181,8 +181,8 @@ TEST_F(TurnedCharts, ChannelsAreSolvedAloneAndThreadsDoNotMatter) {
     }
   solver.equalise(both);
   std::vector<Image<float>> alone = {a, b, a, b};
-  tbb::parallel_for(0, 4, [&](int k) { solver.equalise(alone[static_cast<std::size_t>(k)]); });
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
+  parallel_for(0, 4, [&](int k) { solver.equalise(alone[static_cast<std::size_t>(k)]); });
+  const ThreadLimit limit(1);
   Image<float> again = b;
   SeamSolver(seams_, covered_).equalise(again);
   EXPECT_EQ(again.values(), alone[1].values());

@@ -15,6 +15,7 @@
 #include "bake/scene/occluders.h"
 #include "base/errors.h"
 #include "base/json.h"
+#include "base/progress.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 #include "sh/ray_offset.h"

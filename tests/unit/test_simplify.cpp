@@ -7,12 +7,13 @@
 #include <set>
 #include <span>
 #include <string>
-#include <tbb/global_control.h>
 #include <utility>
 #include <vector>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
+#include "base/parallel.h"
+#include "base/progress.h"
 #include "import/import_mesh.h"
 #include "mesh/mesh_distance.h"
 #include "mesh/mesh_repair.h"
@@ -464,7 +465,7 @@ TEST(SimplifyFit, IsNoWorseThanWhatItStartsFrom) {
 TEST_F(Simplify, TheFileIsTheSameOnOneThreadAndTwo) {
   const TriangleMesh high = shapes::icosphere(3);
   const auto bytes = [&](std::size_t threads, const SimplifySettings& settings) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const ThreadLimit limit(threads);
     LowFile file(path("low.drc"));
     simplify(high, settings, [&](const TriangleMesh& mesh) { return file.write(mesh); });
     return read_text(path("low.drc"));

@@ -6,12 +6,12 @@
 #include <functional>
 #include <gtest/gtest.h>
 #include <string>
-#include <tbb/global_control.h>
 #include <vector>
 
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/json.h"
-#include "base/outputs.h"
+#include "base/parallel.h"
 #include "hard_shapes.h"
 #include "import/import_mesh.h"
 #include "mesh/mesh_components.h"
@@ -232,7 +232,7 @@ class ManyParts : public testing::Test, protected Scratch {};
 TEST_F(ManyParts, AreTheSameOnOneThreadAndTwo) {
   const TriangleMesh high = shapes::character(12, 3), bowl = shapes::thin_bowl(48, 12, 0.002f);
   const auto bytes = [&](std::size_t threads, const TriangleMesh& mesh, const SimplifySettings& settings) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const ThreadLimit limit(threads);
     LowFile file(folder() / "low.drc");
     simplify(mesh, settings, [&](const TriangleMesh& low) { return file.write(low); });
     return read_text(folder() / "low.drc");

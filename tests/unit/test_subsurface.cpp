@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <numeric>
 #include <random>
-#include <tbb/global_control.h>
 #include <vector>
 
 #include "bake/scene/vertex_receivers.h"
@@ -12,6 +11,7 @@
 #include "bake/subsurface/scattering.h"
 #include "bake/subsurface/subsurface.h"
 #include "bake/subsurface/surface_samples.h"
+#include "base/parallel.h"
 #include "shapes.h"
 
 namespace kiln {
@@ -321,7 +321,7 @@ TEST(Subsurface, AnyNumberOfThreadsGivesTheSameBits) {
   const Bumpy bumpy(4);
   const std::vector<ScatterProfile> profiles = {marble, skin};
   const Scattering many = scatter_transfer(bumpy.samples, bumpy.light, profiles);
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const ThreadLimit one(1);
   const Scattering single = scatter_transfer(bumpy.samples, bumpy.light, profiles);
   for (std::size_t c = 0; c < 2; ++c) EXPECT_EQ(many.transfer[c].values, single.transfer[c].values);
   EXPECT_EQ(many.hierarchy_error, single.hierarchy_error);

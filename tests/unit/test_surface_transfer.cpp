@@ -3,9 +3,9 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
-#include <tbb/global_control.h>
 #include <vector>
 
+#include "base/parallel.h"
 #include "raycast/surface_transfer.h"
 #include "shapes.h"
 
@@ -51,7 +51,7 @@ TEST(SurfaceTransfer, ThreadsChangeNoBit) {
   const TriangleMesh torus = shapes::torus(24);
   const std::vector<Eigen::Vector3f> normals(torus.positions.size(), Eigen::Vector3f::UnitX());
   const TransferVectors many = surface_transfer(torus, {torus.positions, normals});
-  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  const ThreadLimit one_thread(1);
   EXPECT_EQ(surface_transfer(torus, {torus.positions, normals}).values, many.values);
 }
 

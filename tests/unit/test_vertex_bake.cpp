@@ -14,6 +14,7 @@
 #include "bake/planes/vertex_planes.h"
 #include "bake/scene/vertex_receivers.h"
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/json.h"
 #include "base/options.h"
 #include "base/outputs.h"

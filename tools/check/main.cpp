@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <CLI/CLI.hpp>
 #include <cstdio>
 
 #include "asset/check.h"
@@ -35,9 +34,7 @@ int main(int argc, char** argv) {
                         "Holds baked and compressed folders and probes against docs/format.md and tells every fault; "
                         "status 3 where there is one.");
     std::vector<std::filesystem::path> folders;
-    command.app()
-        .add_option("FOLDER", folders, "A folder of kiln-bake, kiln-compress or kiln-probes, or an asset's folder")
-        ->required();
+    command.paths("FOLDER", folders, "A folder of kiln-bake, kiln-compress or kiln-probes, or an asset's folder");
     command.parse(argc, argv);
 
     const Stopwatch watch;

@@ -10,10 +10,10 @@
 
 #include "base/asset_layout.h"
 #include "base/errors.h"
+#include "base/files.h"
+#include "base/interruption.h"
 #include "base/json.h"
-#include "base/outputs.h"
 #include "base/process.h"
-#include "base/progress.h"
 #include "base/stopwatch.h"
 #include "kiln/file_checks.h"
 #include "kiln/index_page.h"

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <set>
 
+#include "kiln/made_meshes.h"
 #include "kiln/stage_state.h"
-#include "kiln/step.h"
 
 namespace kiln {
 

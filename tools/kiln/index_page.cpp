@@ -5,6 +5,7 @@
 #include <cctype>
 #include <fmt/format.h>
 
+#include "base/html.h"
 #include "base/json.h"
 #include "kiln/page_frame.h"
 #include "kiln/summary.h"

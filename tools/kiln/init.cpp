@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/outputs.h"
 #include "kiln/asset_names.h"
 #include "kiln/file_checks.h"

@@ -6,6 +6,7 @@
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "base/help_pages.h"
+#include "base/interruption.h"
 #include "kiln/commands.h"
 
 namespace {

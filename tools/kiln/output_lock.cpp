@@ -12,8 +12,8 @@
 #include <unistd.h>
 
 #include "base/errors.h"
-#include "base/outputs.h"
-#include "base/progress.h"
+#include "base/files.h"
+#include "base/interruption.h"
 
 namespace kiln {
 

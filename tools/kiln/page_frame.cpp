@@ -39,23 +39,4 @@ std::string framed(const Page& page) {
       page.title, shared_style, page.style, page.heading, page.summary, page.content, KILN_VERSION);
 }
 
-std::string html_escaped(const std::string& text) {
-  std::string html;
-  for (const char c : text) {
-    if (c == '&')
-      html += "&amp;";
-    else if (c == '<')
-      html += "&lt;";
-    else if (c == '>')
-      html += "&gt;";
-    else if (c == '\'')
-      html += "&#39;";
-    else if (c == '"')
-      html += "&quot;";
-    else
-      html += c;
-  }
-  return html;
-}
-
 }  // namespace kiln

@@ -17,7 +17,4 @@ struct Page {
 /// Writes a page in the look of the reports: one file that needs no other.
 std::string framed(const Page& page);
 
-/// Escapes text for HTML.
-std::string html_escaped(const std::string& text);
-
 }  // namespace kiln

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "kiln/asset_names.h"
 #include "kiln/nearest.h"
 #include "kiln/presets.h"

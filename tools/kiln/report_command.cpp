@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "base/errors.h"
-#include "base/outputs.h"
 #include "kiln/gate/comparison_page.h"
 #include "kiln/gate/gate.h"
 #include "kiln/gate/junit.h"

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include "base/errors.h"
-#include "base/outputs.h"
 #include "import/import_settings.h"
 
 namespace kiln {

@@ -6,7 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "import/import_settings.h"
 
 namespace kiln {

@@ -8,8 +8,9 @@
 
 #include "base/errors.h"
 #include "base/file_names.h"
+#include "base/files.h"
+#include "base/hashes.h"
 #include "base/json.h"
-#include "base/outputs.h"
 #include "kiln/text_file.h"
 
 namespace kiln {

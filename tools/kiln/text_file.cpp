@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "kiln/text_file.h"
 
+#include "base/files.h"
 #include "base/outputs.h"
 
 namespace kiln {

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 
 namespace kiln {
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <CLI/CLI.hpp>
 
 #include "base/command_line.h"
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/json.h"
+#include "base/outputs.h"
 #include "base/stopwatch.h"
 #include "lights/light_command.h"
 #include "render/render.h"
@@ -26,16 +27,12 @@ int main(int argc, char** argv) {
                         "+Y (default: the first where it is, the others side by side to its right as the camera sees "
                         "them, on its ground line, a tenth of their width apart)");
     add_light_options(command, lights, paths.light_file);
-    command.app()
-        .add_flag("--each-light", paths.each_light,
-                  "A picture for each light, NAME_000.png and so on, in place of one under all; ambient light and an "
-                  "environment are in every picture")
-        ->group("Light");
-    command.app()
-        .add_flag("--each-asset", paths.each_asset,
-                  "A picture for each asset by itself, where it was baked, NAME_000.png and so on, in place of one of "
-                  "all; with --each-light all lights of the first asset, then of the next")
-        ->group("Picture");
+    command.flag("each-light", paths.each_light, "Light",
+                 "A picture for each light, NAME_000.png and so on, in place of one under all; ambient light and an "
+                 "environment are in every picture");
+    command.flag("each-asset", paths.each_asset, "Picture",
+                 "A picture for each asset by itself, where it was baked, NAME_000.png and so on, in place of one of "
+                 "all; with --each-light all lights of the first asset, then of the next");
     command.input_option("probes", paths.probes,
                          "Folder of kiln-probes: the light around the first asset, which stands at the origin, for the "
                          "others; for the only asset, that around what is not drawn");

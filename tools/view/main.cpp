@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <CLI/CLI.hpp>
 
 #include "base/command_line.h"
 #include "base/json.h"
@@ -26,7 +25,7 @@ int main(int argc, char** argv) {
     // Leaves out options that the window decides: its GL device and its frames.
     command.options("Picture", render_options(setup.look).without({"frames", "gl-device"}));
     command.options("Window", viewer_options(setup));
-    command.app().footer("Keys:\n" + key_help_text());
+    command.footer("Keys:\n" + key_help_text());
     command.parse(argc, argv);
 
     // Step 2: load, before a window is opened, so that bad input is reported without a display, too.

@@ -7,9 +7,11 @@
 #include <tuple>
 
 #include "base/errors.h"
+#include "base/extent.h"
+#include "base/files.h"
+#include "base/interruption.h"
 #include "base/json.h"
 #include "base/outputs.h"
-#include "base/progress.h"
 #include "gpu/program.h"
 #include "image/image_file.h"
 #include "view/state/readout.h"

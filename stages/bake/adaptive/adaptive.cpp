@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
+#include "base/parallel.h"
 #include "sh/basis.h"
 
 namespace kiln {
@@ -110,9 +109,7 @@ class AdaptiveBake {
     const TransferVectors some = bake_some_(wanted);
     for (int c = 0; c < some.coefficients; ++c)
       for (std::size_t k = 0; k < wanted.size(); ++k) transfer_.plane(c)[wanted[k]] = some.plane(c)[k];
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, wanted.size(), 256), [&](const auto& range) {
-      for (std::size_t k = range.begin(); k != range.end(); ++k) note(wanted[k]);
-    });
+    parallel_for(std::size_t{0}, wanted.size(), 256, [&](std::size_t k) { note(wanted[k]); });
     baked_ += wanted.size();
     progress_(static_cast<double>(baked_) / static_cast<double>(known_.size()));
   }
@@ -177,11 +174,9 @@ class AdaptiveBake {
       const double length = bound * known_length();
 
       std::vector<std::uint8_t> whole(open.size());
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, open.size(), 64), [&](const auto& range) {
-        for (std::size_t k = range.begin(); k != range.end(); ++k) {
-          const std::array<std::uint32_t, 4> at = corners(open[k]);
-          whole[k] = is_one_piece(open[k], at) && agree(at, length) ? 1 : 0;
-        }
+      parallel_for(std::size_t{0}, open.size(), 64, [&](std::size_t k) {
+        const std::array<std::uint32_t, 4> at = corners(open[k]);
+        whole[k] = is_one_piece(open[k], at) && agree(at, length) ? 1 : 0;
       });
 
       std::vector<Square> finer;
@@ -271,11 +266,9 @@ class AdaptiveBake {
   }
 
   void interpolate_all(const std::vector<std::uint32_t>& left) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, left.size(), 256), [&](const auto& range) {
-      for (std::size_t k = range.begin(); k != range.end(); ++k) {
-        const std::vector<float> values = interpolate(left[k]);
-        for (int c = 0; c < transfer_.coefficients; ++c) transfer_.plane(c)[left[k]] = values[c];
-      }
+    parallel_for(std::size_t{0}, left.size(), 256, [&](std::size_t k) {
+      const std::vector<float> values = interpolate(left[k]);
+      for (int c = 0; c < transfer_.coefficients; ++c) transfer_.plane(c)[left[k]] = values[c];
     });
     std::fill(known_.begin(), known_.end(), 1);
   }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bake/backends.h"
+#include "base/progress.h"
 #include "base/stopwatch.h"
 
 namespace kiln {

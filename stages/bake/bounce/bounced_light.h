@@ -8,6 +8,7 @@
 
 #include "bake/bake_job.h"
 #include "bake/bounce/bounces.h"
+#include "base/progress.h"
 
 namespace kiln {
 

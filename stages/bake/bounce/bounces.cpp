@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "bake/planes/quantisation_floor.h"
+#include "base/progress.h"
 #include "base/stopwatch.h"
 #include "raycast/beam_transfer.h"
 #include "sh/basis.h"

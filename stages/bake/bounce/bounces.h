@@ -10,6 +10,7 @@
 #include "bake/engines/gather_engine.h"
 #include "bake/engines/transfer_engine.h"
 #include "bake/scene/occluders.h"
+#include "base/progress.h"
 #include "raycast/known_rays.h"
 #include "raycast/sent_light.h"
 #include "raycast/surface_cache.h"

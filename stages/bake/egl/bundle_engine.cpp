@@ -8,6 +8,7 @@
 
 #include "bake/egl/bundle_lists.h"
 #include "bake/egl/receiver_groups.h"
+#include "base/progress.h"
 #include "gpu/egl_context.h"
 #include "gpu/program.h"
 #include "sh/ray_offset.h"

@@ -5,6 +5,7 @@
 
 #include "bake/engines/gather_engine.h"
 #include "bake/engines/shadow_settings.h"
+#include "base/progress.h"
 
 namespace kiln {
 

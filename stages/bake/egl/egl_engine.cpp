@@ -13,6 +13,7 @@
 
 #include "bake/egl/shade_pass.h"
 #include "base/errors.h"
+#include "base/progress.h"
 #include "gpu/egl_context.h"
 #include "gpu/program.h"
 #include "sh/basis.h"

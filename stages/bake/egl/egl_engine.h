@@ -6,6 +6,7 @@
 #include "bake/egl/shadow_maps.h"
 #include "bake/engines/shadow_rays.h"
 #include "bake/engines/transfer_engine.h"
+#include "base/progress.h"
 
 namespace kiln {
 

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "bake/planes/quantisation_floor.h"
+#include "base/progress.h"
+#include "sh/directions.h"
 
 namespace kiln {
 

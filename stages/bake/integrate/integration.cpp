@@ -12,6 +12,7 @@
 #include "base/stopwatch.h"
 #include "raycast/beam_transfer.h"
 #include "sh/basis.h"
+#include "sh/directions.h"
 
 namespace kiln {
 
@@ -161,7 +162,7 @@ Integration::Slab Integration::gather(std::size_t slab) const {
   return gathered;
 }
 
-Json Integration::key(const Shard& shard, const std::string& renderer) const {
+std::string Integration::key(const Shard& shard, const std::string& renderer) const {
   BakeSettings settings = job_.settings;
   settings.sampling = sampling_;
   if (shadow_choice_) settings.shadow_size = shadow_choice_->size_texels;
@@ -169,15 +170,16 @@ Json Integration::key(const Shard& shard, const std::string& renderer) const {
   const OptionSet options = bake_options(settings);
   for (const Option& option : options.options())
     if (option.affects.value_or(Affects::sums) == Affects::sums) relevant[option.name] = option.get();
-  return {{"receivers", receivers_hash_},
-          {"occluders", occluders_hash_},
-          {"settings", relevant},
-          {"backend", backend_name(backend_)},
-          {"renderer", renderer},
-          {"directions", directions_.size()},
-          {"seed", job_.seed},
-          {"slab_receivers", slab_receivers_},
-          {"shard", std::to_string(shard.index) + "/" + std::to_string(shard.count)}};
+  const Json key = {{"receivers", receivers_hash_},
+                    {"occluders", occluders_hash_},
+                    {"settings", relevant},
+                    {"backend", backend_name(backend_)},
+                    {"renderer", renderer},
+                    {"directions", directions_.size()},
+                    {"seed", job_.seed},
+                    {"slab_receivers", slab_receivers_},
+                    {"shard", std::to_string(shard.index) + "/" + std::to_string(shard.count)}};
+  return json_text(key);
 }
 
 SumsFile Integration::sum(std::size_t slab, const Shard& shard, const ProgressFunction& progress) {

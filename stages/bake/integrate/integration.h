@@ -41,8 +41,8 @@ class Integration {
   /// Writes the analytic transfer of the receivers that nothing can shadow.
   void put_unoccluded(TransferVectors& transfer) const;
 
-  /// Returns everything that the sums of a shard, integrated by `renderer`, depend on.
-  Json key(const Shard& shard, const std::string& renderer) const;
+  /// Returns everything that the sums of a shard, integrated by `renderer`, depend on, as JSON text.
+  std::string key(const Shard& shard, const std::string& renderer) const;
 
   BakeBackend backend() const { return backend_; }
   /// Returns the engine, which is made at the first call. Throws MachineLacks where the backend cannot run.

@@ -7,6 +7,7 @@
 
 #include "bake/backends.h"
 #include "bake/planes/quantisation_floor.h"
+#include "base/progress.h"
 #include "sh/directions.h"
 
 namespace kiln {

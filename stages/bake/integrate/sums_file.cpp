@@ -6,8 +6,9 @@
 #include <fstream>
 
 #include "base/errors.h"
+#include "base/files.h"
+#include "base/hashes.h"
 #include "base/json.h"
-#include "base/outputs.h"
 
 namespace kiln {
 
@@ -28,7 +29,7 @@ std::span<const std::byte> bytes_of(const std::vector<std::int64_t>& values) {
 void write_sums(const fs::path& path, const SumsFile& file) {
   const Json header = {{"format", format},
                        {"version", 1},
-                       {"key", file.key},
+                       {"key", Json::parse(file.key)},
                        {"first_receiver", file.first_receiver},
                        {"receivers", file.sums.receivers},
                        {"coefficients", file.sums.coefficients},
@@ -67,7 +68,7 @@ SumsFile read_sums(const fs::path& path) {
   try {
     const Json header = Json::parse(line);
     if (header.at("format") != format || header.at("version") != 1) throw bad("has another format or version");
-    file.key = header.at("key");
+    file.key = json_text(header.at("key"));
     file.first_receiver = header.at("first_receiver");
     file.blocks_done = header.at("blocks_done");
     file.blocks_all = header.at("blocks_all");

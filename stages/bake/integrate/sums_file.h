@@ -5,14 +5,13 @@
 #include <filesystem>
 #include <string>
 
-#include "base/json.h"
 #include "sh/transfer_sums.h"
 
 namespace kiln {
 
 /// Sums of one run of receivers, as checkpoints and shards keep them.
 struct SumsFile {
-  Json key;  ///< everything that the sums depend on; only files with equal keys are added
+  std::string key;  ///< everything that the sums depend on, as JSON text; only files with equal keys are added
   std::size_t first_receiver = 0;
   std::int64_t blocks_done = 0;  ///< blocks of directions of this shard that are in the sums
   std::int64_t blocks_all = 0;

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <limits>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+
+#include "base/parallel.h"
 
 namespace kiln {
 
@@ -19,26 +19,23 @@ std::vector<std::uint8_t> unoccluded_receivers(std::span<const Eigen::Vector3f> 
     largest = std::max(largest, corner.cwiseAbs().maxCoeff());
   }
   std::vector<std::uint8_t> free(receivers.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, receivers.size(), 256), [&](const auto& range) {
-    for (std::size_t r = range.begin(); r != range.end(); ++r) {
-      const Eigen::Vector3f& normal = receivers.normals[r];
-      const Eigen::Vector3f origin = receivers.positions[r] + lift * normal;
-      // Bound the dot products' roundings: three products and two sums of numbers up to `largest`.
-      const float rounding =
-          8 * std::numeric_limits<float>::epsilon() * std::max(largest, origin.cwiseAbs().maxCoeff());
-      const float plane = normal.dot(origin) - rounding;
-      // Take runs of 64 corners, so that the inner loop has no way out and becomes vector code.
-      constexpr std::size_t run = 64;
-      bool empty = true;
-      for (std::size_t begin = 0; empty && begin < x.size(); begin += run) {
-        const std::size_t end = std::min(x.size(), begin + run);
-        int above = 0;
-        for (std::size_t k = begin; k < end; ++k)
-          above |= normal.x() * x[k] + normal.y() * y[k] + normal.z() * z[k] > plane ? 1 : 0;
-        empty = above == 0;
-      }
-      free[r] = empty ? 1 : 0;
+  parallel_for(std::size_t{0}, receivers.size(), 256, [&](std::size_t r) {
+    const Eigen::Vector3f& normal = receivers.normals[r];
+    const Eigen::Vector3f origin = receivers.positions[r] + lift * normal;
+    // Bound the dot products' roundings: three products and two sums of numbers up to `largest`.
+    const float rounding = 8 * std::numeric_limits<float>::epsilon() * std::max(largest, origin.cwiseAbs().maxCoeff());
+    const float plane = normal.dot(origin) - rounding;
+    // Take runs of 64 corners, so that the inner loop has no way out and becomes vector code.
+    constexpr std::size_t run = 64;
+    bool empty = true;
+    for (std::size_t begin = 0; empty && begin < x.size(); begin += run) {
+      const std::size_t end = std::min(x.size(), begin + run);
+      int above = 0;
+      for (std::size_t k = begin; k < end; ++k)
+        above |= normal.x() * x[k] + normal.y() * y[k] + normal.z() * z[k] > plane ? 1 : 0;
+      empty = above == 0;
     }
+    free[r] = empty ? 1 : 0;
   });
   return free;
 }

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "asset/write_asset.h"
-#include "detail/seam_solver.h"
 #include "image/gutter.h"
+#include "maps/seam_solver.h"
 #include "sh/basis.h"
 
 namespace kiln {

@@ -6,8 +6,8 @@
 #include "asset/prt_asset.h"
 #include "bake/scene/receiver_set.h"
 #include "base/outputs.h"
-#include "detail/seam_choice.h"
-#include "detail/seams.h"
+#include "maps/seam_choice.h"
+#include "maps/seams.h"
 #include "sh/transfer.h"
 
 namespace kiln {

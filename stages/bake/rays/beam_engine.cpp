@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/rays/beam_engine.h"
 
+#include "base/progress.h"
 #include "sh/basis.h"
 
 namespace kiln {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bake/engines/transfer_engine.h"
+#include "base/progress.h"
 #include "raycast/beam_transfer.h"
 
 namespace kiln {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/rays/embree_engine.h"
 
+#include "base/progress.h"
 #include "raycast/ray_transfer.h"
 #include "sh/basis.h"
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bake/engines/transfer_engine.h"
+#include "base/progress.h"
 #include "raycast/ray_scene.h"
 
 namespace kiln {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
-#include <tbb/parallel_for.h>
 
+#include "base/parallel.h"
 #include "raycast/ray_scene.h"
 
 namespace kiln {
@@ -34,14 +34,14 @@ ShadowRays make_shadow_rays(const TransferScene& scene, float ray_offset) {
   rays.triangles_below = [lazy](const Receivers& receivers) {
     const RayScene& tree = lazy->rays();
     std::vector<std::uint32_t> triangles(receivers.size());
-    tbb::parallel_for(std::size_t{0}, receivers.size(), [&](std::size_t r) {
+    parallel_for(std::size_t{0}, receivers.size(), [&](std::size_t r) {
       triangles[r] = tree.closest_point(receivers.positions[r], std::numeric_limits<float>::max()).triangle;
     });
     return triangles;
   };
   rays.occluded = [lazy, ray_offset](const Receivers& receivers, std::span<ShadowRayQuery> queries) {
     const RayScene& tree = lazy->rays();
-    tbb::parallel_for(std::size_t{0}, queries.size(), [&](std::size_t q) {
+    parallel_for(std::size_t{0}, queries.size(), [&](std::size_t q) {
       ShadowRayQuery& query = queries[q];
       std::vector<Eigen::Vector3f> origins;
       origins.reserve(query.receivers.size());

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bake/engines/transfer_engine.h"
+#include "base/progress.h"
 #include "raycast/mixed_transfer.h"
 
 namespace kiln {

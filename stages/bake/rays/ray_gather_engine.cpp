@@ -3,6 +3,7 @@
 
 #include <numeric>
 
+#include "base/progress.h"
 #include "raycast/gather.h"
 
 namespace kiln {

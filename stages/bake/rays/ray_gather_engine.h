@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bake/engines/gather_engine.h"
+#include "base/progress.h"
 #include "raycast/beam_scene.h"
 #include "raycast/beam_transfer.h"
 #include "raycast/ray_scene.h"

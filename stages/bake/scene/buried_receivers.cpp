@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <tbb/parallel_for.h>
 #include <utility>
 
+#include "base/parallel.h"
 #include "mesh/hard_edges.h"
 #include "mesh/mesh_components.h"
 #include "mesh/same_position.h"
@@ -137,7 +137,7 @@ std::size_t move_to_seen_places(ReceiverSet& receivers, const TriangleMesh& atla
   const std::size_t count = candidates.size();
   std::vector<Eigen::Vector3f> positions(count, Eigen::Vector3f::Zero()), normals(count, Eigen::Vector3f::UnitY());
   std::vector<std::uint8_t> usable(count, 0);
-  tbb::parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t k) {
+  parallel_for(std::size_t{0}, candidates.size(), [&](std::size_t k) {
     const auto& [r, place] = candidates[k];
     const TexelSteps steps(atlas, raster.texels[receivers.slots[r]].triangle, raster.width, raster.height);
     const Eigen::Vector3f step = places[place][0] * steps.across + places[place][1] * steps.up;

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <limits>
-#include <tbb/parallel_for.h>
 
+#include "base/parallel.h"
 #include "mesh/uv_raster.h"
 #include "raycast/ray_scene.h"
 
@@ -86,7 +86,7 @@ void take_albedos(ReceiverSet& receivers, const DetailMaps& detail) {
 void take_albedos(ReceiverSet& receivers, const Occluders& occluders) {
   const RayScene surface(occluders.mesh);
   receivers.albedos.resize(receivers.positions.size());
-  tbb::parallel_for(std::size_t{0}, receivers.positions.size(), [&](std::size_t r) {
+  parallel_for(std::size_t{0}, receivers.positions.size(), [&](std::size_t r) {
     const SurfacePoint at = surface.closest_point(receivers.positions[r], std::numeric_limits<float>::infinity());
     receivers.albedos[r] = occluders.albedo_at(at.triangle, at.u, at.v);
   });

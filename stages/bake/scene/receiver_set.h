@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bake/scene/occluders.h"
-#include "detail/detail_maps.h"
+#include "maps/detail_maps.h"
 #include "mesh/triangle_mesh.h"
 #include "sh/transfer.h"
 

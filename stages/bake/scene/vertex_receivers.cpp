@@ -5,11 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <utility>
 
 #include "base/errors.h"
+#include "base/parallel.h"
 #include "import/import_mesh.h"
 #include "mesh/draco_file.h"
 #include "mesh/hard_edges.h"
@@ -67,9 +66,7 @@ void keep_proper(TriangleMesh& mesh) {
 
 template <class Operation>
 void for_each_vertex(std::size_t count, const Operation& operation) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 256), [&](const tbb::blocked_range<std::size_t>& part) {
-    for (std::size_t k = part.begin(); k < part.end(); ++k) operation(k);
-  });
+  parallel_for(std::size_t{0}, count, 256, [&](std::size_t k) { operation(k); });
 }
 
 }  // namespace

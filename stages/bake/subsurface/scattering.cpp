@@ -5,11 +5,10 @@
 #include <array>
 #include <cmath>
 #include <stdexcept>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include "bake/subsurface/kernel_tables.h"
 #include "bake/subsurface/sample_octree.h"
+#include "base/parallel.h"
 
 namespace kiln {
 
@@ -237,9 +236,9 @@ void evaluate_all(const KernelSums& sums, std::size_t samples, float solid_angle
   constexpr std::size_t slice = 64 * block_receivers;
   for (std::size_t first = 0; first < samples; first += slice) {
     const std::size_t last = std::min(samples, first + slice);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(first, last, block_receivers), [&](const auto& range) {
+    parallel_ranges(first, last, block_receivers, [&](std::size_t begin, std::size_t end) {
       KernelSums::Scratch scratch(sums);
-      for (std::size_t p = range.begin(); p != range.end(); ++p)
+      for (std::size_t p = begin; p != end; ++p)
         keep(p, sums.evaluate(static_cast<std::uint32_t>(p), solid_angle, scratch));
     });
     progress(static_cast<double>(last) / static_cast<double>(samples));
@@ -334,7 +333,7 @@ void measure_hierarchy(const KernelSums& sums, const SampleOctree& tree, int fir
                        SquaredError& squared) {
   const std::size_t count = tree.order.size(), stride = padded(width);
   std::vector<double> errors(result.error_points, 0), lengths(result.error_points, 0);
-  tbb::parallel_for(std::size_t{0}, result.error_points, [&](std::size_t e) {
+  parallel_for(std::size_t{0}, result.error_points, [&](std::size_t e) {
     const std::size_t p = e * count / result.error_points;
     KernelSums::Scratch scratch(sums);
     const std::vector<float>& all = sums.evaluate(static_cast<std::uint32_t>(p), 0.f, scratch);

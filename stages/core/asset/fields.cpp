@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "base/files.h"
 #include "base/json.h"
-#include "base/outputs.h"
 
 namespace kiln {
 

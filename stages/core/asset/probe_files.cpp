@@ -6,6 +6,7 @@
 #include "asset/read_description.h"
 #include "asset/read_parts.h"
 #include "base/json.h"
+#include "base/outputs.h"
 #include "image/image_file.h"
 
 namespace kiln {

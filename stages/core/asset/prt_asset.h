@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "asset/format.h"
-#include "detail/normal_space.h"
 #include "image/image.h"
+#include "maps/normal_space.h"
 #include "mesh/triangle_mesh.h"
 #include "sh/transfer.h"
 

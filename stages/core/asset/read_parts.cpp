@@ -5,10 +5,10 @@
 #include <cmath>
 #include <exception>
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include "asset/read_description.h"
 #include "base/errors.h"
+#include "base/parallel.h"
 #include "image/image_file.h"
 
 namespace kiln {
@@ -65,7 +65,7 @@ std::vector<Image<Texel>> read_grey_pictures(const fs::path& folder, const PrtDe
                                              const std::string& remedy) {
   std::vector<Image<Texel>> pictures(asset.planes.size());
   std::vector<std::exception_ptr> faults(asset.planes.size());
-  tbb::parallel_for(std::size_t{0}, pictures.size(), [&](std::size_t k) {
+  parallel_for(std::size_t{0}, pictures.size(), [&](std::size_t k) {
     try {
       pictures[k] = read_grey<Texel>(folder / asset.planes[k].file, asset.width, asset.height, remedy);
     } catch (...) {

@@ -15,14 +15,16 @@
 #include <memory>
 #include <new>
 #include <sys/resource.h>
-#include <tbb/global_control.h>
 #include <thread>
 
 #include "base/errors.h"
 #include "base/file_names.h"
+#include "base/hashes.h"
 #include "base/help_pages.h"
+#include "base/interruption.h"
 #include "base/json.h"
 #include "base/process.h"
+#include "base/progress_bar.h"
 #include "base/stopwatch.h"
 
 namespace kiln {
@@ -102,6 +104,29 @@ void CommandLine::list_option(const std::string& name, std::vector<std::string>&
   app_->add_option("--" + name, texts, help)->expected(1)->take_all()->type_name("")->group(heading);
 }
 
+void CommandLine::paths(const std::string& name, std::vector<fs::path>& paths, const std::string& help) {
+  app_->add_option(name, paths, help)->required();
+}
+
+void CommandLine::text_option(const std::string& name, std::string& text, const std::string& heading,
+                              const std::string& help) {
+  app_->add_option("--" + name, text, help)->type_name("")->group(heading);
+}
+
+void CommandLine::number_option(const std::string& name, double& number, const std::string& heading,
+                                const std::string& help) {
+  app_->add_option("--" + name, number, help)
+      ->check(CLI::Validator(CLI::NonNegativeNumber).description(""))
+      ->type_name("")
+      ->group(heading);
+}
+
+void CommandLine::flag(const std::string& name, bool& given, const std::string& heading, const std::string& help) {
+  app_->add_flag("--" + name, given, help)->group(heading);
+}
+
+void CommandLine::footer(const std::string& text) { app_->footer(text); }
+
 void CommandLine::options(const std::string& heading, const OptionSet& options) {
   option_sets_.push_back(options);
   for (const Option& option : option_sets_.back().options()) {
@@ -159,7 +184,7 @@ void CommandLine::parse(int argc, char** argv) {
     throw;
   }
   if (threads_ == 0) threads_ = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  thread_limit_ = std::make_shared<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads_);
+  thread_limit_.emplace(static_cast<std::size_t>(threads_));
   for (const fs::path* path : inputs_)
     if (!path->empty()) require_exists(*path);
   for (const auto* list : input_lists_)

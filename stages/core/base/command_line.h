@@ -4,11 +4,13 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/options.h"
 #include "base/outputs.h"
+#include "base/parallel.h"
 #include "base/progress.h"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the library's own name
@@ -45,11 +47,20 @@ class CommandLine {
   void list_option(const std::string& name, std::vector<std::string>& texts, const std::string& heading,
                    const std::string& help);
 
+  /// Adds one or more positional paths, which need not exist and are not in the result.
+  void paths(const std::string& name, std::vector<std::filesystem::path>& paths, const std::string& help);
+
+  /// Adds `--name TEXT`, `--name NUMBER` (0 or more) or the switch `--name`, under a heading of --help. They say how to
+  /// run, so they are not among the result's settings.
+  void text_option(const std::string& name, std::string& text, const std::string& heading, const std::string& help);
+  void number_option(const std::string& name, double& number, const std::string& heading, const std::string& help);
+  void flag(const std::string& name, bool& given, const std::string& heading, const std::string& help);
+
   /// Adds the settings of the stage, under a heading of --help.
   void options(const std::string& heading, const OptionSet& options);
 
-  /// Returns the parser, for what the functions above do not cover.
-  CLI::App& app() { return *app_; }
+  /// Adds a text at the end of --help.
+  void footer(const std::string& text);
 
   /// Tells, after parse(), whether `--name` was given.
   bool given(const std::string& name) const;
@@ -103,7 +114,7 @@ class CommandLine {
   std::vector<std::filesystem::path> also_read_;
   std::vector<std::string> warnings_;
   std::vector<OptionSet> option_sets_;
-  std::shared_ptr<void> thread_limit_;
+  std::optional<ThreadLimit> thread_limit_;
 };
 
 /// Runs the body of a main(): maps exceptions to exit statuses and one message on stderr each, and ends by the signal

@@ -5,12 +5,10 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
-#include <limits>
 #include <optional>
 
 #include "base/errors.h"
 #include "base/json.h"
-#include "base/numbers.h"
 
 namespace kiln {
 
@@ -26,31 +24,7 @@ std::optional<Number> parse(const std::string& text) {
 
 }  // namespace
 
-std::string json_text(const Json& value, int indent) {
-  return value.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
-
-std::string Extent::text() const {
-  return width == height ? std::to_string(width) : fmt::format("{}x{}", width, height);
-}
-
-std::optional<std::array<double, 3>> parse_colors(const std::string& text) {
-  constexpr double largest = std::numeric_limits<double>::max();
-  return color_within(text, -largest, largest);
-}
-
-std::string numbers_text(std::initializer_list<double> numbers) {
-  std::string text;
-  for (const double number : numbers) text += (text.empty() ? "" : ",") + fmt::format("{}", number);
-  return text;
-}
-
-std::string color_text(const std::array<float, 3>& color) {
-  const auto [red, green, blue] = color;
-  return red == green && green == blue ? fmt::format("{}", red) : fmt::format("{},{},{}", red, green, blue);
-}
-
-OptionSet& OptionSet::integer(std::string name, int& value, int lowest, int highest, std::string help) {
+OptionSet& OptionSet::integer(const std::string& name, int& value, int lowest, int highest, const std::string& help) {
   const std::string range = fmt::format("{} to {}", lowest, highest);
   auto set = [=, &value](const std::string& text) {
     const std::optional<int> parsed = parse<int>(text);
@@ -58,11 +32,12 @@ OptionSet& OptionSet::integer(std::string name, int& value, int lowest, int high
       throw WrongUsage(fmt::format("{}: found '{}'; expected a whole number, {}", name, text, range));
     value = *parsed;
   };
-  options_.push_back({name, std::move(help), range, false, set, [&value] { return Json(value); }});
+  options_.push_back({name, help, range, false, set, [&value] { return Json(value); }});
   return *this;
 }
 
-OptionSet& OptionSet::integer_or_auto(std::string name, int& value, int lowest, int highest, std::string help) {
+OptionSet& OptionSet::integer_or_auto(const std::string& name, int& value, int lowest, int highest,
+                                      const std::string& help) {
   const std::string range = fmt::format("auto or {} to {}", lowest, highest);
   auto set = [=, &value](const std::string& text) {
     const std::optional<int> parsed = text == "auto" ? std::optional(0) : parse<int>(text);
@@ -71,12 +46,12 @@ OptionSet& OptionSet::integer_or_auto(std::string name, int& value, int lowest, 
           fmt::format("{}: found '{}'; expected auto or a whole number, {} to {}", name, text, lowest, highest));
     value = *parsed;
   };
-  options_.push_back(
-      {name, std::move(help), range, false, set, [&value] { return value == 0 ? Json("auto") : Json(value); }});
+  options_.push_back({name, help, range, false, set, [&value] { return value == 0 ? Json("auto") : Json(value); }});
   return *this;
 }
 
-OptionSet& OptionSet::number(std::string name, double& value, double lowest, double highest, std::string help) {
+OptionSet& OptionSet::number(const std::string& name, double& value, double lowest, double highest,
+                             const std::string& help) {
   const std::string range = fmt::format("{:g} to {:g}", lowest, highest);
   auto set = [=, &value](const std::string& text) {
     const std::optional<double> parsed = parse<double>(text);
@@ -84,12 +59,12 @@ OptionSet& OptionSet::number(std::string name, double& value, double lowest, dou
       throw WrongUsage(fmt::format("{}: found '{}'; expected a number, {}", name, text, range));
     value = *parsed;
   };
-  options_.push_back({name, std::move(help), range, false, set, [&value] { return Json(value); }});
+  options_.push_back({name, help, range, false, set, [&value] { return Json(value); }});
   return *this;
 }
 
-OptionSet& OptionSet::number_or_auto(std::string name, std::optional<double>& value, double lowest, double highest,
-                                     std::string help) {
+OptionSet& OptionSet::number_or_auto(const std::string& name, std::optional<double>& value, double lowest,
+                                     double highest, const std::string& help) {
   const std::string range = fmt::format("auto or {:g} to {:g}", lowest, highest);
   auto set = [=, &value](const std::string& text) {
     const std::optional<double> parsed = text == "auto" ? std::nullopt : parse<double>(text);
@@ -98,12 +73,11 @@ OptionSet& OptionSet::number_or_auto(std::string name, std::optional<double>& va
           fmt::format("{}: found '{}'; expected auto or a number, {:g} to {:g}", name, text, lowest, highest));
     value = parsed;
   };
-  options_.push_back(
-      {name, std::move(help), range, false, set, [&value] { return value ? Json(*value) : Json("auto"); }});
+  options_.push_back({name, help, range, false, set, [&value] { return value ? Json(*value) : Json("auto"); }});
   return *this;
 }
 
-OptionSet& OptionSet::extent(std::string name, Extent& value, int lowest, int highest, std::string help) {
+OptionSet& OptionSet::extent(const std::string& name, Extent& value, int lowest, int highest, const std::string& help) {
   const std::string range = fmt::format("{} to {}, or WIDTHxHEIGHT", lowest, highest);
   auto set = [=, &value](const std::string& text) {
     const std::size_t cross = text.find('x');
@@ -115,48 +89,47 @@ OptionSet& OptionSet::extent(std::string name, Extent& value, int lowest, int hi
                                    text, lowest, highest));
     value = {*width, *height};
   };
-  options_.push_back({name, std::move(help), range, false, set,
+  options_.push_back({name, help, range, false, set,
                       [&value] { return value.width == value.height ? Json(value.width) : Json(value.text()); }});
   return *this;
 }
 
-OptionSet& OptionSet::toggle(std::string name, bool& value, std::string help) {
+OptionSet& OptionSet::toggle(const std::string& name, bool& value, const std::string& help) {
   auto set = [name, &value](const std::string& text) {
     if (text != "true" && text != "false")
       throw WrongUsage(fmt::format("{}: found '{}'; expected true or false", name, text));
     value = text == "true";
   };
-  options_.push_back({name, std::move(help), "", true, set, [&value] { return Json(value); }});
+  options_.push_back({name, help, "", true, set, [&value] { return Json(value); }});
   return *this;
 }
 
-OptionSet& OptionSet::text(std::string name, std::string& value, std::string help) {
+OptionSet& OptionSet::text(const std::string& name, std::string& value, const std::string& help) {
   auto set = [&value](const std::string& text) { value = text; };
-  options_.push_back({std::move(name), std::move(help), "text", false, set, [&value] { return Json(value); }});
+  options_.push_back({name, help, "text", false, set, [&value] { return Json(value); }});
   return *this;
 }
 
-OptionSet& OptionSet::file(std::string name, std::string& value, std::string help) {
-  text(std::move(name), value, std::move(help));
+OptionSet& OptionSet::file(const std::string& name, std::string& value, const std::string& help) {
+  text(name, value, help);
   options_.back().names_file = true;
   return *this;
 }
 
-OptionSet& OptionSet::checked_text(std::string name, std::string& value, std::string value_range, std::string help,
-                                   std::function<void(const std::string&)> check) {
+OptionSet& OptionSet::checked_text(const std::string& name, std::string& value, const std::string& value_range,
+                                   const std::string& help, std::function<void(const std::string&)> check) {
   auto set = [&value, check = std::move(check)](const std::string& text) {
     check(text);
     value = text;
   };
-  options_.push_back(
-      {std::move(name), std::move(help), std::move(value_range), false, set, [&value] { return Json(value); }});
+  options_.push_back({name, help, value_range, false, set, [&value] { return Json(value); }});
   return *this;
 }
 
-OptionSet& OptionSet::parsed(std::string name, std::string value_range, std::string help,
+OptionSet& OptionSet::parsed(const std::string& name, const std::string& value_range, const std::string& help,
                              std::function<void(const std::string&)> set, std::function<std::string()> print) {
-  options_.push_back({std::move(name), std::move(help), std::move(value_range), false, std::move(set),
-                      [print = std::move(print)] { return Json(print()); }});
+  options_.push_back(
+      {name, help, value_range, false, std::move(set), [print = std::move(print)] { return Json(print()); }});
   return *this;
 }
 
@@ -173,18 +146,19 @@ OptionSet& OptionSet::append(OptionSet others, Affects what) {
   return *this;
 }
 
-OptionSet& OptionSet::choice_by_index(std::string name, std::vector<std::string> words,
+OptionSet& OptionSet::choice_by_index(const std::string& name, const std::vector<std::string>& words,
                                       std::function<void(std::size_t)> set, std::function<std::size_t()> get,
-                                      std::string help) {
+                                      const std::string& help) {
   std::string range;
   for (std::size_t i = 0; i < words.size(); ++i)
     range += (i == 0 ? "" : i + 1 == words.size() ? " or " : ", ") + words[i];
-  auto set_text = [=](const std::string& text) {
+  auto set_text = [name, words, range, set = std::move(set)](const std::string& text) {
     for (std::size_t i = 0; i < words.size(); ++i)
       if (words[i] == text) return set(i);
     throw WrongUsage(fmt::format("{}: found '{}'; expected {}", name, text, range));
   };
-  options_.push_back({name, std::move(help), range, false, set_text, [words, get] { return Json(words[get()]); }});
+  options_.push_back(
+      {name, help, range, false, set_text, [words, get = std::move(get)] { return Json(words[get()]); }});
   return *this;
 }
 

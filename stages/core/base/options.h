@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -9,31 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "base/extent.h"
 #include "base/json_fwd.h"
 
 namespace kiln {
-
-/// Width and height of a texture, texels. One number is a square.
-struct Extent {
-  int width = 0;
-  int height = 0;
-
-  Extent() = default;
-  Extent(int side) : width(side), height(side) {}  // NOLINT: a number is a square
-  Extent(int across, int up) : width(across), height(up) {}
-  bool operator==(const Extent&) const = default;
-
-  /// Writes "512" or "1024x512".
-  std::string text() const;
-};
-
-/// Parses red, green and blue: "0.8" (three times that) or "0.8,0.5,0.2", also with the semicolons that a list of
-/// pipeline.yaml becomes; numbers are finite. Nothing for other text.
-std::optional<std::array<double, 3>> parse_colors(const std::string& text);
-
-/// Numbers between commas, each as short as it reads back.
-std::string numbers_text(std::initializer_list<double> numbers);
-std::string color_text(const std::array<float, 3>& color);
 
 /// What a setting has a say in, where a stage keeps its work half done: sums of integration, which later settings only
 /// store.
@@ -61,48 +39,48 @@ struct Option {
 class OptionSet {
  public:
   /// Adds an integer of `lowest` to `highest`.
-  OptionSet& integer(std::string name, int& value, int lowest, int highest, std::string help);
+  OptionSet& integer(const std::string& name, int& value, int lowest, int highest, const std::string& help);
 
   /// Adds an integer or "auto", which is stored as 0; `lowest` is above 0.
-  OptionSet& integer_or_auto(std::string name, int& value, int lowest, int highest, std::string help);
+  OptionSet& integer_or_auto(const std::string& name, int& value, int lowest, int highest, const std::string& help);
 
   /// Adds a number of `lowest` to `highest`, both included, finite.
-  OptionSet& number(std::string name, double& value, double lowest, double highest, std::string help);
+  OptionSet& number(const std::string& name, double& value, double lowest, double highest, const std::string& help);
 
   /// Adds a number or "auto", which is stored as nothing.
-  OptionSet& number_or_auto(std::string name, std::optional<double>& value, double lowest, double highest,
-                            std::string help);
+  OptionSet& number_or_auto(const std::string& name, std::optional<double>& value, double lowest, double highest,
+                            const std::string& help);
 
   /// Adds an extent: "1024" (square) or "1024x512" (width x height), both of `lowest` to `highest`. JSON has a number
   /// for a square, else the text. 0, which means "automatic" where `lowest` is 0, is always square.
-  OptionSet& extent(std::string name, Extent& value, int lowest, int highest, std::string help);
+  OptionSet& extent(const std::string& name, Extent& value, int lowest, int highest, const std::string& help);
 
   /// Adds a switch, off unless given.
-  OptionSet& toggle(std::string name, bool& value, std::string help);
+  OptionSet& toggle(const std::string& name, bool& value, const std::string& help);
 
   /// Adds any text.
-  OptionSet& text(std::string name, std::string& value, std::string help);
+  OptionSet& text(const std::string& name, std::string& value, const std::string& help);
 
-  /// The path of a file that the stage reads.
-  OptionSet& file(std::string name, std::string& value, std::string help);
+  /// Adds the path of a file that the stage reads.
+  OptionSet& file(const std::string& name, std::string& value, const std::string& help);
 
   /// Adds a text for which `check` throws WrongUsage where it is not valid; `value_range` says what is.
-  OptionSet& checked_text(std::string name, std::string& value, std::string value_range, std::string help,
-                          std::function<void(const std::string&)> check);
+  OptionSet& checked_text(const std::string& name, std::string& value, const std::string& value_range,
+                          const std::string& help, std::function<void(const std::string&)> check);
 
   /// Adds a text that is stored parsed: `set` throws WrongUsage for what it does not understand, `print` returns the
   /// text.
-  OptionSet& parsed(std::string name, std::string value_range, std::string help,
+  OptionSet& parsed(const std::string& name, const std::string& value_range, const std::string& help,
                     std::function<void(const std::string&)> set, std::function<std::string()> print);
 
-  /// A value of any type with ==: `parse` throws WrongUsage for what it does not understand, `print` gives a text that
-  /// it does. As long as the value is the one given, its text is as it was given.
+  /// Adds a value of any type with ==: `parse` throws WrongUsage for what it does not understand, `print` gives a text
+  /// that it does. As long as the value is the one given, its text is as it was given.
   template <class T>
-  OptionSet& typed(std::string name, T& value, std::string value_range, std::string help,
+  OptionSet& typed(const std::string& name, T& value, const std::string& value_range, const std::string& help,
                    std::function<T(const std::string&)> parse, std::function<std::string(const T&)> print) {
     auto given = std::make_shared<std::optional<std::pair<T, std::string>>>();
     return parsed(
-        std::move(name), std::move(value_range), std::move(help),
+        name, value_range, help,
         [&value, given, parse = std::move(parse)](const std::string& text) {
           value = parse(text);
           *given = {value, text};
@@ -120,17 +98,18 @@ class OptionSet {
 
   /// Adds one of several words, each standing for a value of an enumeration.
   template <class Enum>
-  OptionSet& choice(std::string name, Enum& value, std::vector<std::pair<std::string, Enum>> words, std::string help) {
+  OptionSet& choice(const std::string& name, Enum& value, const std::vector<std::pair<std::string, Enum>>& words,
+                    const std::string& help) {
     std::vector<std::string> names;
     for (const auto& word : words) names.push_back(word.first);
     return choice_by_index(
-        std::move(name), names, [&value, words](std::size_t index) { value = words[index].second; },
+        name, names, [&value, words](std::size_t index) { value = words[index].second; },
         [&value, words] {
           for (std::size_t i = 0; i < words.size(); ++i)
             if (words[i].second == value) return i;
           return std::size_t{0};
         },
-        std::move(help));
+        help);
   }
 
   const std::vector<Option>& options() const { return options_; }
@@ -145,8 +124,9 @@ class OptionSet {
   Json to_json() const;
 
  private:
-  OptionSet& choice_by_index(std::string name, std::vector<std::string> words, std::function<void(std::size_t)> set,
-                             std::function<std::size_t()> get, std::string help);
+  OptionSet& choice_by_index(const std::string& name, const std::vector<std::string>& words,
+                             std::function<void(std::size_t)> set, std::function<std::size_t()> get,
+                             const std::string& help);
   std::vector<Option> options_;
 };
 

@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 #include "base/errors.h"
-#include "base/progress.h"
+#include "base/interruption.h"
 
 namespace kiln {
 

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <functional>
-#include <string>
 
 namespace kiln {
 
@@ -24,34 +22,5 @@ inline ProgressFunction step_of(const ProgressFunction& progress, std::size_t in
   const auto all = static_cast<double>(count);
   return part_of(progress, static_cast<double>(index) / all, static_cast<double>(index + 1) / all);
 }
-
-/// Progress bar with the time left, on stderr where that is a terminal, else nothing. Throws Interrupted once the
-/// process was asked to stop (stop_on_signals).
-class ProgressBar {
- public:
-  ProgressBar(std::string label, bool quiet);
-  ~ProgressBar();
-  ProgressBar(const ProgressBar&) = delete;
-  ProgressBar& operator=(const ProgressBar&) = delete;
-
-  void operator()(double fraction);
-
- private:
-  using Clock = std::chrono::steady_clock;
-  std::string label_;
-  bool shown_;
-  bool drawn_ = false;
-  Clock::time_point start_;
-  Clock::time_point drawn_at_;
-};
-
-/// Makes SIGINT and SIGTERM be noted instead of ending the process; see throw_if_interrupted.
-void stop_on_signals();
-
-/// Throws Interrupted if a signal was noted.
-void throw_if_interrupted();
-
-/// Returns the signal that was noted, 0 for none.
-int noted_signal();
 
 }  // namespace kiln

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+
+#include "base/parallel.h"
 
 namespace kiln {
 
@@ -19,9 +19,7 @@ struct Level {
 
 template <class Body>
 void for_each_row(int height, const Body& body) {
-  tbb::parallel_for(tbb::blocked_range<int>(0, height, 16), [&](const tbb::blocked_range<int>& rows) {
-    for (int j = rows.begin(); j < rows.end(); ++j) body(j);
-  });
+  parallel_for(0, height, 16, [&](int j) { body(j); });
 }
 
 /// Pushes: makes every coarse texel the mean of the known ones among its (up to) four.

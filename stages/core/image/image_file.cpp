@@ -11,7 +11,7 @@
 #include <system_error>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "image/exr_file.h"
 #include "image/picture_codec.h"
 #include "image/png_file.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "import/readers.h"
 #include "mesh/draco_decode.h"
 

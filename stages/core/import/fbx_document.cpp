@@ -8,7 +8,7 @@
 #include <zlib.h>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "import/fbx_text.h"
 #include "import/text_lines.h"
 

@@ -7,7 +7,7 @@
 #include <meshoptimizer.h>
 #include <string_view>
 
-#include "base/outputs.h"
+#include "base/files.h"
 #include "import/base64.h"
 
 // Buffers, views and accessors: [Khronos 2021], chapter 3.6. Packed views: EXT_meshopt_compression, whose codecs are

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 
 // The format is glTF 2.0 [Khronos 2021], with the binary form of its chapter 4. The JSON is checked here rather than by
 // tinygltf 2.7, which refuses the buffers without bytes of EXT_meshopt_compression, and leaves the checks of indices

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "base/outputs.h"
+#include "base/files.h"
 #include "import/map_statement.h"
 #include "import/text_words.h"
 #include "import/wavefront_lines.h"

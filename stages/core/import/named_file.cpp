@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string>
 
-#include "base/outputs.h"
+#include "base/files.h"
 #include "import/text_lines.h"
 
 namespace kiln {

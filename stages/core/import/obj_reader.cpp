@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "import/obj_colors.h"
 #include "import/obj_materials.h"
 #include "import/obj_vertices.h"

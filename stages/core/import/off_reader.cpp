@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "import/off_mesh.h"
 #include "import/readers.h"
 #include "import/text_words.h"

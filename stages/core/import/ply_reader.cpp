@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "import/coordinates.h"
 #include "import/ply_colors.h"
 #include "import/ply_rows.h"

@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "import/coordinates.h"
 #include "import/readers.h"
 #include "import/stored_colors.h"

@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "base/errors.h"
+#include "base/number_text.h"
+#include "base/numbers.h"
 
 namespace kiln {
 
@@ -11,8 +13,8 @@ namespace {
 
 std::optional<std::array<float, 3>> parse_albedo(const std::string& text) {
   if (text == "auto") return std::nullopt;
-  const std::optional<std::array<double, 3>> colors = parse_colors(text);
-  if (!colors || !std::all_of(colors->begin(), colors->end(), [](double c) { return c >= 0 && c <= 1; }))
+  const std::optional<std::array<double, 3>> colors = color_within(text, 0, 1);
+  if (!colors)
     throw WrongUsage("albedo: found '" + text + "'; expected auto, one number or three as R,G,B, each 0 to 1");
   std::array<float, 3> albedo{};
   std::transform(colors->begin(), colors->end(), albedo.begin(), [](double c) { return static_cast<float>(c); });

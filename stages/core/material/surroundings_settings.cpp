@@ -2,6 +2,7 @@
 #include "material/surroundings_settings.h"
 
 #include "base/errors.h"
+#include "base/number_text.h"
 #include "base/numbers.h"
 
 namespace kiln {

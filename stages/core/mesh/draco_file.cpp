@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "mesh/draco_decode.h"
 
 namespace kiln {

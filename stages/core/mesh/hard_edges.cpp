@@ -6,7 +6,7 @@
 #include <cmath>
 #include <span>
 
-#include "mesh/mesh_components.h"
+#include "mesh/disjoint_sets.h"
 #include "mesh/surface_point.h"
 
 namespace kiln {

@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "mesh/disjoint_sets.h"
 #include "mesh/triangle_edges.h"
 #include "mesh/winding.h"
 
@@ -44,24 +44,6 @@ std::vector<ComponentShape> measure(const TriangleMesh& mesh, const Components& 
 }
 
 }  // namespace
-
-DisjointSets::DisjointSets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0u); }
-
-std::uint32_t DisjointSets::root(std::uint32_t member) {
-  while (parent_[member] != member) member = parent_[member] = parent_[parent_[member]];
-  return member;
-}
-
-void DisjointSets::join(std::uint32_t a, std::uint32_t b) {
-  const auto [lesser, greater] = std::minmax({root(a), root(b)});
-  parent_[greater] = lesser;
-}
-
-std::vector<std::uint32_t> DisjointSets::roots() {
-  std::vector<std::uint32_t> all(parent_.size());
-  for (std::uint32_t member = 0; member < all.size(); ++member) all[member] = root(member);
-  return all;
-}
 
 Components find_components(const TriangleMesh& mesh) {
   DisjointSets sets(mesh.positions.size());

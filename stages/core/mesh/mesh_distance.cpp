@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <tbb/parallel_for.h>
 #include <vector>
 
+#include "base/parallel.h"
 #include "mesh/nearest_surface.h"
 
 namespace kiln {
@@ -81,7 +81,7 @@ OneWay distance_to(const SampledSurface& from, const NearestSurface& to, const M
     double sum_squared = 0;
   };
   std::vector<Partial> partials((points + chunk_points - 1) / chunk_points);
-  tbb::parallel_for(std::size_t{0}, partials.size(), [&](std::size_t chunk) {
+  parallel_for(std::size_t{0}, partials.size(), [&](std::size_t chunk) {
     Partial& partial = partials[chunk];
     const std::size_t end = std::min(points, (chunk + 1) * chunk_points);
     std::uint32_t hint = 0;

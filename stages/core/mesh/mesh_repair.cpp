@@ -13,6 +13,7 @@
 #include <tuple>
 #include <vector>
 
+#include "mesh/disjoint_sets.h"
 #include "mesh/index_table.h"
 #include "mesh/mesh_components.h"
 #include "mesh/mesh_surgery.h"

@@ -13,6 +13,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "mesh/disjoint_sets.h"
 #include "mesh/mesh_components.h"
 
 namespace kiln {

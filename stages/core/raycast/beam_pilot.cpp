@@ -6,8 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 #include <utility>
+
+#include "base/parallel.h"
 
 namespace kiln {
 
@@ -170,7 +171,7 @@ BeamSplit split_by_cost(const BeamScene& scene, BeamReceivers receivers, std::sp
   const std::vector<std::vector<std::uint32_t>> groups = groups_of(receivers.packets);
   std::vector<BeamPilot> pilots(groups.size());
   tbb::enumerable_thread_specific<Sampler> samplers([&] { return Sampler(scene); });
-  tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
+  parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
     Sampler& sampler = samplers.local();
     for (std::size_t k = g % packets_apart % groups[g].size(); k < groups[g].size(); k += packets_apart)
       sampler.sample(receivers.packets[groups[g][k]], blocks, (g + k * blocks_apart / group_packets) % blocks_apart,

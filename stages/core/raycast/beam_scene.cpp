@@ -7,9 +7,9 @@
 #include <limits>
 #include <map>
 #include <numeric>
-#include <tbb/parallel_for.h>
 
-#include "mesh/mesh_components.h"
+#include "base/parallel.h"
+#include "mesh/disjoint_sets.h"
 #include "mesh/same_position.h"
 #include "mesh/triangle_edges.h"
 #include "raycast/exact_side.h"
@@ -97,7 +97,7 @@ class Builder {
         centres_(triangles.size()),
         normals_(triangles.size()) {
     std::iota(order_.begin(), order_.end(), 0u);
-    tbb::parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t k) {
+    parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t k) {
       const auto& t = triangles[k];
       centres_[k] = (positions[t[0]] + positions[t[1]] + positions[t[2]]) / 3;
       const Eigen::Vector3d a = positions[t[0]].cast<double>();

@@ -5,8 +5,8 @@
 #include <bit>
 #include <limits>
 #include <numeric>
-#include <tbb/parallel_invoke.h>
 
+#include "base/parallel.h"
 #include "raycast/packet_workers.h"
 #include "raycast/sh_rows.h"
 
@@ -37,7 +37,7 @@ void sort_into_packets(std::span<const Place> places, std::span<std::uint32_t> o
     sort_into_packets(places, first);
     sort_into_packets(places, second);
   } else {
-    tbb::parallel_invoke([&] { sort_into_packets(places, first); }, [&] { sort_into_packets(places, second); });
+    parallel_invoke([&] { sort_into_packets(places, first); }, [&] { sort_into_packets(places, second); });
   }
 }
 

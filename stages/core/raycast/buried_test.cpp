@@ -5,10 +5,9 @@
 #include <array>
 #include <limits>
 #include <map>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <utility>
 
+#include "base/parallel.h"
 #include "mesh/hard_edges.h"
 #include "mesh/mesh_components.h"
 #include "mesh/same_position.h"
@@ -162,14 +161,11 @@ BuriedTest::~BuriedTest() = default;
 std::vector<std::uint8_t> BuriedTest::operator()(const Receivers& points) const {
   const Implementation& own = *implementation_;
   std::vector<std::uint8_t> buried(points.size(), 0);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), chunk_points),
-                    [&](const tbb::blocked_range<std::size_t>& part) {
-                      for (std::size_t k = part.begin(); k < part.end(); ++k) {
-                        const Eigen::Vector3f& normal = points.normals[k];
-                        const Eigen::Vector3f origin = points.positions[k] + own.ray_offset * normal;
-                        buried[k] = own.is_buried(origin, normal) ? 1 : 0;
-                      }
-                    });
+  parallel_for(std::size_t{0}, points.size(), chunk_points, [&](std::size_t k) {
+    const Eigen::Vector3f& normal = points.normals[k];
+    const Eigen::Vector3f origin = points.positions[k] + own.ray_offset * normal;
+    buried[k] = own.is_buried(origin, normal) ? 1 : 0;
+  });
   return buried;
 }
 

@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
+#include "base/parallel.h"
 #include "base/progress.h"
 
 namespace kiln {
@@ -21,11 +20,10 @@ auto for_each_packet(std::size_t packets, const ProgressFunction& progress, cons
   tbb::enumerable_thread_specific<decltype(make_worker())> workers(make_worker);
   for (std::size_t first = 0; first < packets; first += group_packets) {
     const std::size_t last = std::min(first + group_packets, packets);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(first, last, grain_packets),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        auto& worker = workers.local();
-                        for (std::size_t packet = range.begin(); packet != range.end(); ++packet) work(packet, worker);
-                      });
+    parallel_ranges(first, last, grain_packets, [&](std::size_t begin, std::size_t end) {
+      auto& worker = workers.local();
+      for (std::size_t packet = begin; packet != end; ++packet) work(packet, worker);
+    });
     progress(static_cast<double>(last) / static_cast<double>(packets));
   }
   return workers;

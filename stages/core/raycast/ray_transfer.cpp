@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <vector>
 
+#include "base/parallel.h"
 #include "raycast/sh_rows.h"
 
 namespace kiln {
@@ -62,11 +61,7 @@ void add_transfer_by_rays(const RayScene& scene, const Receivers& receivers,
   const std::size_t streams = (receivers.size() + stream_receivers - 1) / stream_receivers;
   for (std::size_t first = 0; first < streams; first += group_streams) {
     const std::size_t last = std::min(first + group_streams, streams);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(first, last, 1),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t stream = range.begin(); stream != range.end(); ++stream)
-                          shade_stream(stream * stream_receivers);
-                      });
+    parallel_for(first, last, [&](std::size_t stream) { shade_stream(stream * stream_receivers); });
     progress(static_cast<double>(last) / static_cast<double>(streams));
   }
   sums.directions += static_cast<std::int64_t>(directions.size());

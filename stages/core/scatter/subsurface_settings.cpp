@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "base/errors.h"
+#include "base/number_text.h"
+#include "base/numbers.h"
 #include "scatter/materials.h"
 
 namespace kiln {
@@ -21,10 +23,8 @@ struct NumberText {
   double lowest, highest;
 
   Colors parse(const std::string& text) const {
-    const std::optional<Colors> colors = parse_colors(text);
-    const bool good = colors && std::all_of(colors->begin(), colors->end(),
-                                            [&](double value) { return value >= lowest && value <= highest; });
-    if (!good)
+    const std::optional<Colors> colors = color_within(text, lowest, highest);
+    if (!colors)
       throw WrongUsage(std::string(name) + ": found '" + text + "'; expected one number or R,G,B, each " + range);
     return *colors;
   }

@@ -5,15 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-namespace kiln {
+#include "sh/sampling.h"
 
-/// Ways to spread directions over the sphere; each direction stands for the solid angle 4 pi / count.
-enum class Sampling {
-  fibonacci,    ///< spherical Fibonacci points [Keinert 2015], the whole set rotated at random
-  stratified,   ///< one jittered point per cell of a unit square, mapped to the sphere with equal areas
-                ///< ([US 7,948,490], [Chapter 2010])
-  progressive,  ///< the first `count` of progressive_directions
-};
+namespace kiln {
 
 /// Returns `count` >= 1 unit vectors; the same for the same arguments on any machine.
 std::vector<Eigen::Vector3f> sample_directions(Sampling sampling, int count, std::uint64_t seed);

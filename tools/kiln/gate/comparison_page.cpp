@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/file_names.h"
+#include "base/html.h"
 #include "kiln/index_page.h"
 #include "kiln/page_frame.h"
 #include "report/labels.h"

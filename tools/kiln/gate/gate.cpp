@@ -7,7 +7,7 @@
 
 #include "base/asset_layout.h"
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "image/image_file.h"
 #include "report/judging.h"
 

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "kiln/page_frame.h"
+#include "base/html.h"
 
 namespace kiln {
 

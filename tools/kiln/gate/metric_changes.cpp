@@ -6,6 +6,7 @@
 #include <map>
 #include <string_view>
 
+#include "base/json.h"
 #include "report/labels.h"
 
 namespace kiln {

@@ -7,8 +7,8 @@
 
 #include "base/asset_layout.h"
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/json.h"
-#include "base/outputs.h"
 #include "kiln/build.h"
 #include "kiln/shipped.h"
 #include "kiln/text_file.h"

@@ -10,7 +10,6 @@
 
 #include "base/errors.h"
 #include "base/json.h"
-#include "base/outputs.h"
 #include "kiln/metrics.h"
 #include "kiln/plan/pilot.h"
 #include "kiln/plan/plan_file.h"

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "kiln/overrides.h"
 #include "kiln/settings_layer.h"
 #include "kiln/text_file.h"

@@ -8,9 +8,10 @@
 #include <set>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
+#include "base/hashes.h"
+#include "base/interruption.h"
 #include "base/process.h"
-#include "base/progress.h"
 #include "base/stopwatch.h"
 #include "kiln/build.h"
 #include "kiln/rules.h"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "base/html.h"
 #include "kiln/page_frame.h"
 #include "report/labels.h"
 #include "report/log_axis.h"

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "base/asset_layout.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "kiln/gate/metric_changes.h"
 #include "kiln/shipped.h"
 #include "report/judging.h"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/extent.h"
 #include "gpu/program.h"
 
 namespace kiln {

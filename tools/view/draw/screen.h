@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/options.h"
+#include "base/extent.h"
 #include "gpu/gl_objects.h"
 #include "image/image.h"
 #include "render/output/picture.h"

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "base/errors.h"
-#include "base/outputs.h"
+#include "base/files.h"
 #include "view/state/keys.h"
 
 namespace kiln {

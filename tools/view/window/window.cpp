@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include "base/errors.h"
+#include "base/extent.h"
 #include "view/state/keys.h"
 
 namespace kiln {

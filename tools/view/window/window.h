@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "base/options.h"
+#include "base/extent.h"
 #include "view/state/view_state.h"
 
 namespace kiln {

@@ -1,35 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "base/progress.h"
+#include "base/progress_bar.h"
 
 #include <algorithm>
-#include <csignal>
 #include <cstdio>
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "base/errors.h"
+#include "base/interruption.h"
 
 namespace kiln {
-
-namespace {
-
-// The one mutable global of the tree: a signal handler can reach nothing else.
-volatile std::sig_atomic_t g_noted_signal = 0;
-
-}  // namespace
-
-void stop_on_signals() {
-  struct sigaction action = {};
-  action.sa_handler = [](int number) { g_noted_signal = number; };
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
-}
-
-int noted_signal() { return g_noted_signal; }
-
-void throw_if_interrupted() {
-  if (g_noted_signal != 0) throw Interrupted();
-}
 
 ProgressBar::ProgressBar(std::string label, bool quiet)
     : label_(std::move(label)), shown_(!quiet && isatty(STDERR_FILENO) != 0), start_(Clock::now()), drawn_at_(start_) {}

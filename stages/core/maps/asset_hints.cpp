@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "detail/asset_hints.h"
+#include "maps/asset_hints.h"
 
 #include <algorithm>
 
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/json.h"
-#include "base/outputs.h"
 
 namespace kiln {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "detail/seam_solver.h"
+#include "maps/seam_solver.h"
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "detail/seam_equations.h"
+#include "maps/seam_equations.h"
 
 namespace kiln {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "detail/detail_maps.h"
+#include "maps/detail_maps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 
 #include "base/asset_layout.h"
 #include "base/errors.h"
+#include "base/files.h"
 #include "base/json.h"
-#include "base/outputs.h"
 #include "image/gutter.h"
 #include "image/image_file.h"
 #include "image/srgb.h"

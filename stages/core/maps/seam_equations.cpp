@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "detail/seam_equations.h"
+#include "maps/seam_equations.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "detail/normal_space.h"
-#include "detail/seams.h"
+#include "maps/normal_space.h"
+#include "maps/seams.h"
 
 namespace kiln {
 

@@ -7,9 +7,9 @@
 #include <memory>
 #include <span>
 
-#include "detail/normal_space.h"
-#include "detail/seams.h"
 #include "image/image.h"
+#include "maps/normal_space.h"
+#include "maps/seams.h"
 
 namespace kiln {
 

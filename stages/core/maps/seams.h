@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "detail/footprint.h"
-#include "detail/normal_space.h"
 #include "image/image.h"
+#include "maps/footprint.h"
+#include "maps/normal_space.h"
 #include "mesh/triangle_mesh.h"
 #include "mesh/uv_raster.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "detail/seams.h"
+#include "maps/seams.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

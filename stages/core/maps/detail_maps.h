@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "detail/normal_space.h"
 #include "image/image.h"
+#include "maps/normal_space.h"
 #include "mesh/triangle_mesh.h"
 #include "mesh/uv_raster.h"
 
