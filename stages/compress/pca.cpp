@@ -36,9 +36,9 @@ Eigen::MatrixXf few_columns_eigenvectors(const Eigen::MatrixXd& columns, int cou
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(columns.transpose() * columns);
   const Eigen::MatrixXd scaled =
       columns * solver.eigenvectors().rowwise().reverse().leftCols(std::min<Eigen::Index>(count, columns.cols()));
-  Eigen::MatrixXf vectors = (Eigen::HouseholderQR<Eigen::MatrixXd>(scaled).householderQ() *
-                             Eigen::MatrixXd::Identity(columns.rows(), count))
-                                .cast<float>();
+  Eigen::MatrixXf vectors =
+      (Eigen::HouseholderQR<Eigen::MatrixXd>(scaled).householderQ() * Eigen::MatrixXd::Identity(columns.rows(), count))
+          .cast<float>();
   choose_signs(vectors);
   return vectors;
 }
