@@ -36,16 +36,28 @@ if(KILN_SANITIZE)
   target_link_options(kiln_flags INTERFACE -fsanitize=${KILN_SANITIZE})
 endif()
 
-# Defines kiln_library(NAME SOURCES... LINK libraries...): a static library of Kiln's own.
-function(kiln_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
-  add_library(${name} STATIC ${ARG_SOURCES})
-  target_link_libraries(${name} PUBLIC kiln_flags ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK})
+# Compiles a target's code at -O1, in two thirds of the time: for what runs once, not for loops over triangles, texels or
+# rays.
+function(kiln_compile_quickly name)
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# Defines kiln_program(NAME SOURCES... LINK libraries...): an executable in build/<preset>/bin.
+# Defines kiln_library(NAME SOURCES... LINK libraries... [COLD]): a static library of Kiln's own; COLD compiles quickly.
+function(kiln_library name)
+  cmake_parse_arguments(ARG "COLD" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(${name} PUBLIC kiln_flags ${ARG_LINK} PRIVATE ${ARG_PRIVATE_LINK})
+  if(ARG_COLD)
+    kiln_compile_quickly(${name})
+  endif()
+endfunction()
+
+# Defines kiln_program(NAME SOURCES... LINK libraries... [COLD]): an executable in build/<preset>/bin; COLD as above.
 function(kiln_program name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "COLD" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE kiln_flags ${ARG_LINK})
+  if(ARG_COLD)
+    kiln_compile_quickly(${name})
+  endif()
 endfunction()

@@ -63,7 +63,7 @@ def report(folder, number, lights, samples):
     camera = CAMERAS[number]
     command = [arguments.programs / "kiln-report", folder, "-o", arguments.folder / "report" / "report.html", "--json",
                "--quiet", f"--lights={';'.join(lights)}", f"--camera-azimuth={camera[0]:.3f}",
-               f"--camera-elevation={camera[1]:.3f}", "--cameras", "1", "--directions", "1024", "--seed", str(10 + number), f"--picture-size={PIXELS}", "--error-samples", str(samples),
+               f"--camera-elevation={camera[1]:.3f}", "--cameras", "1", "--directions", "512", "--seed", str(10 + number), f"--picture-size={PIXELS}", "--error-samples", str(samples),
                "--error-pixels", str(0.9 * PIXELS)]
     done = subprocess.run(command, capture_output=True, text=True, cwd=arguments.folder)
     if done.returncode != 0:
