@@ -25,6 +25,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// Returns words on a difference that the noise of its reference may hide more than a tenth of; else none.
+std::string noise_of(double difference, double uncertainty) {
+  if (uncertainty <= 0.1 * difference) return {};
+  return fmt::format(", up to {} more by the reference's noise", metric_value("relative_l2", uncertainty));
+}
+
 constexpr double difference_gain = 8, compressed_gain = 32;
 constexpr int crop_margin = 12;  // pixels
 constexpr int texture_pixels = 640;
@@ -85,8 +91,8 @@ std::string header(const AssetFolder& asset, const Report& report, const Json& m
             "used, " + value(asset.record("atlas"), "charts") + " charts");
   figure_of("Bake", value(bake, "seconds"), value(bake, "directions") + " directions");
   figure_of("Difference", metric_value("relative_l2", metrics.at("report").at("relative_l2")),
-            fmt::format("relative L², worst light; up to {} more by the reference's noise",
-                        metric_value("relative_l2", metrics.at("report").at("relative_l2_uncertainty"))));
+            "relative L², worst light" + noise_of(metrics.at("report").at("relative_l2").get<double>(),
+                                                  metrics.at("report").at("relative_l2_uncertainty").get<double>()));
   figure_of("All stages", metric_value("seconds", seconds), "without file access");
   return html + "</dl>\n</header>\n";
 }
@@ -161,12 +167,12 @@ std::string relit_section(const AssetFolder& asset, const Report& report, const 
                    "<b>Reference</b>, high mesh by rays");
     html += figure(image(cropped(shown_difference(light.asset, light.reference, difference_gain), crop),
                          "Difference: " + name, scratch),
-                   fmt::format("<b>Difference × {:g}</b> · RMS {} · relative L² {} (up to {} more) · largest {}"
+                   fmt::format("<b>Difference × {:g}</b> · RMS {} · relative L² {}{} · largest {}"
                                "<div class=scale></div><div class=axis><span>−{:g} "
                                "darker</span><span>0</span><span>brighter +{:g}</span></div>",
                                difference_gain, rounded(light.difference.root_mean_square, 3),
                                metric_value("relative_l2", light.difference.relative_l2),
-                               metric_value("relative_l2", light.difference.relative_l2_uncertainty),
+                               noise_of(light.difference.relative_l2, light.difference.relative_l2_uncertainty),
                                rounded(light.difference.largest, 3), 1 / difference_gain, 1 / difference_gain));
     html +=
         figure(image(cropped(shown_radiance(light.reference_in_full), crop), "In full: " + name, scratch),
