@@ -9,7 +9,6 @@
 
 #include "base/errors.h"
 #include "base/json.h"
-#include "mesh/draco_file.h"
 #include "mesh/hard_edges.h"
 #include "mesh/mesh_components.h"
 
@@ -54,6 +53,16 @@ int sufficient_position_bits(const TriangleMesh& mesh) {
   return bits;
 }
 
+/// Returns the bits of uvs whose steps are at most 1/65,535 of the unit square; 24 at most.
+int sufficient_uv_bits(const TriangleMesh& mesh) {
+  int bits = DracoQuantisation().uv_bits;
+  Eigen::AlignedBox2f box;
+  for (const Eigen::Vector2f& uv : mesh.uvs) box.extend(uv);
+  const double side = mesh.uvs.empty() ? 0 : box.sizes().maxCoeff();
+  while (bits < most_bits && step(side, bits) > step(1, DracoQuantisation().uv_bits)) ++bits;
+  return bits;
+}
+
 }  // namespace
 
 void LowFile::keep_colors(const TriangleMesh& high) {
@@ -61,24 +70,48 @@ void LowFile::keep_colors(const TriangleMesh& high) {
   colored_surface_.emplace(high);
 }
 
-TriangleMesh LowFile::write(const TriangleMesh& mesh) {
+DracoQuantisation LowFile::quantisation_for(const TriangleMesh& mesh) {
   DracoQuantisation quantisation;
   quantisation.position_bits = position_bits_ = sufficient_position_bits(mesh);
   const double steps = smallest_component(mesh) / step(longest_side(mesh), most_bits);
   too_few_steps_ = steps < least_steps ? steps : 0;
+  return quantisation;
+}
+
+TriangleMesh LowFile::save(const TriangleMesh& mesh, const DracoQuantisation& quantisation) const {
+  save_draco(file_, mesh, quantisation);
+  TriangleMesh saved = load_draco(file_);
+  if (!(surface_area(saved) > 0))
+    throw BadInput(source_, "is so thin that no triangle has an area in steps of 24 bits of its longest side",
+                   "a surface", "check the units of its axes, or simplify its parts on their own");
+  return saved;
+}
+
+TriangleMesh LowFile::write(const TriangleMesh& mesh) {
+  const DracoQuantisation quantisation = quantisation_for(mesh);
   // Compute the normals from the rounded positions.
   TriangleMesh low = split_at_hard_edges(mesh);
   low.normals.clear();
   low.colors.clear();
-  save_draco(file_, low, quantisation);
-  low = load_draco(file_);
-  if (!(surface_area(low) > 0))
-    throw BadInput(source_, "is so thin that no triangle has an area in steps of 24 bits of its longest side",
-                   "a surface", "check the units of its axes, or simplify its parts on their own");
+  low = save(low, quantisation);
   compute_vertex_normals(low);
   if (colored_ != nullptr) low.colors = nearest_colors(*colored_, *colored_surface_, low.positions);
-  save_draco(file_, low, quantisation);
-  return load_draco(file_);
+  return save(low, quantisation);
+}
+
+TriangleMesh LowFile::write_as_it_is(const TriangleMesh& mesh) {
+  DracoQuantisation quantisation = quantisation_for(mesh);
+  quantisation.uv_bits = sufficient_uv_bits(mesh);
+  TriangleMesh low = mesh;
+  low.colors.clear();
+  if (colored_ != nullptr) low.colors = nearest_colors(*colored_, *colored_surface_, low.positions);
+  low = save(low, quantisation);
+  // A file's frame is by its own size.
+  if (low.frame != mesh.frame)
+    for (Eigen::Vector3f& position : low.positions)
+      position = mesh.frame.from_file(low.frame.to_file(position.cast<double>())).cast<float>();
+  low.frame = mesh.frame;
+  return low;
 }
 
 std::vector<Eigen::Vector3f> nearest_colors(const TriangleMesh& mesh, const NearestSurface& surface,

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "mesh/draco_file.h"
 #include "mesh/nearest_surface.h"
 #include "mesh/triangle_mesh.h"
 
@@ -27,6 +28,10 @@ class LowFile {
   /// steps along its diagonal; 24 at most. Throws BadInput where that leaves no triangle an area.
   TriangleMesh write(const TriangleMesh& mesh);
 
+  /// Writes a mesh of one normal per vertex as it is, with its normals and uvs, whose steps are at most 1/65,535 of the
+  /// unit square up to a box of 256 squares; otherwise as write(). Returns it in the frame of `mesh`.
+  TriangleMesh write_as_it_is(const TriangleMesh& mesh);
+
   /// Returns the bits of positions in the latest write.
   int position_bits() const { return position_bits_; }
   /// Returns how many steps of 24 bits the diagonal of the smallest component's box has where they are less than 32,
@@ -34,6 +39,9 @@ class LowFile {
   double too_few_steps() const { return too_few_steps_; }
 
  private:
+  TriangleMesh save(const TriangleMesh& mesh, const DracoQuantisation& quantisation) const;
+  DracoQuantisation quantisation_for(const TriangleMesh& mesh);
+
   std::filesystem::path file_;
   std::string source_;
   int position_bits_ = 0;

@@ -6,6 +6,7 @@
 #include "base/outputs.h"
 #include "import/import_mesh.h"
 #include "simplify/low_file.h"
+#include "simplify/own_low.h"
 #include "simplify/simplify.h"
 #include "simplify/simplify_report.h"
 
@@ -13,11 +14,14 @@ int main(int argc, char** argv) {
   using namespace kiln;
   return run_program("kiln-simplify", [&] {
     // Parse.
-    CommandLine command("kiln-simplify", "Turns a high-poly mesh into one of few triangles that keeps its shape.");
+    CommandLine command(
+        "kiln-simplify",
+        "Turns a high-poly mesh into one of few triangles that keeps its shape, or takes such a mesh of yours.");
     std::filesystem::path high_file, low_file;
     SimplifySettings settings;
     command.input("HIGH", high_file, "The mesh: OBJ, PLY, STL, OFF, glTF, GLB, FBX or DRC");
-    command.output(low_file, "The simplified mesh, a Draco file: positions and normals, and colours with --colors");
+    command.output(low_file,
+                   "The low mesh, a Draco file: positions and normals, colours with --colors, and uvs that --low has");
     command.options("Simplification", simplify_options(settings));
     command.parse(argc, argv);
     check_options(settings, [&](const std::string& option) { return command.given(option); });
@@ -28,16 +32,26 @@ int main(int argc, char** argv) {
     command.warn(imported.warnings);
     check_high(imported, settings, high_file.string());
     OutputSet outputs(folder_of(low_file));
-    LowFile low(outputs.add(low_file.filename().string()), high_file.string());
+    LowFile low(outputs.add(low_file.filename().string()), settings.low.empty() ? high_file.string() : settings.low);
     if (settings.colors) low.keep_colors(high);
-    const SimplifyResult result = simplify(
-        high, settings, [&](const TriangleMesh& mesh) { return low.write(mesh); }, command.progress("simplify"));
+    const std::optional<OwnLow> own_low = load_own_low(settings, high);
+    if (own_low) {
+      check_low(*own_low, settings);
+      command.warn(own_low->warnings);
+      command.also_read(own_low->files);
+    }
+    const WrittenForm written = [&](const TriangleMesh& mesh) {
+      return own_low ? low.write_as_it_is(mesh) : low.write(mesh);
+    };
+    const SimplifyResult result = own_low ? take_low(high, own_low->mesh, written, command.progress("measure"))
+                                          : simplify(high, settings, written, command.progress("simplify"));
     if (settings.strict && !result.shortfall.empty())
       throw BadInput(high_file.string(), result.shortfall, "a mesh that can have so few",
                      "give more --faces, or leave out --strict");
 
     // Save.
     command.warn(warnings_of(result, low));
-    command.finish(outputs, command.result(result.seconds, metrics_of(result, imported, low)));
+    command.finish(outputs,
+                   command.result(result.seconds, metrics_of(result, imported, low, own_low ? &*own_low : nullptr)));
   });
 }

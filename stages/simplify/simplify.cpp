@@ -99,6 +99,18 @@ std::string shortfall_of(const Reduced& low, const SimplifySettings& settings, s
   return fmt::format("stopped at {} triangles of {}: {}", triangles, settings.faces, reason);
 }
 
+/// Measures the mesh that was written, result.mesh, against what it stands for, both in `frame`. `is_split` says
+/// whether vertices of one position may be several.
+void measure(SimplifyResult& result, const TriangleMesh& measured, const MeshFrame& frame, bool is_split) {
+  result.distance = mesh_distance(measured, result.mesh);
+  const double hausdorff_distance = result.distance.hausdorff * bounding_box(measured).diagonal();
+  result.hausdorff_distance = hausdorff_distance * frame.unit();
+  result.manifold = is_manifold(result.mesh);
+  result.closed = result.manifold && is_closed(is_split ? join_at_positions(result.mesh) : result.mesh);
+  result.degenerate_triangles = count_degenerate(result.mesh);
+  result.flipped_triangles = count_flipped(result.mesh, measured, flipped_reach(result.mesh, hausdorff_distance));
+}
+
 /// Returns the simplified mesh with normals that are smooth but for its feature edges, in the input's frame.
 TriangleMesh shaded(const Reduced& reduced, const MeshFrame& frame) {
   TriangleMesh mesh = reduced.mesh;
@@ -163,18 +175,25 @@ SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settin
   result.collapse_seconds = reduce_stopwatch.seconds();
   result.mesh = write(shaded(low, high.frame));
 
-  // Measure the mesh that was written.
   progress(0.9);
-  result.distance = mesh_distance(measured, result.mesh);
-  const double hausdorff_distance = result.distance.hausdorff * bounding_box(measured).diagonal();
-  result.hausdorff_distance = hausdorff_distance * high.frame.unit();
-  result.manifold = is_manifold(result.mesh);
-  result.closed = result.manifold && is_closed(features.empty() ? result.mesh : join_at_positions(result.mesh));
-  result.degenerate_triangles = count_degenerate(result.mesh);
-  result.flipped_triangles = count_flipped(result.mesh, measured, flipped_reach(result.mesh, hausdorff_distance));
+  measure(result, measured, high.frame, !features.empty());
   if (!by_error && result.mesh.triangles.size() > static_cast<std::size_t>(settings.faces))
     result.shortfall =
         shortfall_of(low, settings, result.mesh.triangles.size(), why_no_fewer(result.mesh, settings.faces, manifold));
+  progress(1);
+  result.seconds = stopwatch.seconds() - write.seconds();
+  return result;
+}
+
+SimplifyResult take_low(const TriangleMesh& high, const TriangleMesh& low, const WrittenForm& written,
+                        const ProgressFunction& progress) {
+  const Stopwatch stopwatch;
+  Writer write(written);
+  SimplifyResult result;
+  result.input_triangles = static_cast<int>(high.triangles.size());
+  progress(0);
+  result.mesh = write(low);
+  measure(result, high, high.frame, true);
   progress(1);
   result.seconds = stopwatch.seconds() - write.seconds();
   return result;

@@ -60,4 +60,8 @@ TriangleMesh with_normals(const TriangleMesh& mesh);
 SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settings,
                         const WrittenForm& written = with_normals, const ProgressFunction& progress = no_progress);
 
+/// Takes `low` as the low mesh of `high`, both in one frame, and measures it as simplify() does. Nothing is removed.
+SimplifyResult take_low(const TriangleMesh& high, const TriangleMesh& low, const WrittenForm& written = with_normals,
+                        const ProgressFunction& progress = no_progress);
+
 }  // namespace kiln

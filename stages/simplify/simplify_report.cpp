@@ -16,24 +16,33 @@ Json repairs_to_json(const MeshRepairs& repairs) {
   return json;
 }
 
+void require_clean(const MeshRepairs& repairs, const std::string& file) {
+  if (!repairs.is_clean())
+    throw BadInput(file, "needs repair: " + repairs.text(), "a clean, oriented manifold of triangles",
+                   "mend it where it comes from, or leave out --strict");
+}
+
 }  // namespace
 
+void check_low(const OwnLow& low, const SimplifySettings& settings) {
+  if (settings.strict) require_clean(low.repairs, settings.low);
+}
+
 void check_high(const ImportedMesh& high, const SimplifySettings& settings, const std::string& file) {
-  if (settings.strict && !high.repairs.is_clean())
-    throw BadInput(file, "needs repair: " + high.repairs.text(), "a clean, oriented manifold of triangles",
-                   "mend it where it comes from, or leave out --strict");
+  if (settings.strict) require_clean(high.repairs, file);
   if (settings.colors && high.mesh.colors.empty())
     throw BadInput(file, "has no colours of vertices", "a file with colours of vertices",
                    "export them, or leave out --colors");
 }
 
-Json metrics_of(const SimplifyResult& result, const ImportedMesh& high, const LowFile& low) {
+Json metrics_of(const SimplifyResult& result, const ImportedMesh& high, const LowFile& low, const OwnLow* own_low) {
   const Eigen::Vector3d& origin = high.mesh.frame.origin;
   Json metrics = result.to_json();
   metrics["position_bits"] = low.position_bits();
   metrics["input_components"] = high.repairs.components;
   metrics["input_border_loops"] = high.repairs.border_loops;
   metrics["repairs"] = repairs_to_json(high.repairs);
+  if (own_low != nullptr) metrics["low_repairs"] = repairs_to_json(own_low->repairs);
   metrics["origin"] = {origin.x(), origin.y(), origin.z()};
   metrics["hard_edges"] = hard_edges_of_normals(high.mesh).size();
   return metrics;

@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <system_error>
+#include <utility>
 
 #include "base/errors.h"
 
@@ -17,6 +18,51 @@ std::optional<double> SimplifySettings::drop_size() const {
     throw WrongUsage("drop-components: found " + drop_components + ", expected auto or 0 to 1");
   return size;
 }
+
+ImportSettings SimplifySettings::low_import() const {
+  ImportSettings settings = import;
+  settings.fill_hole_edges = 0;
+  OptionSet options;
+  add_import_options(options, settings);
+  for (const auto& [name, text] : {std::pair("up", low_up), {"unit", low_unit}, {"scale", low_scale}}) {
+    if (text == "same") continue;
+    try {
+      options.find(name)->set(text);
+    } catch (const WrongUsage& fault) {
+      throw WrongUsage(std::string("low-") + fault.what() + ", or same");
+    }
+  }
+  return settings;
+}
+
+std::span<const char* const> steering_options() {
+  static constexpr const char* names[] = {"faces", "max-error",         "quality",  "aware",  "engine",
+                                          "cost",  "max-normal-change", "envelope", "crease", "drop-components"};
+  return names;
+}
+
+namespace {
+
+/// Adds the low mesh that is taken as it is, and how its file is read.
+void add_low_options(OptionSet& options, SimplifySettings& settings) {
+  options.file("low", settings.low,
+               "A low mesh of your own, which is taken as it is, with its uvs: any mesh file; nothing is simplified");
+  const auto add = [&](const char* name, std::string SimplifySettings::*field, const char* range, const char* help) {
+    options.checked_text(name, settings.*field, range, help, [field](const std::string& text) {
+      SimplifySettings checked;
+      checked.*field = text;
+      checked.low_import();
+    });
+  };
+  add("low-up", &SimplifySettings::low_up, "same, +x, -x, +y, -y, +z or -z",
+      "The axis of the file of --low that points up; same: as in HIGH");
+  add("low-unit", &SimplifySettings::low_unit, "same, none, mm, cm, m or in",
+      "What the file of --low counts in; same: as HIGH");
+  add("low-scale", &SimplifySettings::low_scale, "same or 1e-12 to 1e12",
+      "What the coordinates of the file of --low are multiplied with besides; same: as those of HIGH");
+}
+
+}  // namespace
 
 OptionSet simplify_options(SimplifySettings& settings) {
   OptionSet options;
@@ -65,10 +111,19 @@ OptionSet simplify_options(SimplifySettings& settings) {
       });
   add_import_options(options, settings.import);
   options.toggle("colors", settings.colors, "Keep the input's colours, as colours of vertices");
+  add_low_options(options, settings);
   return options;
 }
 
 void check_options(const SimplifySettings& settings, const std::function<bool(const std::string&)>& is_given) {
+  const bool own_low = !settings.low.empty();
+  for (const char* option : steering_options())
+    if (own_low && is_given(option))
+      throw WrongUsage(std::string("--") + option +
+                       " steers simplification, and --low takes a mesh as it is; give one of them");
+  for (const char* option : {"low-up", "low-unit", "low-scale"})
+    if (!own_low && is_given(option))
+      throw WrongUsage(std::string("--") + option + " is of the file of --low; give that, too, or leave it out");
   if (settings.max_error > 0 && is_given("faces"))
     throw WrongUsage("--faces and --max-error are two ways to say where to stop; give one of them");
   if (settings.engine == SimplifyEngine::cgal && is_given("quality"))

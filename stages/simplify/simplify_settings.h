@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "base/options.h"
@@ -57,15 +58,26 @@ struct SimplifySettings {
   /// "auto": specks of no size beside the result's triangles, where they would take much of `faces`.
   std::string drop_components = "auto";
   bool colors = false;  ///< whether the input's colours are kept at the vertices
+  std::string low;      ///< file of a low mesh that is taken as it is, instead of simplification; empty: none
+  /// Axis, unit and factor of that file, as `import` has them for the high mesh; "same": those of the high mesh.
+  std::string low_up = "same", low_unit = "same", low_scale = "same";
 
   /// Returns the fraction that drop_components says, or nothing for "auto". Throws WrongUsage for what is neither.
   std::optional<double> drop_size() const;
+
+  /// Returns how the file `low` is read: as the high mesh, but for what the settings say, and no hole of it is filled.
+  /// Throws WrongUsage for a low_up, low_unit or low_scale that is none.
+  ImportSettings low_import() const;
 };
+
+/// Lists the options that steer simplification alone, which a low mesh that is taken as it is excludes.
+std::span<const char* const> steering_options();
 
 OptionSet simplify_options(SimplifySettings& settings);
 
-/// Throws WrongUsage where options are given that exclude each other (faces and max-error) or that the engine has not
-/// (quality is of kiln's, cost, max-normal-change and envelope of CGAL's). `is_given` tells by an option's name.
+/// Throws WrongUsage where options are given that exclude each other (faces and max-error, steering_options and low),
+/// that the engine has not (quality is of kiln's, cost, max-normal-change and envelope of CGAL's), or that are of a low
+/// mesh which is not given. `is_given` tells by an option's name.
 void check_options(const SimplifySettings& settings, const std::function<bool(const std::string&)>& is_given);
 
 }  // namespace kiln

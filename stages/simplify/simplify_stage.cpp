@@ -19,25 +19,49 @@ constexpr const char* metric_names =
     "repairs.dropped_backs repairs.reversed_triangles repairs.nonmanifold_edges repairs.nonmanifold_vertices "
     "repairs.unorientable_edges repairs.inside_out_components repairs.clamped_colors repairs.filled_holes";
 
+constexpr const char* low_repair_names =
+    "low_repairs.merged_vertices low_repairs.welded_vertices low_repairs.unused_vertices "
+    "low_repairs.triangulated_polygons low_repairs.degenerate_triangles low_repairs.duplicate_triangles "
+    "low_repairs.dropped_backs low_repairs.reversed_triangles low_repairs.nonmanifold_edges "
+    "low_repairs.nonmanifold_vertices low_repairs.unorientable_edges low_repairs.inside_out_components "
+    "low_repairs.clamped_colors low_repairs.filled_holes";
+
+bool has_own_low(const AssetSettings& settings) {
+  const auto simplify = settings.find("simplify");
+  return simplify != settings.end() && simplify->second.contains("low");
+}
+
+std::vector<std::pair<std::string, std::string>> rivals() {
+  std::vector<std::pair<std::string, std::string>> rivals = {{"faces", "max-error"}};
+  for (const char* option : steering_options()) rivals.emplace_back("low", option);
+  return rivals;
+}
+
 StageOptions options() { return StageOptions::of(simplify_options); }
 
 StageRun run(const AssetPlan& plan) {
   const fs::path low = plan.folder / layout::low_mesh;
   StageRun run{"simplify", {"kiln-simplify", command_word(plan.mesh), "-o", low.string()}};
   run.inputs = {plan.mesh};
+  StageSettings settings = plan.settings_of("simplify");
+  if (const auto low_file = settings.find("low"); low_file != settings.end())
+    run.inputs.emplace_back(low_file->second);
+  else  // defaults may say how the low meshes of other assets are read
+    for (const char* name : {"low-up", "low-unit", "low-scale"}) settings.erase(name);
   run.outputs = {layout::record(plan.folder, "simplify"), low};
-  run.add_settings(options(), plan.settings_of("simplify"));
+  run.add_settings(options(), settings);
   return run;
 }
 
 }  // namespace
 
 const StageInfo& simplify_stage() {
-  static const StageInfo info = {.name = "simplify",
-                                 .options = options,
-                                 .rivals = {{"faces", "max-error"}},
-                                 .metrics = {{metric_names}},
-                                 .run = run};
+  static const StageInfo info = {
+      .name = "simplify",
+      .options = options,
+      .rivals = rivals(),
+      .metrics = {{metric_names}, {low_repair_names, "low_repairs.", "low of simplify", has_own_low}},
+      .run = run};
   return info;
 }
 

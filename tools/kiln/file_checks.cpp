@@ -81,11 +81,17 @@ void check_named_files(const Pipeline& pipeline, const Asset& asset, std::vector
     for (const auto& [name, file] : settings->second) {
       const bool is_texture = name == "albedo-texture";
       if (!options.find(name)->names_file || (textures_alone && !is_texture) || !seen.insert(file).second) continue;
-      const std::string fault = fault_of_file(pipeline.folder / file);
+      const bool is_mesh = name == "low";
+      const fs::path path = pipeline.folder / file;
+      const std::string fault = is_mesh ? fault_of_mesh(path) : fault_of_file(path);
       if (fault.empty()) continue;
+      const std::string what = is_texture ? "texture" : is_mesh ? "low mesh" : name;
       faults.emplace_back(asset.setting_lines.at(stage->name).at(name),
-                          fmt::format("the {} of '{}', {}, {}", is_texture ? "texture" : name, asset.name, file, fault),
-                          is_texture ? "a picture" : "a file", "check the path");
+                          fmt::format("the {} of '{}', {}, {}", what, asset.name, file, fault),
+                          is_texture ? "a picture"
+                          : is_mesh  ? what_a_mesh_is
+                                     : "a file",
+                          "check the path");
     }
   }
 }

@@ -143,7 +143,8 @@ class Reader {
     const std::string name = key.Scalar(), fault = fault_of_name(name);
     file_.require(fault.empty(), key, fmt::format("asset '{}', whose name {}", name, fault), what_a_name_is);
     std::vector<SettingsLayer> layers;
-    const std::optional<bool> on_request = read_body(body, {"mesh"}, layers);
+    const std::optional<bool> on_request = read_body(body, {"mesh", "low"}, layers);
+    if (const YAML::Node low = body["low"]) add_own_low(low, layers.back());
     const YAML::Node mesh = body["mesh"];
     Draft* draft = find(name);
     file_.require(mesh.IsDefined() || draft != nullptr, body, fmt::format("asset '{}' without a mesh", name),
@@ -175,6 +176,20 @@ class Reader {
     } else {
       asset.mesh = file_.path(mesh).lexically_normal();
     }
+  }
+
+  /// Adds `low`, a low mesh of the asset's own: the simplify stage takes it as it is.
+  void add_own_low(const YAML::Node& low, SettingsLayer& layer) const {
+    file_.require(low.IsScalar(), low, low.IsMap() ? "a mapping for low" : "no file for low",
+                  "'low: FILE', a mesh file beside the pipeline, taken out of its archive");
+    std::map<std::string, WrittenSetting>& settings = layer.blocks["simplify"].settings;
+    std::vector<std::string> rivals = stage_info("simplify").rivals_of("low");
+    rivals.emplace_back("low");
+    for (const std::string& rival : rivals)
+      if (const auto found = settings.find(rival); found != settings.end())
+        throw BadInput(found->second.where, fmt::format("{} of simplify beside a low mesh of the asset's own", rival),
+                       "one of them, as that mesh is not simplified", "remove the other");
+    settings["low"] = {file_.path(low).lexically_normal().string(), file_.where(low)};
   }
 
   /// Reads the settings of an asset, or of those of a pattern; returns the value of `default`.

@@ -141,6 +141,7 @@ Json definitions() {
   defs["mesh"] = {{"anyOf", {{{"type", "string"}}, archive, square}}};
   Json body = block_references();
   body.update({{"mesh", reference("mesh")},
+               {"low", {{"type", "string"}, {"description", "A low mesh of the asset's own, taken as it is"}}},
                {"default", {{"type", "boolean"}}},
                {"budgets", reference("budgets")},
                {"include", reference("paths")},

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "base/errors.h"
-#include "import/import_mesh.h"
 #include "import/readers.h"
 #include "import/triangulate.h"
 #include "mesh/hard_edges.h"
@@ -89,6 +88,38 @@ TriangleMesh load_uv_mesh(const std::filesystem::path& file, const ImportSetting
     has_normal.push_back(!mesh.normals.back().isZero(0));
   }
   complete_normals(mesh, has_normal);
+  return mesh;
+}
+
+bool has_whole_uvs(const ImportedSurface& surface) {
+  return !surface.uvs.empty() && std::none_of(surface.without_uvs.begin(), surface.without_uvs.end(),
+                                              [](const auto& missing) { return missing.found; });
+}
+
+TriangleMesh split_at_seams(const ImportedMesh& imported) {
+  const TriangleMesh split = split_at_hard_edges(imported.mesh);
+  if (!has_whole_uvs(imported.surface)) return split;
+  std::vector<float> values;  // of the corners: the vertex in two halves, which floats hold exactly, and the uv
+  for (std::size_t t = 0; t < split.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t vertex = split.triangles[t][k];
+      const Eigen::Vector2f& uv = imported.surface.uvs[t][k];
+      values.insert(values.end(),
+                    {static_cast<float>(vertex & 0xffff), static_cast<float>(vertex >> 16), uv.x(), uv.y()});
+    }
+  const std::vector<std::uint32_t> first = first_of_equals(values, 4), number = without_gaps(first);
+  TriangleMesh mesh;
+  mesh.frame = split.frame;
+  mesh.triangles.resize(split.triangles.size());
+  for (std::size_t c = 0; c < first.size(); ++c) {
+    mesh.triangles[c / 3][c % 3] = number[c];
+    if (first[c] != c) continue;
+    const std::uint32_t vertex = split.triangles[c / 3][c % 3];
+    mesh.positions.push_back(split.positions[vertex]);
+    mesh.normals.push_back(split.normals[vertex]);
+    mesh.uvs.push_back(imported.surface.uvs[c / 3][c % 3]);
+    if (!split.colors.empty()) mesh.colors.push_back(split.colors[vertex]);
+  }
   return mesh;
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "import/import_settings.h"
+#include "import/import_mesh.h"
 #include "mesh/triangle_mesh.h"
 
 namespace kiln {
@@ -18,5 +18,12 @@ namespace kiln {
 /// lie outside the unit square.
 TriangleMesh load_uv_mesh(const std::filesystem::path& file, const ImportSettings& settings = {},
                           std::vector<std::string>* warnings = nullptr);
+
+/// Tells whether every corner of an imported mesh has a uv of the file.
+bool has_whole_uvs(const ImportedSurface& surface);
+
+/// Returns an imported mesh with one normal and one uv per vertex: vertices are split at hard edges and at the seams of
+/// the file's uvs; triangles keep their order. Without uvs where has_whole_uvs is false.
+TriangleMesh split_at_seams(const ImportedMesh& imported);
 
 }  // namespace kiln

@@ -34,6 +34,7 @@ struct Pilot {
   PilotBuild compressed;       ///< like `fine`, with the bands chosen, compressed
   bool is_compressed = false;  ///< whether that is there
   double input_triangles = 0;  ///< of the high mesh
+  bool has_own_low = false;    ///< whether the low mesh is the asset's own, whose triangles are no choice
 };
 
 /// Settings that a plan decides for an asset.

@@ -10,8 +10,10 @@ namespace {
 
 constexpr double least_reserve = 0.1;  // of the error, for what a pilot cannot know
 constexpr int most_triangles = 200000;
+
 /// Returns counts that grow by the root of two, from those of the coarse pilot up to those of the high mesh.
 std::vector<int> triangle_counts(const Pilot& pilot) {
+  if (pilot.has_own_low) return {static_cast<int>(pilot.fine.triangles)};
   std::vector<int> counts;
   const int most = std::min(most_triangles, static_cast<int>(std::min(pilot.input_triangles, 1e9)));
   for (double count = pilot.coarse.triangles; count < most; count *= std::sqrt(2.0)) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 #include "base/asset_layout.h"
 #include "base/errors.h"
@@ -136,6 +137,10 @@ std::map<std::string, Pilot> PilotBuilds::build(const std::vector<const Asset*>&
     pilot.has_bounces = has_bounces(*assets[k]);
     pilot.input_triangles =
         record_of(folder_ / "fine" / assets[k]->name, "simplify").at("input_triangles").get<double>();
+    if (is_moot(*assets[k], "simplify.faces")) {
+      pilot.has_own_low = true;
+      pilot.input_triangles = std::numeric_limits<double>::infinity();  // it never becomes the high mesh
+    }
     if (!pilot.has_bounces) continue;
     Overrides bare = coarse_settings;
     bare.emplace_back("bake.bounces", "0");

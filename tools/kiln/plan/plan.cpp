@@ -11,6 +11,7 @@
 #include "base/errors.h"
 #include "base/json.h"
 #include "kiln/metrics.h"
+#include "kiln/overrides.h"
 #include "kiln/plan/pilot.h"
 #include "kiln/plan/plan_file.h"
 #include "kiln/presets.h"
@@ -100,7 +101,8 @@ class AssetPlanner {
   }
 
   void keep_in(ChoiceGrid& grid) const {
-    if (keeps("simplify.faces")) grid.triangles = {kept_number(asset_, "simplify", "faces")};
+    if (keeps("simplify.faces") && !model_.pilot().has_own_low)
+      grid.triangles = {kept_number(asset_, "simplify", "faces")};
     if (keeps("atlas.size")) grid.sizes = {kept_number(asset_, "atlas", "size")};
     if (keeps("bake.bands")) grid.bands = {std::min(model_.most_bands(), kept_number(asset_, "bake", "bands"))};
     if (keeps("bake.directions")) grid.directions = {kept_number(asset_, "bake", "directions")};
@@ -134,9 +136,10 @@ class AssetPlanner {
 
   /// Returns the preset `final` as a choice, as far as the pilot's bands reach.
   Choice final_choice(double allowance) const {
-    Choice choice{1000, 512, 5, 1024, 8, model_.pilot().has_bounces, allowance};
+    const int triangles = model_.pilot().has_own_low ? static_cast<int>(model_.pilot().fine.triangles) : 1000;
+    Choice choice{triangles, 512, 5, 1024, 8, model_.pilot().has_bounces, allowance};
     for (const auto& [name, value] : find_preset("final")->settings) {
-      if (name == "simplify.faces") choice.triangles = std::stoi(value);
+      if (name == "simplify.faces" && !is_moot(asset_, name)) choice.triangles = std::stoi(value);
       if (name == "atlas.size") choice.size = std::stoi(value);
       if (name == "bake.bands") choice.bands = std::min(std::stoi(value), model_.most_bands());
       if (name == "bake.directions") choice.directions = std::stoi(value);
@@ -154,7 +157,7 @@ class AssetPlanner {
     };
     std::vector<PlanLine> lines;
     const auto add = [&](const std::string& setting, const std::string& value, const std::string& reason) {
-      if (!keeps(setting)) lines.push_back({setting, value, reason});
+      if (!keeps(setting) && !is_moot(asset_, setting)) lines.push_back({setting, value, reason});
     };
     const bool is_whole = choice.triangles >= model_.pilot().input_triangles;
     add("simplify.faces", std::to_string(choice.triangles),

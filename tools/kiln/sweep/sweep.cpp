@@ -14,6 +14,7 @@
 #include "base/process.h"
 #include "base/stopwatch.h"
 #include "kiln/build.h"
+#include "kiln/overrides.h"
 #include "kiln/rules.h"
 #include "kiln/sweep/sweep_page.h"
 #include "kiln/sweep/sweep_result.h"
@@ -49,7 +50,10 @@ class Sweep {
         points_(points_of(settings)),
         programs_(program_folder()),
         inputs_(pipeline.folder) {
-    for (const Asset* asset : assets) names_.push_back(asset->name);
+    for (const Asset* asset : assets) {
+      names_.push_back(asset->name);
+      require_effect(*asset);
+    }
     for (const SweepPoint& point : points_) pipeline_at(pipeline_, point);  // throws before the first build
     // Builds of all points share one folder beside the results.
     pipeline_.output = fs::absolute(folder_ / "build").lexically_normal();
@@ -69,6 +73,17 @@ class Sweep {
   }
 
  private:
+  /// Throws WrongUsage where an axis would change nothing of an asset.
+  void require_effect(const Asset& asset) const {
+    for (const SweepPoint& point : points_)
+      for (const auto& [name, value] : point.settings)
+        if (is_moot(asset, name))
+          throw WrongUsage(
+              fmt::format("set: found {}, and asset '{}' with a low mesh of its own, which is not simplified; expected "
+                          "other settings, or the names of other assets",
+                          name, asset.name));
+  }
+
   /// Measures all assets at one point.
   void measure(const SweepPoint& point) {
     const Pipeline there = pipeline_at(pipeline_, point);

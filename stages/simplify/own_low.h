@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mesh/mesh_repair.h"
+#include "mesh/triangle_mesh.h"
+#include "simplify/simplify_settings.h"
+
+namespace kiln {
+
+/// Low mesh that a user brings, to be taken as it is.
+struct OwnLow {
+  TriangleMesh mesh;  ///< one normal per vertex, and one uv where the whole file has them, split at seams
+  MeshRepairs repairs;
+  std::vector<std::filesystem::path> files;  ///< that were read
+  std::vector<std::string> warnings;         ///< each begins with the file's name
+};
+
+/// Reads the file settings.low, as settings.low_import() says, into the frame of `high`; nothing where no file is
+/// named. Warnings tell repairs, uvs that are not at every corner, and a mesh that does not lie where `high` does.
+/// Throws BadInput as import_mesh does.
+std::optional<OwnLow> load_own_low(const SimplifySettings& settings, const TriangleMesh& high);
+
+/// Says why a low mesh cannot stand for `high`, in the same frame: their boxes share less than half of what both reach
+/// along some axis, beyond a twentieth of the diagonal of `high`. Names the settings that may mend it; empty where the
+/// boxes agree.
+std::string misplacement(const TriangleMesh& low, const TriangleMesh& high);
+
+}  // namespace kiln
