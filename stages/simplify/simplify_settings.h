@@ -57,8 +57,8 @@ struct SimplifySettings {
   /// Size of components that are left out: the diagonal of the box, up to this fraction of the mesh's; 0 keeps all.
   /// "auto": specks of no size beside the result's triangles, where they would take much of `faces`.
   std::string drop_components = "auto";
-  bool colors = false;  ///< whether the input's colours are kept at the vertices
-  std::string low;      ///< file of a low mesh that is taken as it is, instead of simplification; empty: none
+  bool colors = false;   ///< whether the input's colours are kept at the vertices
+  std::string low = {};  ///< file of a low mesh that is taken as it is, instead of simplification; empty: none
   /// Axis, unit and factor of that file, as `import` has them for the high mesh; "same": those of the high mesh.
   std::string low_up = "same", low_unit = "same", low_scale = "same";
 

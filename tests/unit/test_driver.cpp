@@ -2,6 +2,7 @@
 // The driver's own logic: the pipeline file, the stages' commands, the Makefile's quoting. What make makes of it is in
 // tests/cli.
 #include <algorithm>
+#include <array>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <sstream>
@@ -268,6 +269,32 @@ TEST(Pipeline, WhatCannotWorkIsRefusedAtOnce) {
        {"bake: {receiver: low}", "bake: {receiver: low, bounces: 1, albedo: 0.5}", "bake: {max-error: auto}",
         "compress: {pca: 25}", "atlas: {keep-uv: false}", "report: {lights: ['cone:45,30,5', 'ambient:1,0.5,0']}"})
     EXPECT_EQ(refusal_of(settings), "") << settings;
+}
+
+TEST(Pipeline, ALowMeshOfItsOwnIsAnInputAndIsNotSimplified) {
+  const Pipeline pipeline = pipeline_of(
+      "defaults:\n  simplify: {faces: 500, quality: best, colors: true, low-unit: cm}\n"
+      "assets:\n  a: {mesh: a.obj, low: low/a.glb, simplify: {low-up: +z}}\n  b: {mesh: b.obj}\n");
+  const StageSettings& settings = pipeline.assets[0].settings.at("simplify");
+  EXPECT_EQ(settings, (StageSettings{{"low", "low/a.glb"}, {"low-up", "+z"}, {"low-unit", "cm"}, {"colors", "true"}}));
+  EXPECT_EQ(pipeline.assets[0].setting_lines.at("simplify").at("low"), "pipeline.yaml:4");
+  const std::vector<MakeRule> rules = make_rules(pipeline);
+  EXPECT_EQ(rules[0].run.inputs, (std::vector<fs::path>{"a.obj", "low/a.glb"}));
+  EXPECT_EQ(pipeline.assets[1].settings.at("simplify").at("faces"), "500");
+  const auto of_b = std::find_if(rules.begin(), rules.end(), [](const MakeRule& rule) { return rule.asset == "b"; });
+  EXPECT_EQ(std::count(of_b->run.command.begin(), of_b->run.command.end(), "--low-unit"), 0);
+
+  const auto refusal_of = [](const std::string& keys) { return refusal("assets:\n  a:\n    mesh: a.obj\n" + keys); };
+  for (const auto& [keys, line, word] : std::initializer_list<std::array<const char*, 3>>{
+           {"    low: {archive: a.tar, member: a.obj}\n", ":4: ", "a mapping for low"},
+           {"    low: [a.obj]\n", ":4: ", "no file for low"},
+           {"    low: a.glb\n    simplify: {faces: 5}\n", ":5: ", "faces of simplify"},
+           {"    low: a.glb\n    simplify: {low: b.glb}\n", ":5: ", "low of simplify"},
+           {"    simplify: {low: a.glb, quality: best}\n", ":4: ", "both low and quality"}}) {
+    const std::string message = refusal_of(keys);
+    EXPECT_NE(message.find(line), std::string::npos) << keys << message;
+    EXPECT_NE(message.find(word), std::string::npos) << keys << message;
+  }
 }
 
 TEST(Pipeline, ALowReceiverIsShadowedByItself) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <limits>
 
 #include "base/errors.h"
 #include "kiln/plan/choice.h"
@@ -129,6 +130,20 @@ TEST(Cheapest, IsNoneBeyondReach) {
 TEST(Choices, HaveDirectionsEnoughForTheirBands) {
   for (const Choice& choice : choices_of(full_grid(model()), 0))
     ASSERT_GE(choice.directions, 4 * choice.bands * choice.bands);
+}
+
+TEST(Choices, TrianglesOfAnOwnLowMeshAreNone) {
+  Pilot pilot;
+  pilot.coarse = build_of(700, 64, 256);
+  pilot.fine = build_of(700, 128, 1024);
+  pilot.input_triangles = std::numeric_limits<double>::infinity();
+  pilot.has_own_low = true;
+  const AssetModel model(pilot);
+  const ChoiceGrid grid = full_grid(model);
+  EXPECT_EQ(grid.triangles, std::vector<int>{700});
+  // Its distance from the high mesh stays, whatever else is chosen.
+  const Prediction best = model.predict({700, 4096, 6, 32768, 16, false, 0});
+  EXPECT_NEAR(best.causes.at("geometry") / error_of(pilot.fine, "geometry", 6), 1, 1e-12);
 }
 
 TEST(ErrorOfLevels, IsOneStepOfEightBitsInAMidGrey) {

@@ -48,6 +48,11 @@ TEST(SweepGrid, ASettingRemovesThoseThatItExcludes) {
   EXPECT_EQ(there.assets[0].settings.at("simplify").at("max-error"), "0.01");
   EXPECT_EQ(there.assets[0].settings.at("compress").at("max-error"), "0.02") << "a stage on request is passed";
   EXPECT_TRUE(there.assets[0].budgets.empty());
+
+  // A low mesh of the asset's own stays, whatever steers simplification.
+  asset.settings["simplify"] = {{"low", "low.glb"}};
+  const Pipeline own = pipeline_at(pipeline, {"", {{"simplify.faces", "100"}, {"simplify.colors", "true"}}});
+  EXPECT_EQ(own.assets[0].settings.at("simplify"), (StageSettings{{"low", "low.glb"}, {"colors", "true"}}));
 }
 
 SweepResult result_of(double seconds, double error, const std::string& asset = "oak") {
