@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 
+#include "base/errors.h"
 #include "import/import_mesh.h"
 #include "import/uv_mesh.h"
 
@@ -26,10 +27,9 @@ std::string sizes_text(const BoundingBox& box, double unit) {
 
 }  // namespace
 
-std::string misplacement(const TriangleMesh& low, const TriangleMesh& high) {
+double shared_reach(const TriangleMesh& low, const TriangleMesh& high) {
   const BoundingBox of_low = bounding_box(low), of_high = bounding_box(high);
-  constexpr double least_share = 0.5, margin_share = 0.05;
-  const double margin = margin_share * of_high.diagonal();
+  const double margin = 0.05 * of_high.diagonal();  // a sheet has no depth of its own
   double share = 1;
   for (int k = 0; k < 3; ++k) {
     const double overlap =
@@ -38,7 +38,12 @@ std::string misplacement(const TriangleMesh& low, const TriangleMesh& high) {
         std::max<double>(of_low.highest[k], of_high.highest[k]) - std::min<double>(of_low.lowest[k], of_high.lowest[k]);
     share = std::min(share, (overlap + margin) / (reach + margin));
   }
-  if (share >= least_share) return "";
+  return share;
+}
+
+std::string misplacement(const TriangleMesh& low, const TriangleMesh& high) {
+  if (shared_reach(low, high) >= 0.5) return "";
+  const BoundingBox of_low = bounding_box(low), of_high = bounding_box(high);
   const double unit = high.frame.unit(), ratio = of_low.diagonal() / of_high.diagonal();
   std::string text = fmt::format("does not lie where the high mesh does: it fills a box of {}, the high mesh one of {}",
                                  sizes_text(of_low, unit), sizes_text(of_high, unit));
@@ -67,7 +72,11 @@ std::optional<OwnLow> load_own_low(const SimplifySettings& settings, const Trian
   if (!imported.repairs.is_clean()) warn("was repaired: " + imported.repairs.text());
   if (!imported.surface.uvs.empty() && !has_whole_uvs(imported.surface))
     warn("has uvs, but not at every corner (" + face_without_uvs(imported.surface) + "), so none of them are kept");
-  if (const std::string fault = misplacement(low.mesh, high); !fault.empty()) warn(fault);
+  if (const std::string fault = misplacement(low.mesh, high); !fault.empty()) {
+    if (shared_reach(low.mesh, high) < 0.1)
+      throw BadInput(settings.low, fault, "a mesh that lies on the high mesh", "mend what differs");
+    warn(fault);
+  }
   return low;
 }
 

@@ -22,12 +22,16 @@ struct OwnLow {
 
 /// Reads the file settings.low, as settings.low_import() says, into the frame of `high`; nothing where no file is
 /// named. Warnings tell repairs, uvs that are not at every corner, and a mesh that does not lie where `high` does.
-/// Throws BadInput as import_mesh does.
+/// Throws BadInput as import_mesh does, and for a mesh that lies somewhere else altogether: their shared_reach is less
+/// than a tenth.
 std::optional<OwnLow> load_own_low(const SimplifySettings& settings, const TriangleMesh& high);
 
-/// Says why a low mesh cannot stand for `high`, in the same frame: their boxes share less than half of what both reach
-/// along some axis, beyond a twentieth of the diagonal of `high`. Names the settings that may mend it; empty where the
-/// boxes agree.
+/// Returns the share that the boxes of two meshes, in the same frame, have in common of what both reach along the axis
+/// where it is least, a twentieth of the diagonal of `high` added to both; below 0 where they are apart.
+double shared_reach(const TriangleMesh& low, const TriangleMesh& high);
+
+/// Says why a low mesh hardly stands for `high`: their shared_reach is less than half. Names the settings that may mend
+/// it; empty where the boxes agree.
 std::string misplacement(const TriangleMesh& low, const TriangleMesh& high);
 
 }  // namespace kiln

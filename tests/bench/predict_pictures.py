@@ -3,7 +3,8 @@
 """predict_pictures.py PROGRAMS FOLDER [-o CSV]: how well E predicts pictures (docs/error.md, "Does it predict pictures?").
 
 A cell is an asset, its settings and a kind of light: one predicted error, from the report's squares by band and the
-light's own moments, and one rendered error, the relative L2 of pictures over turns of the light and cameras.
+light's own moments, and one rendered error, the relative L2 of pictures over six turns of the light and eight
+cameras around the asset.
 Two judges that are not Kiln's look at some of the pictures as well: butteraugli, and OpenImageIO's `idiff -p` after Yee.
 Needs Debian's butteraugli, openimageio-tools and python3-matplotlib, and the meshes of glmark2-data and libcgal-demo. Takes about half
 an hour on two cores."""
@@ -23,22 +24,25 @@ ARCHIVE = "/usr/share/doc/libcgal-dev/data.tar.gz"
 TUNED = ["bunny", "armadillo", "lion-head"]  # seen while anything was tuned
 UNSEEN = ["elephant", "nefertiti", "fandisk", "hand"]
 SETTINGS = {"coarse": (500, 96, 128, 4), "middle": (2000, 192, 512, 5), "fine": (8000, 384, 1536, 6)}
-VIEWS = 12
+VIEWS = 8
 # Azimuth and elevation, evenly over the sphere, as the points that E is measured at are seen.
 CAMERAS = [((20 + k * 137.50776) % 360, math.degrees(math.asin(1 - (2 * k + 1) / VIEWS))) for k in range(VIEWS)]
 PIXELS = 160
-TURNS = 4
+TURNS = 6
 JUDGED = 2  # turns of a kind that the judges look at, from the first camera
 KINDS = ["cone 10", "cone 45", "cone 90", "hemisphere"]
 
 
 def turned(kind, random):
-    """Returns a light of a kind towards a direction that is as likely as any other."""
-    elevation = math.degrees(math.asin(random.uniform(-1, 1)))
-    azimuth = random.uniform(-180, 180)
-    if kind == "hemisphere":
-        return f"hemisphere:{azimuth:.3f},{elevation:.3f},1,1,1,0.2,0.2,0.2"
-    return f"cone:{azimuth:.3f},{elevation:.3f},{kind.split()[1]}"
+    """Returns lights of a kind towards six directions, those of an octahedron that is turned at random: so few stand for
+    all turns better than six that are drawn one by one."""
+    axes = numpy.linalg.qr(random.normal(size=(3, 3)))[0]
+    lights = []
+    for x, y, z in numpy.concatenate([axes, -axes]):
+        azimuth, elevation = math.degrees(math.atan2(x, z)), math.degrees(math.asin(y))
+        lights.append(f"hemisphere:{azimuth:.3f},{elevation:.3f},1,1,1,0.2,0.2,0.2" if kind == "hemisphere"
+                      else f"cone:{azimuth:.3f},{elevation:.3f},{kind.split()[1]}")
+    return lights
 
 
 def legendre(bands, x):
@@ -122,10 +126,10 @@ def build():
 def cells_of(mesh, setting, prior):
     bands = SETTINGS[setting][3]
     random = numpy.random.default_rng(hash_of(mesh + setting))
-    lights = [turned(kind, random) for kind in KINDS for _ in range(TURNS)]
+    lights = [light for kind in KINDS for light in turned(kind, random)]
     differences, references = numpy.zeros(len(KINDS)), numpy.zeros(len(KINDS))
     for number in range(len(CAMERAS)):
-        said, page = report(arguments.folder / f"{mesh}-{setting}", number, lights, 16384 if number == 0 else 64)
+        said, page = report(arguments.folder / f"{mesh}-{setting}", number, lights, 8192 if number == 0 else 64)
         if number == 0:
             squares = said["error"]["squares_by_band"]
             scores = judged(page)

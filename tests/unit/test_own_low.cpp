@@ -124,6 +124,7 @@ TEST_F(OwnLowMesh, LiesWhereTheHighMeshDoes) {
   };
   using Point = Eigen::Vector3f;
   EXPECT_EQ(changed([](const Point& p) { return Point(0.8f * p); }), "");
+  EXPECT_NE(changed([](const Point& p) { return Point(0.4f * p); }), "");
   const std::string larger = changed([](const Point& p) { return Point(100 * p); });
   EXPECT_NE(larger.find("100 times as large"), std::string::npos) << larger;
   EXPECT_NE(larger.find("--low-scale 0.01"), std::string::npos) << larger;
