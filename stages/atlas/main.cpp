@@ -34,6 +34,8 @@ int main(int argc, char** argv) {
     std::optional<TriangleMesh> high;
     if (!high_file.empty())
       high = load_high_mesh(high_file, inherit(settings.import, hints.import), low.frame, warnings);
+    if (!settings.keep_uv && !low.uvs.empty())
+      warnings.push_back(low_file.string() + ": its uvs are not used, the atlas gets new ones; --keep-uv keeps them");
     command.warn(warnings, hints.warnings);
     AtlasSettings in_frame = settings;
     in_frame.texels_per_unit *= low.frame.unit();
