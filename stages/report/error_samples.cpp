@@ -44,7 +44,7 @@ struct Candidate {
   double importance = 0;  ///< how large its error may be, as a guess from rays and normals alone
 };
 
-/// Place of the low mesh and a view of it, by numbers of 0 to 1.
+/// Place of the low mesh and a view of it, as random numbers of 0 to 1 say them.
 struct Draw {
   std::uint32_t triangle;
   float u, v;                   // barycentric
@@ -86,7 +86,7 @@ class Sampler {
         border_(border_texels(detail)) {
     const float diagonal = bounding_box(high).sides().norm();
     reach_ = std::max(0.05f * diagonal, static_cast<float>(sampling.pixel_size));
-    distance_ = diagonal + reach_;
+    distance_ = diagonal + bounding_box(low).sides().norm() + reach_;
     offset_ = 1e-4f * 0.05f * diagonal;
     apart_ = 0.005f * diagonal;
   }
@@ -102,7 +102,8 @@ class Sampler {
     });
     double importances = 0;
     for (const Candidate& candidate : candidates) importances += candidate.importance;
-    // Chooses a candidate whenever the sum passes a multiple of the step; those above it are all chosen, once.
+    // Choose a candidate whenever the sum passes a step, so each by its share; one of more than a step is always
+    // chosen.
     const double step = importances / static_cast<double>(wanted);
     double sum = 0.5 * step;
     for (const Candidate& candidate : candidates) {
