@@ -49,6 +49,7 @@ std::size_t Asset::vector_length() const { return asset_->vector_length(); }
 std::span<const float> Asset::positions() const { return numbers_of(asset_->mesh.positions); }
 std::span<const float> Asset::normals() const { return numbers_of(asset_->mesh.normals); }
 std::span<const float> Asset::uvs() const { return numbers_of(asset_->mesh.uvs); }
+std::span<const float> Asset::texture_uvs() const { return numbers_of(asset_->mesh.texture_uvs); }
 
 std::span<const std::uint32_t> Asset::triangles() const {
   if (asset_->mesh.triangles.empty()) return {};

@@ -16,6 +16,7 @@
 #include "base/json.h"
 #include "base/stopwatch.h"
 #include "mesh/draco_file.h"
+#include "mesh/uv_seams.h"
 #include "raycast/surface_transfer.h"
 
 namespace kiln {
@@ -118,6 +119,20 @@ TriangleMesh assemble(const TriangleMesh& low, const std::vector<Chart>& charts,
   return atlas;
 }
 
+/// Returns the uvs of the textures that a mesh came with, at its corners; empty where it has none.
+CornerUvs texture_uvs_of(const TriangleMesh& low) {
+  if (low.uvs.empty()) return {};
+  return uvs_at_corners(low.triangles, low.texture_uvs.empty() ? low.uvs : low.texture_uvs);
+}
+
+/// Adds a second set of uvs to an atlas whose triangles are in the order of theirs.
+void add_texture_uvs(TriangleMesh& atlas, const CornerUvs& uvs) {
+  if (uvs.empty()) return;
+  UvSplit split = split_at_uv_seams(atlas, uvs);
+  atlas = std::move(split.mesh);
+  atlas.texture_uvs = std::move(split.uvs);
+}
+
 /// Counts triangles that have no area or face against their vertices' normals. A file may reorder the triangles, so
 /// only their number can show what rounding did.
 int count_spoilt(const TriangleMesh& mesh) {
@@ -135,12 +150,12 @@ int count_spoilt(const TriangleMesh& mesh) {
 AtlasResult make_atlas(const TriangleMesh& low, const AtlasSettings& settings, const std::string& name,
                        const ProgressFunction& progress, const TriangleMesh* high) {
   const Stopwatch watch;
-  TriangleMesh with_normals;
+  TriangleMesh prepared;
   const TriangleMesh* mesh = &low;
-  if (low.normals.size() != low.positions.size()) {
-    with_normals = low;
-    compute_vertex_normals(with_normals);
-    mesh = &with_normals;
+  if (low.normals.size() != low.positions.size() || !low.uvs.empty()) {
+    prepared = low.uvs.empty() ? low : join_at_uv_seams(low);
+    if (prepared.normals.size() != prepared.positions.size()) compute_vertex_normals(prepared);
+    mesh = &prepared;
   }
 
   // Step 1: cut and flatten charts.
@@ -171,6 +186,7 @@ AtlasResult make_atlas(const TriangleMesh& low, const AtlasSettings& settings, c
 
   // Step 4: build the mesh with uvs.
   result.mesh = assemble(*mesh, cut.charts, packing);
+  add_texture_uvs(result.mesh, texture_uvs_of(low));
   result.size = {packing.width, packing.height};
   result.gutter = settings.gutter;
   result.split_charts = cut.split_charts;
@@ -191,6 +207,7 @@ AtlasResult make_atlas(const TriangleMesh& low, const AtlasSettings& settings, c
 WrittenAtlas write_atlas(const std::filesystem::path& file, const AtlasResult& atlas) {
   WrittenAtlas written;
   DracoQuantisation quantisation;
+  quantisation.texture_uv_bits = sufficient_uv_bits(atlas.mesh.texture_uvs);
   const int spoilt = count_spoilt(atlas.mesh);
   for (;;) {
     save_draco(file, atlas.mesh, quantisation);
@@ -227,6 +244,7 @@ Json AtlasResult::to_json() const {
           {"split_charts", split_charts},
           {"degenerate_triangles", degenerate_triangles},
           {"kept", kept},
+          {"uv_sets", mesh.texture_uvs.empty() ? 1 : 2},
           {"density_order", density_order},
           {"chart_seconds", chart_seconds},
           {"density_seconds", density_seconds},

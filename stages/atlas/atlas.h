@@ -13,7 +13,8 @@
 namespace kiln {
 
 struct AtlasResult {
-  TriangleMesh mesh;  ///< positions, normals and uvs; vertices are split at seams
+  TriangleMesh mesh;  ///< positions, normals, uvs, and texture uvs where the mesh came with uvs that are not the
+                      ///< atlas; vertices are split at seams
   Extent size;        ///< texels
   int gutter = 0;
   int unfolded_charts = 0;  ///< number of charts by what their map started from: here their parts, laid side by side
@@ -33,10 +34,10 @@ struct AtlasResult {
 };
 
 /// Cuts a mesh into charts, flattens and packs them. Every triangle lands in the atlas once, in the mesh's order; none
-/// is flipped and none overlaps another. Normals are kept, or computed where there are none; colours are kept. `high`,
-/// which may be null, is the mesh whose transfer decides density; it needs normals. Throws WrongUsage where the atlas
-/// is too small for the charts, or would be too large at a given density; BadInput (naming `name`) where no triangle
-/// has an area.
+/// is flipped and none overlaps another. Normals are kept, or computed where there are none; colours are kept; uvs of
+/// the mesh become texture uvs, whose seams need not be seams of the atlas. `high`, which may be null, is the mesh
+/// whose transfer decides density; it needs normals. Throws WrongUsage where the atlas is too small for the charts, or
+/// would be too large at a given density; BadInput (naming `name`) where no triangle has an area.
 AtlasResult make_atlas(const TriangleMesh& low, const AtlasSettings& settings, const std::string& name = "the mesh",
                        const ProgressFunction& progress = no_progress, const TriangleMesh* high = nullptr);
 

@@ -14,7 +14,10 @@ OptionSet atlas_options(AtlasSettings& settings) {
       .choice<AtlasDensity>("density", settings.density,
                             {{"even", AtlasDensity::even}, {"transfer", AtlasDensity::transfer}},
                             "Scale of the charts: the same, or larger where transfer varies more, at an equal total")
-      .toggle("keep-uv", settings.keep_uv, "Keep the uvs that the mesh has; refuse it where they are no atlas")
+      .choice<UvChoice>("uv", settings.uv,
+                        {{"auto", UvChoice::automatic}, {"keep", UvChoice::keep}, {"new", UvChoice::make}},
+                        "The atlas's uvs: those that the mesh has (keep), which are refused where they are no atlas; "
+                        "new ones, beside which the mesh's stay for its textures; auto keeps them where they are one")
       .integer("gutter", settings.gutter, 0, 64, "Free texels between two charts, and at the atlas's border")
       .number("max-stretch", settings.max_stretch, 1.0001, 10,
               "L2 stretch that a chart may have; less gives more charts")
@@ -32,8 +35,8 @@ OptionSet atlas_options(AtlasSettings& settings) {
 void check_size_settings(const AtlasSettings& settings, bool size_given) {
   if (settings.texels_per_unit > 0 && size_given)
     throw WrongUsage("texels-per-unit: found --size as well; expected one of them");
-  if (settings.texels_per_unit > 0 && settings.keep_uv)
-    throw WrongUsage("texels-per-unit: found --keep-uv; expected --size, which those uvs are checked at");
+  if (settings.texels_per_unit > 0 && settings.uv == UvChoice::keep)
+    throw WrongUsage("texels-per-unit: found --uv keep; expected --size, which those uvs are checked at");
 }
 
 }  // namespace kiln

@@ -13,12 +13,15 @@ enum class AtlasQuality { standard, best };
 /// Density of charts: the same scale for all, or more texels where transfer varies more (density.h).
 enum class AtlasDensity { even, transfer };
 
+/// Whose uvs are the atlas: those of the mesh where they form one, those of the mesh or an error, or new ones.
+enum class UvChoice { automatic, keep, make };
+
 struct AtlasSettings {
   Extent size = 512;  ///< size of the atlas, texels
   double texels_per_unit =
       0;  ///< texels per unit of the mesh's length, which overrides `size`; 0: as many as fit into `size`
   AtlasDensity density = AtlasDensity::transfer;
-  bool keep_uv = false;         ///< use the mesh's own uvs as the atlas, if they are one
+  UvChoice uv = UvChoice::automatic;
   ImportSettings import = {};   ///< how the mesh, and the high mesh, are read
   int gutter = 4;               ///< least number of free texels between two charts, and at the atlas's border
   double max_stretch = 1.005;   ///< largest L2 stretch of a chart; 1 is none

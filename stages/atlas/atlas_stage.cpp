@@ -14,7 +14,8 @@ constexpr const char* metric_names =
     "charts triangles vertices covered_texels utilisation stretch_l2 stretch_linf texels_per_unit density_min "
     "density_max seam_length seam_length_relative visible_seam_length_relative overlapping_texels flipped_triangles "
     "smallest_gap_texels uncovered_triangles uncovered_charts position_bits uv_bits width height gutter "
-    "unfolded_charts lscm_charts arap_charts mean_value_charts split_charts degenerate_triangles kept density_order "
+    "unfolded_charts lscm_charts arap_charts mean_value_charts split_charts degenerate_triangles kept uv_sets "
+    "density_order "
     "chart_seconds density_seconds pack_seconds";
 
 StageOptions options() { return StageOptions::of(atlas_options); }

@@ -74,13 +74,30 @@ std::string UvDefects::text(const AtlasSettings& settings) const {
   return fmt::format("{}", fmt::join(found, "; "));
 }
 
+bool keeps_uvs(const TriangleMesh& mesh, const AtlasSettings& settings, const std::string& name,
+               std::vector<std::string>& warnings) {
+  if (settings.uv != UvChoice::automatic) return settings.uv == UvChoice::keep;
+  if (mesh.uvs.empty()) return false;
+  std::string reason;
+  if (settings.texels_per_unit > 0) {
+    reason = "--texels-per-unit leaves the size open at which they would be checked";
+  } else {
+    const UvDefects defects = find_uv_defects(mesh, settings);
+    if (!defects.any()) return true;
+    reason = defects.text(settings);
+  }
+  warnings.push_back(name + ": its uvs are kept for its textures, but the atlas gets new ones: " + reason +
+                     "; --uv new says so without this warning");
+  return false;
+}
+
 AtlasResult keep_uvs(const TriangleMesh& mesh, const AtlasSettings& settings, const std::string& name) {
   const Stopwatch watch;
   const UvDefects defects = find_uv_defects(mesh, settings);
   if (defects.any())
     throw BadInput(name, "has uvs that cannot be kept: " + defects.text(settings),
                    "charts apart by the gutter, inside the unit square, none mirrored or on top of another",
-                   "mend them, or leave --keep-uv out to make new ones");
+                   "mend them, or give --uv new to make a second set");
   AtlasResult result;
   result.mesh = mesh;
   result.size = settings.size;

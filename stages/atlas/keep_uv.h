@@ -29,8 +29,13 @@ struct UvDefects {
 /// Finds the defects of a mesh with normals and uvs.
 UvDefects find_uv_defects(const TriangleMesh& mesh, const AtlasSettings& settings);
 
-/// Makes an atlas of the uvs that a mesh (load_uv_mesh) already has. Throws BadInput, which lists every defect, where
-/// they do not form one.
+/// Decides whether the uvs of a mesh become the atlas, as settings.uv says. Where uvs are there and that is left to
+/// Kiln, appends to `warnings` why they do not.
+bool keeps_uvs(const TriangleMesh& mesh, const AtlasSettings& settings, const std::string& name,
+               std::vector<std::string>& warnings);
+
+/// Makes an atlas of the uvs that a mesh already has. Throws BadInput, which lists every defect, where they do not form
+/// one.
 AtlasResult keep_uvs(const TriangleMesh& mesh, const AtlasSettings& settings, const std::string& name = "the mesh");
 
 }  // namespace kiln

@@ -4,13 +4,12 @@
 #include "import/import_mesh.h"
 #include "import/uv_mesh.h"
 #include "mesh/draco_file.h"
-#include "mesh/hard_edges.h"
 
 namespace kiln {
 
 TriangleMesh load_low_mesh(const std::filesystem::path& file, const AtlasSettings& settings,
                            std::vector<std::string>& warnings) {
-  if (settings.keep_uv) return load_uv_mesh(file, settings.import, &warnings);
+  if (settings.uv == UvChoice::keep) return load_uv_mesh(file, settings.import, &warnings);
   if (is_draco_file(file)) {
     TriangleMesh mesh = load_draco(file);
     if (mesh.normals.empty()) compute_vertex_normals(mesh);
@@ -18,7 +17,9 @@ TriangleMesh load_low_mesh(const std::filesystem::path& file, const AtlasSetting
   }
   const ImportedMesh imported = import_mesh(file, settings.import);
   warnings.insert(warnings.end(), imported.warnings.begin(), imported.warnings.end());
-  return split_at_hard_edges(imported.mesh);
+  if (const std::string fault = fault_of_uvs(imported.surface); !fault.empty())
+    warnings.push_back(file.string() + ": " + fault);
+  return split_at_seams(imported);
 }
 
 TriangleMesh load_high_mesh(const std::filesystem::path& file, const ImportSettings& settings, const MeshFrame& frame,

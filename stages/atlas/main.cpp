@@ -23,7 +23,11 @@ int main(int argc, char** argv) {
     command.output(atlas_file, "The mesh with uvs, a Draco file; atlas.png and atlas.json are written beside it");
     command.input_option("high", high_file, "The high mesh, whose transfer --density transfer then follows");
     command.options("Atlas", atlas_options(settings));
+    bool keep_uv = false;
+    command.flag("keep-uv", keep_uv, "Atlas", "The same as --uv keep");
     command.parse(argc, argv);
+    if (keep_uv && command.given("uv")) throw WrongUsage("keep-uv: found --uv as well; expected one of them");
+    if (keep_uv) settings.uv = UvChoice::keep;
     settings.seed = command.seed();
     check_size_settings(settings, command.given("size"));
 
@@ -34,17 +38,16 @@ int main(int argc, char** argv) {
     std::optional<TriangleMesh> high;
     if (!high_file.empty())
       high = load_high_mesh(high_file, inherit(settings.import, hints.import), low.frame, warnings);
-    if (!settings.keep_uv && !low.uvs.empty())
-      warnings.push_back(low_file.string() + ": its uvs are not used, the atlas gets new ones; --keep-uv keeps them");
-    command.warn(warnings, hints.warnings);
     AtlasSettings in_frame = settings;
     in_frame.texels_per_unit *= low.frame.unit();
+    const bool keep = keeps_uvs(low, in_frame, low_file.string(), warnings);
+    command.warn(warnings, hints.warnings);
     OutputSet outputs(folder_of(atlas_file));
 
     // Run.
-    const AtlasResult result = settings.keep_uv ? keep_uvs(low, in_frame, low_file.string())
-                                                : make_atlas(low, in_frame, low_file.string(),
-                                                             command.progress("atlas"), high ? &*high : nullptr);
+    const AtlasResult result =
+        keep ? keep_uvs(low, in_frame, low_file.string())
+             : make_atlas(low, in_frame, low_file.string(), command.progress("atlas"), high ? &*high : nullptr);
 
     // Save, and measure what was saved.
     const WrittenAtlas written = write_atlas(outputs.add(atlas_file.filename().string()), result);

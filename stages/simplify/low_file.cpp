@@ -53,16 +53,6 @@ int sufficient_position_bits(const TriangleMesh& mesh) {
   return bits;
 }
 
-/// Returns the bits of uvs whose steps are at most 1/65,535 of the unit square; 24 at most.
-int sufficient_uv_bits(const TriangleMesh& mesh) {
-  int bits = DracoQuantisation().uv_bits;
-  Eigen::AlignedBox2f box;
-  for (const Eigen::Vector2f& uv : mesh.uvs) box.extend(uv);
-  const double side = mesh.uvs.empty() ? 0 : box.sizes().maxCoeff();
-  while (bits < most_bits && step(side, bits) > step(1, DracoQuantisation().uv_bits)) ++bits;
-  return bits;
-}
-
 }  // namespace
 
 void LowFile::keep_colors(const TriangleMesh& high) {
@@ -101,7 +91,7 @@ TriangleMesh LowFile::write(const TriangleMesh& mesh) {
 
 TriangleMesh LowFile::write_as_it_is(const TriangleMesh& mesh) {
   DracoQuantisation quantisation = quantisation_for(mesh);
-  quantisation.uv_bits = sufficient_uv_bits(mesh);
+  quantisation.uv_bits = sufficient_uv_bits(mesh.uvs);
   TriangleMesh low = mesh;
   low.colors.clear();
   if (colored_ != nullptr) low.colors = nearest_colors(*colored_, *colored_surface_, low.positions);

@@ -12,14 +12,6 @@ namespace kiln {
 
 namespace {
 
-/// Finds the first face without texture coordinates, for a message; empty where there is none.
-std::string face_without_uvs(const ImportedSurface& surface) {
-  for (const ImportedSurface::FaceWithoutUvs& missing : surface.without_uvs)
-    if (missing.found)
-      return missing.line > 0 ? fmt::format("line {}", missing.line) : fmt::format("face {}", missing.face);
-  return "";
-}
-
 std::string sizes_text(const BoundingBox& box, double unit) {
   const Eigen::Vector3d sides = unit * box.sides().cast<double>();
   return fmt::format("{:.3g} x {:.3g} x {:.3g}", sides.x(), sides.y(), sides.z());
@@ -70,8 +62,9 @@ std::optional<OwnLow> load_own_low(const SimplifySettings& settings, const Trian
   const auto warn = [&](const std::string& text) { low.warnings.push_back(settings.low + ": " + text); };
   for (const std::string& warning : imported.warnings) warn(warning);
   if (!imported.repairs.is_clean()) warn("was repaired: " + imported.repairs.text());
-  if (!imported.surface.uvs.empty() && !has_whole_uvs(imported.surface))
-    warn("has uvs, but not at every corner (" + face_without_uvs(imported.surface) + "), so none of them are kept");
+  if (!imported.mesh.colors.empty())
+    warn("has vertex colours, which are not used: --colors takes those of the high mesh");
+  if (const std::string fault = fault_of_uvs(imported.surface); !fault.empty()) warn(fault);
   if (const std::string fault = misplacement(low.mesh, high); !fault.empty()) {
     if (shared_reach(low.mesh, high) < 0.1)
       throw BadInput(settings.low, fault, "a mesh that lies on the high mesh", "mend what differs");

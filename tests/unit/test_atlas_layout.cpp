@@ -307,7 +307,7 @@ TEST_F(AtlasLayout, NamesWhatIsWrongWithUvs) {
   } catch (const BadInput& error) {
     const std::string message = error.what();
     for (const char* words : {"bad.obj", "texels are covered by several", "2 triangles are mirrored, in 1 chart",
-                              "gutter of 16", "leave --keep-uv out"})
+                              "gutter of 16", "--uv new"})
       EXPECT_NE(message.find(words), std::string::npos) << message;
   }
 }

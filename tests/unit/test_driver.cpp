@@ -241,7 +241,7 @@ TEST(Pipeline, WhatCannotWorkIsRefusedAtOnce) {
     return refusal("assets:\n  a:\n    mesh: x.obj\n    " + settings + "\n");
   };
   const std::pair<const char*, const char*> cases[] = {
-      {"atlas: {keep-uv: true}", "'true' for keep-uv of atlas"},
+      {"atlas: {uv: keep}", "'keep' for uv of atlas"},
       {"bake: {per-vertex: true}", "'true' for per-vertex of bake"},
       {"bake: {size: 64}", "'64' for size of bake"},
       {"bake: {bits: 12}", "8 or 16"},
@@ -267,7 +267,7 @@ TEST(Pipeline, WhatCannotWorkIsRefusedAtOnce) {
   }
   for (const char* settings :
        {"bake: {receiver: low}", "bake: {receiver: low, bounces: 1, albedo: 0.5}", "bake: {max-error: auto}",
-        "compress: {pca: 25}", "atlas: {keep-uv: false}", "report: {lights: ['cone:45,30,5', 'ambient:1,0.5,0']}"})
+        "compress: {pca: 25}", "atlas: {uv: auto}", "atlas: {uv: new}", "report: {lights: ['cone:45,30,5', 'ambient:1,0.5,0']}"})
     EXPECT_EQ(refusal_of(settings), "") << settings;
 }
 

@@ -105,6 +105,18 @@ TEST_F(OwnLowMesh, UvsThatAreNotEverywhereAreLeftOutAloud) {
   EXPECT_NE(own.warnings[0].find("line 23"), std::string::npos) << own.warnings[0];
 }
 
+TEST_F(OwnLowMesh, ColorsAreLeftOutAloud) {
+  std::string text = octahedron;
+  for (const char* vertex : {"v 1 0 0\n", "v -1 0 0\n", "v 0 1 0\n", "v 0 -1 0\n", "v 0 0 1\n", "v 0 0 -1\n"})
+    text.insert(text.find(vertex) + std::string(vertex).size() - 1, " 1 .5 0");
+  const TriangleMesh high = shapes::icosphere(2);
+  const OwnLow own = *load_own_low(settings_of(text), high);
+  ASSERT_EQ(own.warnings.size(), 1u);
+  EXPECT_NE(own.warnings[0].find("--colors takes those of the high mesh"), std::string::npos) << own.warnings[0];
+  LowFile file(path("low.drc"));
+  EXPECT_TRUE(file.write_as_it_is(own.mesh).colors.empty());
+}
+
 TEST_F(OwnLowMesh, IsMeasuredInTheFrameOfTheHighMesh) {
   // A hundred thousand times as large, the file's own frame is another.
   TriangleMesh high = shapes::icosphere(2), low = high;

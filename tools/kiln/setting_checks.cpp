@@ -70,9 +70,9 @@ class Checks {
 
   /// Refuses settings that work on the command line but not in a pipeline.
   void check_impossible() const {
-    require(value("atlas", "keep-uv") == false, "atlas", "keep-uv",
-            "none in a pipeline, where kiln-simplify makes the mesh anew, without uvs",
-            "leave it out, or run kiln-atlas --keep-uv on your mesh by hand");
+    require(value("atlas", "uv") != "keep" || !text("simplify", "low").empty(), "atlas", "uv",
+            "a low mesh of the asset's own beside it, since kiln-simplify makes one without uvs",
+            "add 'low: FILE', or leave the line out");
     require(value("bake", "per-vertex") == false, "bake", "per-vertex",
             "none in a pipeline, whose other stages are for texels", "leave it out, or run kiln-bake by hand");
     require(value("bake", "size") == 0, "bake", "size",

@@ -48,6 +48,10 @@ class KILN_RUNTIME_API Asset {
   std::span<const float> positions() const;
   std::span<const float> normals() const;
   std::span<const float> uvs() const;
+
+  /// Two uvs per vertex that textures painted for the mesh use; none where they are uvs(), or not known. They may lie
+  /// anywhere.
+  std::span<const float> texture_uvs() const;
   std::span<const std::uint32_t> triangles() const;
 
   /// Returns the origin of positions, in the coordinates of the file that the mesh was made from.

@@ -3,19 +3,20 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "base/errors.h"
 #include "import/readers.h"
 #include "import/triangulate.h"
 #include "mesh/hard_edges.h"
 #include "mesh/same_position.h"
+#include "mesh/uv_seams.h"
 
 namespace kiln {
 
 namespace {
 
-constexpr char export_with_uvs[] =
-    "export the mesh again, with its texture coordinates, or leave --keep-uv out to make them";
+constexpr char export_with_uvs[] = "export the mesh again, with its texture coordinates, or give --uv new to make them";
 
 void require_uvs(const std::string& name, const SourceMesh& source) {
   if (source.uvs.empty()) throw BadInput(name, "has no texture coordinates", "a mesh with uvs", export_with_uvs);
@@ -96,31 +97,22 @@ bool has_whole_uvs(const ImportedSurface& surface) {
                                               [](const auto& missing) { return missing.found; });
 }
 
+std::string fault_of_uvs(const ImportedSurface& surface) {
+  if (surface.uvs.empty()) return "";
+  for (const ImportedSurface::FaceWithoutUvs& missing : surface.without_uvs)
+    if (missing.found)
+      return fmt::format(
+          "has uvs, but not at every corner ({}), so none of them are kept",
+          missing.line > 0 ? fmt::format("line {}", missing.line) : fmt::format("face {}", missing.face));
+  return "";
+}
+
 TriangleMesh split_at_seams(const ImportedMesh& imported) {
   const TriangleMesh split = split_at_hard_edges(imported.mesh);
   if (!has_whole_uvs(imported.surface)) return split;
-  std::vector<float> values;  // of the corners: the vertex in two halves, which floats hold exactly, and the uv
-  for (std::size_t t = 0; t < split.triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t vertex = split.triangles[t][k];
-      const Eigen::Vector2f& uv = imported.surface.uvs[t][k];
-      values.insert(values.end(),
-                    {static_cast<float>(vertex & 0xffff), static_cast<float>(vertex >> 16), uv.x(), uv.y()});
-    }
-  const std::vector<std::uint32_t> first = first_of_equals(values, 4), number = without_gaps(first);
-  TriangleMesh mesh;
-  mesh.frame = split.frame;
-  mesh.triangles.resize(split.triangles.size());
-  for (std::size_t c = 0; c < first.size(); ++c) {
-    mesh.triangles[c / 3][c % 3] = number[c];
-    if (first[c] != c) continue;
-    const std::uint32_t vertex = split.triangles[c / 3][c % 3];
-    mesh.positions.push_back(split.positions[vertex]);
-    mesh.normals.push_back(split.normals[vertex]);
-    mesh.uvs.push_back(imported.surface.uvs[c / 3][c % 3]);
-    if (!split.colors.empty()) mesh.colors.push_back(split.colors[vertex]);
-  }
-  return mesh;
+  UvSplit seams = split_at_uv_seams(split, imported.surface.uvs);
+  seams.mesh.uvs = std::move(seams.uvs);
+  return std::move(seams.mesh);
 }
 
 }  // namespace kiln

@@ -22,6 +22,9 @@ TriangleMesh load_uv_mesh(const std::filesystem::path& file, const ImportSetting
 /// Tells whether every corner of an imported mesh has a uv of the file.
 bool has_whole_uvs(const ImportedSurface& surface);
 
+/// Says that uvs are dropped since a face, which it names, has none; empty where all faces have uvs, or none has.
+std::string fault_of_uvs(const ImportedSurface& surface);
+
 /// Returns an imported mesh with one normal and one uv per vertex: vertices are split at hard edges and at the seams of
 /// the file's uvs; triangles keep their order. Without uvs where has_whole_uvs is false.
 TriangleMesh split_at_seams(const ImportedMesh& imported);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/draco_file.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -35,11 +36,12 @@ int add_attribute(draco::Mesh& encoded, draco::GeometryAttribute::Type type, con
   return id;
 }
 
+/// Reads an attribute, or the one of number `set` where there are several of its type; empty where there is none.
 template <class Vector>
-std::vector<Vector> read_attribute(const draco::Mesh& decoded, draco::GeometryAttribute::Type type) {
+std::vector<Vector> read_attribute(const draco::Mesh& decoded, draco::GeometryAttribute::Type type, int set = 0) {
   constexpr int components = Vector::RowsAtCompileTime;
   std::vector<Vector> values;
-  const draco::PointAttribute* attribute = decoded.GetNamedAttribute(type);
+  const draco::PointAttribute* attribute = decoded.GetNamedAttribute(type, set);
   if (attribute == nullptr) return values;
   values.resize(decoded.num_points());
   for (std::uint32_t i = 0; i < values.size(); ++i)
@@ -105,6 +107,9 @@ void add_mesh(draco::Mesh& encoded, const TriangleMesh& mesh, const DracoQuantis
                                 quantisation.normal_bits);
   if (!mesh.uvs.empty())
     attribute_bits.emplace_back(add_attribute(encoded, GeometryAttribute::TEX_COORD, mesh.uvs), quantisation.uv_bits);
+  if (!mesh.texture_uvs.empty())
+    attribute_bits.emplace_back(add_attribute(encoded, GeometryAttribute::TEX_COORD, mesh.texture_uvs),
+                                quantisation.texture_uv_bits);
   if (!mesh.colors.empty()) add_colors(encoded, mesh.colors);
 }
 
@@ -153,6 +158,7 @@ TriangleMesh mesh_of(const draco::Mesh& source, const std::string& name) {
   mesh.positions = read_attribute<Eigen::Vector3f>(source, draco::GeometryAttribute::POSITION);
   mesh.normals = read_attribute<Eigen::Vector3f>(source, draco::GeometryAttribute::NORMAL);
   mesh.uvs = read_attribute<Eigen::Vector2f>(source, draco::GeometryAttribute::TEX_COORD);
+  mesh.texture_uvs = read_attribute<Eigen::Vector2f>(source, draco::GeometryAttribute::TEX_COORD, 1);
   mesh.colors = read_attribute<Eigen::Vector3f>(source, draco::GeometryAttribute::COLOR);
   mesh.triangles.resize(source.num_faces());
   for (std::uint32_t i = 0; i < source.num_faces(); ++i)
@@ -195,6 +201,17 @@ std::vector<std::uint32_t> find_sources(const TriangleMesh& mesh, const Triangle
 }
 
 }  // namespace
+
+int sufficient_uv_bits(const std::vector<Eigen::Vector2f>& uvs) {
+  constexpr int most_bits = 24;  // the mantissa of a float32
+  int bits = DracoQuantisation().uv_bits;
+  Eigen::AlignedBox2f box;
+  for (const Eigen::Vector2f& uv : uvs) box.extend(uv);
+  const double side = uvs.empty() ? 0 : box.sizes().maxCoeff();
+  const double step = 1 / (std::exp2(bits) - 1);
+  while (bits < most_bits && side / (std::exp2(bits) - 1) > step) ++bits;
+  return bits;
+}
 
 void save_draco(const std::filesystem::path& file, const TriangleMesh& mesh, const DracoQuantisation& quantisation) {
   draco::Mesh encoded;

@@ -15,13 +15,18 @@ namespace kiln {
 struct DracoQuantisation {
   int position_bits = 16;
   int uv_bits = 16;
+  int texture_uv_bits = 16;
   int normal_bits = 12;
 };  // colors always get 8 bits, steps of 1/255
 
+/// Returns the bits of uvs whose steps are at most 1/65,535 of the unit square: 16, or more where they fill a larger
+/// box; 24 at most.
+int sufficient_uv_bits(const std::vector<Eigen::Vector2f>& uvs);
+
 /// Writes positions (in the file's units, relative to the origin of the mesh's frame) and, where the mesh has them,
-/// normals, uvs and colors. The origin goes into the file's metadata, as the entry `kiln-origin` of three doubles.
-/// Split vertices stay split, but the order of vertices and triangles may change, so load the file again to measure the
-/// result.
+/// normals, uvs, texture uvs (a second set of texture coordinates) and colors. The origin goes into the file's
+/// metadata, as the entry `kiln-origin` of three doubles. Split vertices stay split, but the order of vertices and
+/// triangles may change, so load the file again to measure the result.
 void save_draco(const std::filesystem::path& file, const TriangleMesh& mesh,
                 const DracoQuantisation& quantisation = {});
 

@@ -41,6 +41,10 @@ struct TriangleMesh {
   /// `normals` hold at all corners. With corner normals, `normals` are their means.
   std::vector<std::array<Eigen::Vector3f, 3>> corner_normals = {};
 
+  /// Uvs that textures of the artist's use, where `uvs` were made for an atlas beside them. They may lie outside the
+  /// unit square, on top of one another, and be mirrored.
+  std::vector<Eigen::Vector2f> texture_uvs = {};
+
   MeshFrame frame = {};
 };
 
