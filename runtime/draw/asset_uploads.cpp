@@ -111,7 +111,7 @@ UploadedTexture upload_cluster_ids(const PrtAsset& asset) {
 
 UploadedTexture upload_normal_map(const PrtAsset& asset) {
   const std::filesystem::path file = asset.ranges_file.parent_path() / asset.normals_file;
-  Image<std::uint16_t> encoded = read_png16(file);
+  Image<std::uint16_t> encoded = read_png_as16(file);
   if (encoded.channels() != 3)
     throw BadInput(file.string(), "has " + std::to_string(encoded.channels()) + " channels", "an RGB normal map",
                    "bake the asset again with kiln-bake");

@@ -50,7 +50,7 @@ std::vector<Eigen::Vector3f> scene_shape(const std::vector<SceneAsset>& assets) 
   std::vector<Eigen::Vector3f> shape;
   for (const SceneAsset& asset : assets)
     for (const Eigen::Vector3f& vertex : asset.renderer->asset().mesh.positions)
-      shape.push_back(asset.placement.to_scene(vertex.cast<double>()).cast<float>());
+      shape.emplace_back(asset.placement.to_scene(vertex.cast<double>()).cast<float>());
   return shape;
 }
 

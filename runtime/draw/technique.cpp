@@ -59,7 +59,7 @@ void require_technique(Technique technique, const PrtAsset& asset) {
   if (technique == Technique::compressed && !asset.clusters)
     fail("an asset that is not compressed", "the output of kiln-compress, or --compressed FOLDER");
   if (technique == Technique::normal_map && asset.normals_file.empty())
-    fail("an asset without a normal map", "one baked with --detail");
+    fail("an asset without a normal map", "one baked with --detail, and with --ship normal=8 or normal=16");
 }
 
 }  // namespace kiln

@@ -51,7 +51,7 @@ Samples sample_charts(const Surface& surface, const std::vector<Chart>& charts, 
     for (std::size_t v = 0; v < chart.vertices.size(); ++v) {
       flat.positions.push_back(surface.mesh->positions[chart.vertices[v]]);
       flat.normals.push_back(surface.mesh->normals[chart.vertices[v]]);
-      flat.uvs.push_back((chart.uvs[v] - lowest).cwiseQuotient(extent).cast<float>());
+      flat.uvs.emplace_back((chart.uvs[v] - lowest).cwiseQuotient(extent).cast<float>());
     }
     const UvRaster raster = rasterise_uvs(flat, grid.width, grid.height);
     grid.samples.assign(raster.texels.size(), no_index);

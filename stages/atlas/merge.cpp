@@ -62,7 +62,7 @@ std::vector<Eigen::Vector2d> aligned_uvs(const Chart& here, const Chart& there, 
   Eigen::Matrix2d rotation;
   rotation << turn.real(), -turn.imag(), turn.imag(), turn.real();
   std::vector<Eigen::Vector2d> result;
-  for (const Eigen::Vector2d& uv : there.uvs) result.push_back(mean_here + rotation * (uv - mean_there));
+  for (const Eigen::Vector2d& uv : there.uvs) result.emplace_back(mean_here + rotation * (uv - mean_there));
   return result;
 }
 
@@ -77,7 +77,7 @@ Chart compact(Chart chart, DisjointSets& classes, std::vector<std::uint32_t>* tr
     if (index == no_index) {
       index = static_cast<std::uint32_t>(result.vertices.size());
       result.vertices.push_back(chart.vertices[v]);
-      if (!chart.uvs.empty()) result.uvs.push_back(Eigen::Vector2d::Zero());
+      if (!chart.uvs.empty()) result.uvs.emplace_back(Eigen::Vector2d::Zero());
       members.push_back(0);
     }
     if (!chart.uvs.empty()) result.uvs[index] += chart.uvs[v];

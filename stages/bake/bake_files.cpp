@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/bake_files.h"
 
+#include <algorithm>
+
+#include "asset/shipped.h"
 #include "bake/planes/coefficient_planes.h"
 #include "bake/planes/vertex_planes.h"
 #include "bake/verify.h"
 #include "base/command_line.h"
 #include "base/json.h"
 #include "base/outputs.h"
+#include "image/image_file.h"
 #include "maps/detail_maps.h"
 #include "sh/directions.h"
 
@@ -43,6 +47,19 @@ Json describe_subsurface(const SubsurfaceReport& report) {
           {"seconds", report.seconds}};
 }
 
+/// Copies a normal map of 16 bits, or writes it with 8.
+void ship_normals(const fs::path& from, const fs::path& to, int bits) {
+  if (bits == 16) {
+    fs::copy_file(from, to, fs::copy_options::overwrite_existing);
+    return;
+  }
+  const Image<std::uint16_t> wide = read_png16(from);
+  Image<std::uint8_t> narrow(wide.width(), wide.height(), wide.channels());
+  std::transform(wide.values().begin(), wide.values().end(), narrow.values().begin(),
+                 [](std::uint16_t value) { return static_cast<std::uint8_t>((value + 128) / 257); });
+  write_png(to, narrow);
+}
+
 /// Writes the planes of an atlas. Returns the metrics of storing and of the seams, for bake.json.
 Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeResult& result,
                     const BakeSettings& settings) {
@@ -51,10 +68,10 @@ Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene&
   asset.albedo = scene.albedo;
   asset.bits = settings.bits;
   fs::copy_file(paths.atlas, outputs.add(atlas_mesh_name), fs::copy_options::overwrite_existing);
-  if (!paths.detail.empty()) {
+  if (!paths.detail.empty() && settings.ship.normal_bits > 0) {
     asset.normals_file = normal_map_name;
     asset.normal_space = scene.normal_space;
-    fs::copy_file(paths.detail / normal_map_name, outputs.add(normal_map_name), fs::copy_options::overwrite_existing);
+    ship_normals(paths.detail / normal_map_name, outputs.add(normal_map_name), settings.ship.normal_bits);
   } else {
     outputs.remove_stale(normal_map_name);
   }
@@ -182,6 +199,7 @@ Json save_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scen
 
   Json metrics = describe_bake(scene, result);
   metrics.update(places);
+  metrics["bytes_out"] = shipped_bytes(outputs.staging());
   if (settings.verify_directions > 0) {
     BakeJob job = make_job(scene, settings, command);
     job.progress = command.progress("verify");

@@ -142,6 +142,12 @@ void add_main_options(OptionSet& options, BakeSettings& settings) {
       .affects(Affects::sums)
       .integer("bits", settings.bits, 8, 16, "Bits of a stored coefficient, 8 or 16")
       .affects(Affects::storing)
+      .typed<ShippedParts>(ship_setting, settings.ship, "normal=none, normal=8 or normal=16",
+                           "What the folder holds beside transfer, which needs none of it: the normal map of --detail, "
+                           "with bits of 8 or "
+                           "16, or no normal map",
+                           parse_shipped_parts, text_of)
+      .affects(Affects::storing)
       .choice(
           "buried", settings.buried, {{"fill", BuriedChoice::fill}, {"keep", BuriedChoice::keep}},
           "Fills texels that stand inside another part of the occluders from those beside them, or bakes them, black "

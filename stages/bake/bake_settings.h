@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "asset/shipped.h"
 #include "bake/engines/shadow_settings.h"
 #include "base/extent.h"
 #include "base/options.h"
@@ -57,6 +58,7 @@ struct BakeSettings {
   double adaptive = 0;         ///< relative L2 that interpolating texels may cost; 0 bakes every texel
   Sampling sampling = Sampling::fibonacci;
   int bits = 8;  ///< bits of a stored coefficient
+  ShippedParts ship;
   BuriedChoice buried = BuriedChoice::fill;
   SeamChoice seams = SeamChoice::equalise;
   BounceTarget bounces;        ///< auto: until a bounce adds less than the quantisation error of `bits`

@@ -16,7 +16,7 @@ constexpr const char* metric_names =
     "occluder_triangles "
     "occluders_closed skipped.unoccluded_texels skipped.behind_tiles skipped.lit_tiles skipped.shadowed_tiles "
     "single_rays "
-    "ambiguous refined quantisation_error width height seams.edges seams.seam_mismatch_mean_before "
+    "ambiguous refined quantisation_error bytes_out width height seams.edges seams.seam_mismatch_mean_before "
     "seams.seam_mismatch_max_before seams.seam_mismatch_mean seams.seam_mismatch_max seams.change";
 
 /// Metrics of --verify-directions; the last four are left out where the reference shares what it measures.
@@ -86,7 +86,8 @@ StageRun run(const AssetPlan& plan) {
   }
   run.add_settings(options(), plan.settings_of("bake"));
   for (int i = 0; i < settings.bands * settings.bands; ++i) run.outputs.push_back(prt / plane_file(0, i));
-  for (const char* name : {atlas_mesh_name, normal_map_name, ranges_name}) run.outputs.push_back(prt / name);
+  for (const char* name : {atlas_mesh_name, ranges_name}) run.outputs.push_back(prt / name);
+  if (settings.ship.normal_bits > 0) run.outputs.push_back(prt / normal_map_name);
   // Checkpoints are of blocks of directions, by which a bake that interpolates texels does not go.
   if (settings.adaptive == 0) run.checkpoint = layout::checkpoint_folder(prt);
   return run;

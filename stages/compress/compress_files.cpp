@@ -6,6 +6,7 @@
 #include <fstream>
 #include <functional>
 
+#include "asset/shipped.h"
 #include "asset/write_asset.h"
 #include "base/errors.h"
 #include "base/files.h"
@@ -126,7 +127,10 @@ EncodedFiles encode_planes(const PrtAsset& asset, int bits, PngEffort effort) {
 
 Json save_compressed(OutputSet& outputs, const fs::path& input, const PrtAsset& asset, const CompressResult& result) {
   copy_into(outputs, input, asset.mesh_file);
-  if (!asset.normals_file.empty()) copy_into(outputs, input, asset.normals_file);
+  if (!asset.normals_file.empty())
+    copy_into(outputs, input, asset.normals_file);
+  else
+    outputs.remove_stale(normal_map_name);
   if (!asset.albedo.file.empty())
     copy_into(outputs, input, asset.albedo.file);
   else
@@ -142,8 +146,8 @@ Json save_compressed(OutputSet& outputs, const fs::path& input, const PrtAsset& 
   // Measure what was written.
   const TransferSource source(asset);
   const ErrorSpread spread = spread_of_decoded(load_prt_asset(outputs.staging()), source);
-  std::uint64_t bytes_in = fs::file_size(asset.ranges_file);
-  for (const PrtPlane& plane : asset.planes) bytes_in += fs::file_size(input / plane.file);
+  std::uint64_t coefficient_bytes = fs::file_size(asset.ranges_file);
+  for (const PrtPlane& plane : asset.planes) coefficient_bytes += fs::file_size(input / plane.file);
   const auto texels = static_cast<double>(source.covered().size());
   Json tried = Json::array();
   for (const CompressCandidate& candidate : result.tried) tried.push_back(candidate.to_json());
@@ -160,9 +164,9 @@ Json save_compressed(OutputSet& outputs, const fs::path& input, const PrtAsset& 
           {"texel_error_bound", most_texel_error},
           {"border_jump", spread.border},
           {"border_jump_bound", most_border_jump},
-          {"bytes_in", bytes_in},
-          {"bytes_out", result.chosen.bytes},
-          {"bytes_per_texel_in", static_cast<double>(bytes_in) / texels},
+          {"bytes_in", shipped_bytes(input)},
+          {"bytes_out", shipped_bytes(outputs.staging())},
+          {"bytes_per_texel_in", static_cast<double>(coefficient_bytes) / texels},
           {"bytes_per_texel_out", static_cast<double>(result.chosen.bytes) / texels},
           {"lookups_in", (asset.planes.size() + 3) / 4},
           {"lookups_out", result.chosen.lookups},

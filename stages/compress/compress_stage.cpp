@@ -2,6 +2,7 @@
 #include "compress/compress_stage.h"
 
 #include "asset/format.h"
+#include "asset/shipped.h"
 #include "base/asset_layout.h"
 #include "compress/compress_settings.h"
 
@@ -28,7 +29,11 @@ StageRun run(const AssetPlan& plan) {
   StageRun run{"compress", {"kiln-compress", prt, "-o", folder_word(folder)}};
   run.inputs = {layout::record(plan.folder, "bake")};
   // What else it writes is its own choice: planes, or weights with pca.json.
-  run.outputs = {layout::record(plan.folder, "compress"), folder / atlas_mesh_name, folder / normal_map_name};
+  run.outputs = {layout::record(plan.folder, "compress"), folder / atlas_mesh_name};
+  const StageSettings& bake = plan.settings_of("bake");
+  const auto ship = bake.find(ship_setting);
+  if (ship == bake.end() || parse_shipped_parts(ship->second).normal_bits > 0)
+    run.outputs.push_back(folder / normal_map_name);
   run.add_settings(options(), plan.settings_of("compress"));
   return run;
 }

@@ -20,7 +20,8 @@ int main(int argc, char** argv) {
     command.input("HIGH", high_file, "The high mesh: OBJ, PLY, STL, OFF, glTF, GLB, FBX or DRC");
     command.input("ATLAS", atlas_file, "The low mesh with its atlas, a Draco file of kiln-atlas");
     command.output(folder,
-                   "The folder for normal.png, position.exr, coverage.png, match.png, albedo.png and normals.json");
+                   "The folder for normal.png, position.exr, coverage.png, match.png, albedo.png, further --maps, and "
+                   "normals.json");
     command.options("Normals", normals_options(settings));
     command.parse(argc, argv);
 
@@ -32,11 +33,12 @@ int main(int argc, char** argv) {
     command.warn(high.warnings, hints.warnings);
     command.warn(material.warnings());
     command.also_read(material.files);
+    const MaterialIds materials = find_material_ids(high);
     OutputSet outputs(folder);
 
     // Run.
     const NormalsResult result =
-        make_normals(high.mesh, atlas, settings, hints, command.progress("normals"), material.albedo);
+        make_normals(high.mesh, atlas, settings, hints, command.progress("normals"), material.albedo, materials);
 
     // Save.
     write_png(outputs.add(layout::normal_map), result.normal);
@@ -47,6 +49,8 @@ int main(int argc, char** argv) {
       write_png(outputs.add(layout::albedo_map), result.albedo_map->picture);
     else
       outputs.remove_stale(layout::albedo_map);
-    command.finish(outputs, command.result(result.seconds, result.to_json()));
+    Json metrics = result.to_json();
+    metrics["map_files"] = write_maps(outputs, result.maps, settings.maps, materials);
+    command.finish(outputs, command.result(result.seconds, metrics));
   });
 }

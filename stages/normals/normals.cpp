@@ -15,8 +15,8 @@
 #include "base/stopwatch.h"
 #include "image/gutter.h"
 #include "image/srgb.h"
-#include "maps/seam_solver.h"
 #include "mesh/uv_raster.h"
+#include "normals/normal_seams.h"
 #include "normals/texel_match.h"
 #include "raycast/buried_test.h"
 #include "raycast/ray_scene.h"
@@ -64,18 +64,6 @@ double measure_distance(const TriangleMesh& high, const RayScene& high_scene, co
     return low_scene.closest_point(high.positions[k], anywhere).distance;
   });
   return std::max(from_low, from_high);
-}
-
-/// Equalises both sides of seams. Lookups are normalised and texels are unit vectors, so rounds repeat what normalising
-/// undoes. Points with a larger mismatch than others gain weight from round to round.
-void equalise(Image<float>& map, const Seams& seams, const std::vector<std::uint8_t>& covered, NormalSpace space) {
-  constexpr int rounds = 6;
-  SeamSolver solver(seams, covered, space);
-  for (int round = 0; round < rounds; ++round) {
-    if (round > 0) solver.reweigh(seams.degrees_at(solver.points(), map, space));
-    solver.equalise(map);
-    normalise(map, space);
-  }
 }
 
 /// Largest and root mean square angle between two maps over the covered texels that differ.
@@ -198,7 +186,8 @@ void measure_maps(const MapVersions& map, const Seams& seams, const TriangleMesh
 }  // namespace
 
 NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, const NormalsSettings& settings,
-                           const AssetHints& hints, const ProgressFunction& progress, const SurfaceAlbedo& albedo) {
+                           const AssetHints& hints, const ProgressFunction& progress, const SurfaceAlbedo& albedo,
+                           const MaterialIds& materials) {
   const Stopwatch stopwatch;
   if (high.triangles.empty() || high.normals.size() != high.positions.size())
     throw std::invalid_argument("make_normals: a high mesh with normals is needed");
@@ -223,7 +212,7 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
 
   // Step 3: find a high point and normal for each texel.
   TexelMatches matches = match_texels({high, scene, albedo, is_buried}, atlas, raster, limits, settings.samples,
-                                      settings.fit, part_of(progress, 0, 0.9));
+                                      settings.fit, part_of(progress, 0, settings.maps.kinds.empty() ? 0.9 : 0.3));
   const std::vector<std::uint8_t> covered = coverage_of(raster);
   result.position = matches.position;
   Image<std::uint8_t> ways = matches.way;
@@ -237,7 +226,8 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   Image<float> map = normal_map(matches.normal_object, settings.space, atlas, matches.known);
   const Image<float> kept = map;
   const Seams seams(atlas, size.width, size.height);
-  if (settings.seams == SeamChoice::equalise && !seams.edges().empty()) equalise(map, seams, covered, settings.space);
+  if (settings.seams == SeamChoice::equalise && !seams.edges().empty())
+    equalise_normals(map, seams, covered, settings.space);
   result.normal = quantise_normals(map);
   result.coverage = Image<std::uint8_t>(size.width, size.height, 1);
   std::transform(covered.begin(), covered.end(), result.coverage.values().begin(),
@@ -247,10 +237,22 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   if (!albedo.is_constant())
     result.albedo_map =
         make_albedo_map(std::move(matches.albedo), coverage_of(matches.known), covered, seams, settings.seams);
+
+  // Step 5: make further maps.
+  if (!settings.maps.kinds.empty()) {
+    const double seconds_before = stopwatch.seconds();
+    std::vector<std::uint8_t> seen(covered);
+    for (std::size_t texel = 0; texel < seen.size(); ++texel)
+      if (ways.values()[texel] == static_cast<std::uint8_t>(TexelWay::buried)) seen[texel] = 0;
+    result.maps = make_maps({high, scene, atlas, raster, matches.position, matches.normal_object, seen, seams,
+                             settings.seams, settings.space, materials},
+                            settings.maps, part_of(progress, 0.4, 1));
+    result.map_seconds = stopwatch.seconds() - seconds_before;
+  }
   result.seconds = stopwatch.seconds();
   progress(1);
 
-  // Step 5: measure what is written.
+  // Step 6: measure what is written.
   count_ways(matches, raster, result);
   result.cage_distance = distance * high.frame.unit();
   result.mean_distance = matches.mean_distance / diagonal;
@@ -297,6 +299,7 @@ Json NormalsResult::to_json() const {
           {"seam_mismatch_degrees_mean", seam_after.mean},
           {"seam_mismatch_degrees_max", seam_after.largest},
           {"seam_change_degrees_rms", seam_change_degrees_rms},
+          {"map_seconds", map_seconds},
           {"measuring_seconds", measuring_seconds}};
 }
 

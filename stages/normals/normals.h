@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/json_fwd.h"
 #include "base/progress.h"
@@ -15,6 +16,7 @@
 #include "mesh/triangle_mesh.h"
 #include "normals/albedo_map.h"
 #include "normals/map_error.h"
+#include "normals/map_set.h"
 #include "normals/normals_settings.h"
 
 namespace kiln {
@@ -27,6 +29,9 @@ struct NormalsResult {
 
   SurfaceAlbedo albedo;                 ///< albedo of the high mesh
   std::optional<AlbedoMap> albedo_map;  ///< only where the albedo is not constant
+
+  std::vector<SurfaceMap> maps;  ///< further maps that the settings name
+  double map_seconds = 0;        ///< part of the time spent on these
 
   NormalSpace space = NormalSpace::object;
   std::int64_t covered_texels = 0;
@@ -56,10 +61,11 @@ struct NormalsResult {
 /// Finds, for every texel of the atlas, the point of the high mesh that it stands for (match_surface), and the high
 /// mesh's normal there. `high` has normals; `atlas` is atlas.drc decoded, with normals and uvs (throws
 /// std::invalid_argument otherwise). Progress reaches 1 when the maps are made, before they are measured. `hints`
-/// replace settings that are left automatic. `albedo` is that of `high`. Throws WrongUsage where the texture is too
+/// replace settings that are left automatic. `albedo` is that of `high`, and so are `materials`, which only a map of
+/// them needs. Throws WrongUsage where the texture is too
 /// small for the atlas to cover a texel.
 NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, const NormalsSettings& settings,
                            const AssetHints& hints = {}, const ProgressFunction& progress = no_progress,
-                           const SurfaceAlbedo& albedo = {});
+                           const SurfaceAlbedo& albedo = {}, const MaterialIds& materials = {});
 
 }  // namespace kiln

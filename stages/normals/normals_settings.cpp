@@ -23,6 +23,7 @@ OptionSet normals_options(NormalsSettings& settings) {
       "cage", settings.cage, 0, 1,
       "How far rays look for the high mesh, outwards and inwards, as a fraction of its bounding box's diagonal; "
       "0 is twice the Hausdorff distance in simplify.json beside the atlas, or twice a measured one without it");
+  add_map_options(options, settings.maps);
   add_material_options(options, settings.material);
   add_import_options(options, settings.import);
   return options;

@@ -7,6 +7,7 @@
 #include "maps/normal_space.h"
 #include "maps/seam_choice.h"
 #include "material/material_settings.h"
+#include "normals/map_settings.h"
 
 namespace kiln {
 
@@ -18,6 +19,7 @@ struct NormalsSettings {
   SeamChoice seams = SeamChoice::equalise;
   MaterialSettings material = {};  ///< reflectance of the high mesh
   ImportSettings import = {};      ///< how the high mesh is read
+  MapSettings maps = {};           ///< further maps
   double cage = 0;  ///< length of rays each way, as a fraction of the high mesh's bounding box diagonal; 0: automatic
 };
 

@@ -17,7 +17,7 @@ constexpr const char* metric_names =
     "normal_deviation_degrees_largest "
     "quantisation_degrees_largest map_error_degrees_mean map_error_degrees_p95 map_error_degrees_max seam_edges "
     "seam_mismatch_degrees_mean_before seam_mismatch_degrees_max_before seam_mismatch_degrees_mean "
-    "seam_mismatch_degrees_max seam_change_degrees_rms measuring_seconds albedo.error_rms albedo.error_p95 "
+    "seam_mismatch_degrees_max seam_change_degrees_rms map_seconds measuring_seconds albedo.error_rms albedo.error_p95 "
     "albedo.seam_mismatch_mean_before albedo.seam_mismatch_max_before albedo.seam_mismatch_mean "
     "albedo.seam_mismatch_max";
 
@@ -30,6 +30,10 @@ StageRun run(const AssetPlan& plan) {
   run.outputs = {layout::record(plan.folder, "normals")};
   for (const char* name : {layout::normal_map, layout::position_map, layout::coverage_map, layout::match_map})
     run.outputs.push_back(folder / name);
+  const MapSettings maps = settings_from(plan.settings_of("normals"), normals_options).maps;
+  for (const MapKind kind : maps.kinds)
+    if (const fs::path file = folder / map_file(kind, maps.format); file.filename() != layout::position_map)
+      run.outputs.push_back(file);
   run.add_settings(options(), plan.settings_of("normals"));
   return run;
 }

@@ -102,7 +102,7 @@ void TexelSamples::try_triangle(std::uint32_t triangle) {
     const Ints take = (of_a >= 0) & (of_b >= 0) & (of_c >= 0) & (sum > 0) & (distance_times_sum <= reach_ * sum) &
                       (-distance_times_sum <= reach_ * sum) & pending;
     if ((take[0] | take[1] | take[2] | take[3]) == 0) continue;
-    const Floats scale = 1 / (take ? sum : sum - sum + 1);
+    const Floats scale = 1 / (take ? sum : Floats{} + 1);
     for (int axis = 0; axis < 3; ++axis) {
       float* found = &found_.vectors(k, axis);
       const Floats normal = (of_a * n0[axis] + of_b * n1[axis] + of_c * n2[axis]) * scale;

@@ -2,6 +2,7 @@
 #include "report/page.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -237,6 +238,31 @@ bool has_albedo_map(const Json& normals) {
   return normals.contains("albedo") && normals["albedo"].contains("error_rms");
 }
 
+/// Makes the figures of the further maps that the record of the normals stage names, each with what its ends mean.
+std::string map_figures(const Json& normals, const fs::path& folder, const fs::path& scratch) {
+  constexpr std::array<std::pair<const char*, const char*>, 7> titles = {{{"ao", "Ambient occlusion"},
+                                                                          {"bent-normal", "Bent normals"},
+                                                                          {"thickness", "Thickness"},
+                                                                          {"curvature", "Curvature"},
+                                                                          {"height", "Height"},
+                                                                          {"position", "Position"},
+                                                                          {"material", "Materials"}}};
+  std::string html;
+  const Json maps = normals.value("map_files", Json::object());
+  for (const auto& [name, title] : titles) {
+    if (!maps.contains(name)) continue;
+    const Json& map = maps.at(name);
+    const fs::path file = folder / map.at("file").get<std::string>();
+    if (!map.contains("bits") || !fs::exists(file)) continue;  // EXR files are for programs
+    std::string means = fmt::format("{} to {}", rounded(map.value("min", 0.0), 3), rounded(map.value("max", 1.0), 3));
+    if (map.contains("colors")) means = fmt::format("{} of them", map.at("colors").size());
+    if (map.contains("unit")) means += map.at("unit") == "length" ? " of the mesh's units" : " over the mesh's unit";
+    html += figure(image(thumbnail(file, map.at("bits"), texture_pixels), title, scratch),
+                   fmt::format("<b>{}</b> · {}; {} bits", title, means, map.at("bits").get<int>()));
+  }
+  return html;
+}
+
 std::string textures_section(const AssetFolder& asset, const fs::path& scratch) {
   const Json& normals = asset.record("normals");
   const auto value = [](const Json& record, const char* key) {
@@ -263,6 +289,7 @@ std::string textures_section(const AssetFolder& asset, const fs::path& scratch) 
                            html_escaped(normals["albedo"].value("source", "")), value(normals["albedo"], "error_rms")));
   if (const fs::path match = layout::stage_folder(asset.folder, "normals") / layout::match_map; fs::exists(match))
     html += match_figure(match, scratch);
+  html += map_figures(normals, layout::stage_folder(asset.folder, "normals"), scratch);
   return html + "</div></section>\n";
 }
 

@@ -74,7 +74,7 @@ std::vector<VertexPair> surviving_edges(const CollapseSequence& sequence, std::s
   std::vector<VertexPair> left;
   for (const auto& [a, b] : edges)
     if (now[a] != now[b] && new_index[now[a]] != none && new_index[now[b]] != none)
-      left.push_back(std::minmax(new_index[now[a]], new_index[now[b]]));
+      left.emplace_back(std::minmax(new_index[now[a]], new_index[now[b]]));
   std::sort(left.begin(), left.end());
   left.erase(std::unique(left.begin(), left.end()), left.end());
   return left;

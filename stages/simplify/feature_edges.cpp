@@ -48,7 +48,7 @@ std::vector<VertexPair> find_feature_edges(const TriangleMesh& mesh, double crea
     return smallest_cosine > -2 && unit_normal(mesh, one).dot(unit_normal(mesh, other)) < smallest_cosine;
   };
   std::vector<VertexPair> wanted;
-  for (const auto& [a, b] : given) wanted.push_back(std::minmax(a, b));
+  for (const auto& [a, b] : given) wanted.emplace_back(std::minmax(a, b));
   std::sort(wanted.begin(), wanted.end());
   std::vector<VertexPair> found;
   TriangleEdges(mesh.triangles).for_each([&](std::span<const std::uint32_t> sides) {

@@ -29,7 +29,7 @@ using Vector9 = Eigen::Matrix<double, 9, 1>;
 TriangleMesh in_frame(const TriangleMesh& mesh, const UnitFrame& frame) {
   TriangleMesh result;
   result.triangles = mesh.triangles;
-  for (const Eigen::Vector3f& p : mesh.positions) result.positions.push_back(frame.from_object(p).cast<float>());
+  for (const Eigen::Vector3f& p : mesh.positions) result.positions.emplace_back(frame.from_object(p).cast<float>());
   return result;
 }
 
@@ -135,7 +135,7 @@ class Fit {
     const std::size_t step = 1 + vertex_normals.size() / (2 * static_cast<std::size_t>(sample_count_));
     for (std::size_t i = 0; i < vertex_normals.size(); i += step) {
       if (!(vertex_normals[i].squaredNorm() > 0)) continue;
-      samples_.push_back(high_.positions[i].cast<double>());
+      samples_.emplace_back(high_.positions[i].cast<double>());
       sample_normals_.push_back(vertex_normals[i]);
     }
     sample_hints_.resize(samples_.size(), 0);
@@ -175,7 +175,7 @@ class Fit {
   TriangleMesh low_mesh() const {
     TriangleMesh mesh;
     mesh.triangles = triangles_;
-    for (const Vector& p : positions_) mesh.positions.push_back(p.cast<float>());
+    for (const Vector& p : positions_) mesh.positions.emplace_back(p.cast<float>());
     return mesh;
   }
 

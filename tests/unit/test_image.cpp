@@ -57,6 +57,21 @@ TEST_F(ImageFile, PngsComeBackBitByBit) {
   }
 }
 
+TEST_F(ImageFile, EightBitsSpreadOverSixteen) {
+  const Image<std::uint8_t> eight = noise<std::uint8_t>(7, 5, 3, 1);
+  write_png(folder_ / "eight.png", eight);
+  int bits = 0;
+  const Image<std::uint16_t> wide = read_png_as16(folder_ / "eight.png", &bits);
+  EXPECT_EQ(bits, 8);
+  ASSERT_EQ(wide.values().size(), eight.values().size());
+  for (std::size_t k = 0; k < wide.values().size(); ++k) EXPECT_EQ(wide.values()[k] * 255, eight.values()[k] * 65535);
+
+  const Image<std::uint16_t> sixteen = noise<std::uint16_t>(7, 5, 3, 2);
+  write_png(folder_ / "sixteen.png", sixteen);
+  expect_same(sixteen, read_png_as16(folder_ / "sixteen.png", &bits));
+  EXPECT_EQ(bits, 16);
+}
+
 /// Lists the chunks of a PNG in order: kind and body.
 std::vector<std::pair<std::string, std::string>> png_chunks(const std::string& bytes) {
   std::vector<std::pair<std::string, std::string>> chunks;

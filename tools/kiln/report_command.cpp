@@ -88,7 +88,7 @@ int report_on(const Pipeline& pipeline, const std::vector<const Asset*>& assets,
   for (const Asset* asset : assets) gate.assets.push_back(read_asset_gate(asset->name, output / asset->name));
   gate.has_baseline = !settings.baseline.empty();
   gate.settings.same_run = settings.same_run;
-  if (gate.assets.empty()) gate.faults.push_back("there is no asset to report on");
+  if (gate.assets.empty()) gate.faults.emplace_back("there is no asset to report on");
   if (gate.has_baseline) compare(gate, output, settings.baseline);
   save(gate, output, settings.always);
   tell(gate);

@@ -147,8 +147,8 @@ std::string stage_of_metric(const std::string& metric) { return metric.substr(0,
 
 std::vector<std::string> names_of_blocks() {
   std::vector<std::string> names = stage_names();
-  names.push_back("material");
-  names.push_back("import");
+  names.emplace_back("material");
+  names.emplace_back("import");
   return names;
 }
 

@@ -106,7 +106,7 @@ ProcessEnd run_command(const StagePlan& plan, std::vector<std::string> command, 
     };
   if (!resumes) return run_process(command, settings);
   std::fprintf(stderr, "[%s] %s goes on from its checkpoint\n", plan.asset.c_str(), plan.run.name.c_str());
-  command.push_back("--resume");
+  command.emplace_back("--resume");
   const ProcessEnd end = run_process(command, settings);
   if (end.exit_status != static_cast<int>(ExitCode::bad_input)) return end;
   // The checkpoint is damaged, or of another backend.

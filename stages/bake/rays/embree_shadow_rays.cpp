@@ -46,7 +46,7 @@ ShadowRays make_shadow_rays(const TransferScene& scene, float ray_offset) {
       std::vector<Eigen::Vector3f> origins;
       origins.reserve(query.receivers.size());
       for (std::uint32_t r : query.receivers)
-        origins.push_back(receivers.positions[r] + ray_offset * receivers.normals[r]);
+        origins.emplace_back(receivers.positions[r] + ray_offset * receivers.normals[r]);
       tree.occluded(origins, query.direction, 0.f, query.occluded);
     });
   };

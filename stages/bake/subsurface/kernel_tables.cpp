@@ -110,7 +110,7 @@ void KernelTables::density(float squared_distance, float* values) const {
   const std::int64_t row = octave * parts + ((bits >> (mantissa_bits - part_bits)) & (parts - 1));
   float fraction = static_cast<float>(bits & ((1u << (mantissa_bits - part_bits)) - 1)) /
                    static_cast<float>(1u << (mantissa_bits - part_bits));
-  std::size_t at = static_cast<std::size_t>(row);
+  auto at = static_cast<std::size_t>(row);
   if (row < 0) {
     at = 0;
     fraction = 0;

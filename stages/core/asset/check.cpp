@@ -71,7 +71,7 @@ class FileCheck {
 
   void check_normals() {
     const fs::path file = folder_ / asset_.normals_file;
-    faults_.guard([&] { require_picture(read_png16(file), file, asset_.width, asset_.height, 3, remedy_); });
+    faults_.guard([&] { require_picture(read_png_as16(file), file, asset_.width, asset_.height, 3, remedy_); });
   }
 
   void check_planes() {

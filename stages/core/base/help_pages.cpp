@@ -44,7 +44,7 @@ std::vector<std::string> names_of(const CLI::Option& option) {
 /// Finds the words that an option takes, if its help ends in a list of them: "(default auto; auto, egl or beams)" or
 /// "The last stage: simplify, atlas, normals".
 std::vector<std::string> words_of(const CLI::Option& option) {
-  const std::string help = option.get_description();
+  const std::string& help = option.get_description();
   std::smatch found;
   static const std::regex list(
       R"((?:; ([a-z0-9-]+(?:, [a-z0-9-]+)* or [a-z0-9-]+)\)|: ([a-z0-9-]+(?:, [a-z0-9-]+){2,}))$)");
@@ -93,7 +93,7 @@ void add_man_options(const CLI::App& app, std::string& page) {
 }
 
 std::string man_page(const CLI::App& app) {
-  const std::string name = app.get_name();
+  const std::string& name = app.get_name();
   std::string inputs;
   for (const CLI::Option* option : shown_options(app))
     if (option->get_positional())

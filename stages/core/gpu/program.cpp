@@ -54,13 +54,13 @@ GlProgram load_program(std::initializer_list<std::string_view> files, const Shad
     if (good == 0) glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
     glAttachShader(program.name(), shader);
     glDeleteShader(shader);
-    if (good == 0) throw std::runtime_error("shader " + std::string(file) + " does not compile: " + log.c_str());
+    if (good == 0) throw std::runtime_error("shader " + std::string(file) + " does not compile: " + log);
   }
   glLinkProgram(program.name());
   glGetProgramiv(program.name(), GL_LINK_STATUS, &good);
   if (good == 0) {
     glGetProgramInfoLog(program.name(), static_cast<GLsizei>(log.size()), nullptr, log.data());
-    throw std::runtime_error("shader " + std::string(*files.begin()) + " does not link: " + log.c_str());
+    throw std::runtime_error("shader " + std::string(*files.begin()) + " does not link: " + log);
   }
   return program;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "image/image_file.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cerrno>
 #include <fstream>
@@ -128,19 +129,34 @@ Image<T> three_channels(const Image<T>& image) {
 
 constexpr char whole_png[] = "a whole PNG";
 
+/// PNG file in memory.
+struct PngFile {
+  std::string bytes;
+  std::unique_ptr<PngInput> input;
+};
+
+/// Opens a PNG without a palette; `expected` is for messages.
+PngFile open_png_file(const std::filesystem::path& file, const std::string& expected) {
+  check_present(file, expected);
+  PngFile png{read_text(file), nullptr};
+  std::string fault;
+  png.input = open_png(png.bytes, fault);
+  if (!png.input) fail_reading(file.string(), fault, whole_png);
+  if (png.input->has_palette()) fail_reading(file.string(), "a PNG with a palette", expected);
+  return png;
+}
+
+[[noreturn]] void refuse_bits(const std::filesystem::path& file, int bits, const std::string& expected) {
+  fail_reading(file.string(), "a PNG of " + std::to_string(bits) + " bits per channel", expected);
+}
+
 template <class T>
 Image<T> read_png_of(const std::filesystem::path& file) {
   const int bits = 8 * static_cast<int>(sizeof(T));
   const std::string expected = "a PNG of " + std::to_string(bits) + " bits per channel";
-  check_present(file, expected);
-  const std::string bytes = read_text(file);
-  std::string fault;
-  const std::unique_ptr<PngInput> input = open_png(bytes, fault);
-  if (!input) fail_reading(file.string(), fault, whole_png);
-  if (input->has_palette()) fail_reading(file.string(), "a PNG with a palette", expected);
-  if (input->stored_bits() != bits)
-    fail_reading(file.string(), "a PNG of " + std::to_string(input->stored_bits()) + " bits per channel", expected);
-  return read_pixels<T>(file.string(), *input, whole_png);
+  const PngFile png = open_png_file(file, expected);
+  if (png.input->stored_bits() != bits) refuse_bits(file, png.input->stored_bits(), expected);
+  return read_pixels<T>(file.string(), *png.input, whole_png);
 }
 
 /// Picture that has been opened, and the bytes that it is read from.
@@ -190,6 +206,20 @@ void write_exr(const std::filesystem::path& file, const Image<float>& image) {
 Image<std::uint8_t> read_png8(const std::filesystem::path& file) { return read_png_of<std::uint8_t>(file); }
 
 Image<std::uint16_t> read_png16(const std::filesystem::path& file) { return read_png_of<std::uint16_t>(file); }
+
+Image<std::uint16_t> read_png_as16(const std::filesystem::path& file, int* bits) {
+  const std::string expected = "a PNG of 8 or 16 bits per channel";
+  const PngFile png = open_png_file(file, expected);
+  const int stored = png.input->stored_bits();
+  if (bits != nullptr) *bits = stored;
+  if (stored == 16) return read_pixels<std::uint16_t>(file.string(), *png.input, whole_png);
+  if (stored != 8) refuse_bits(file, stored, expected);
+  const Image<std::uint8_t> narrow = read_pixels<std::uint8_t>(file.string(), *png.input, whole_png);
+  Image<std::uint16_t> wide(narrow.width(), narrow.height(), narrow.channels());
+  std::transform(narrow.values().begin(), narrow.values().end(), wide.values().begin(),
+                 [](std::uint8_t value) { return static_cast<std::uint16_t>(257 * value); });
+  return wide;
+}
 
 Image<float> read_float_image(const std::filesystem::path& file) {
   const std::string expected = "an OpenEXR or Radiance HDR picture";

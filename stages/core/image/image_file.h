@@ -24,6 +24,10 @@ void write_exr(const std::filesystem::path& file, const Image<float>& image);
 Image<std::uint8_t> read_png8(const std::filesystem::path& file);
 Image<std::uint16_t> read_png16(const std::filesystem::path& file);
 
+/// Reads a PNG of 8 or 16 bits per channel as 16: 255 becomes 65,535. Sets `bits`, if given, to those of the file.
+/// Throws BadInput where it is not a whole PNG of either.
+Image<std::uint16_t> read_png_as16(const std::filesystem::path& file, int* bits = nullptr);
+
 /// Reads EXR or HDR (Radiance) as floats. Throws BadInput.
 Image<float> read_float_image(const std::filesystem::path& file);
 

@@ -43,15 +43,15 @@ void read_attributes(const draco::Mesh& source, SourceMesh& mesh) {
   if (const auto* positions = source.GetNamedAttribute(GeometryAttribute::POSITION))
     for_each_value<3>(source, *positions, [&](const Eigen::Vector3d& value) { mesh.places.push_back(value); });
   if (const auto* normals = source.GetNamedAttribute(GeometryAttribute::NORMAL))
-    for_each_value<3>(source, *normals, [&](const Eigen::Vector3d& v) { mesh.normals.push_back(v.cast<float>()); });
+    for_each_value<3>(source, *normals, [&](const Eigen::Vector3d& v) { mesh.normals.emplace_back(v.cast<float>()); });
   if (const auto* uvs = source.GetNamedAttribute(GeometryAttribute::TEX_COORD))
-    for_each_value<2>(source, *uvs, [&](const Eigen::Vector2d& value) { mesh.uvs.push_back(value.cast<float>()); });
+    for_each_value<2>(source, *uvs, [&](const Eigen::Vector2d& value) { mesh.uvs.emplace_back(value.cast<float>()); });
   if (const auto* colors = source.GetNamedAttribute(GeometryAttribute::COLOR)) {
     const bool is_grey = colors->num_components() < 3;
     const double range = color_range(*colors);
     for_each_value<3>(source, *colors, [&](const Eigen::Vector3d& value) {
       const Eigen::Vector3d color = is_grey ? Eigen::Vector3d::Constant(value[0]) : value;
-      mesh.colors.push_back((color / range).cwiseMax(0).cwiseMin(1).cast<float>());
+      mesh.colors.emplace_back((color / range).cwiseMax(0).cwiseMin(1).cast<float>());
     });
   }
 }

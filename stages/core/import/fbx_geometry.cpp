@@ -161,7 +161,7 @@ class GeometryReader {
     if (layer == nullptr) return;
     const std::vector<double> numbers = values(*layer, "Colors", 4);
     for (std::size_t i = 0; i < numbers.size(); i += 4)
-      result_.colors.push_back(Eigen::Vector3d(numbers[i], numbers[i + 1], numbers[i + 2]).cast<float>());
+      result_.colors.emplace_back(Eigen::Vector3d(numbers[i], numbers[i + 1], numbers[i + 2]).cast<float>());
     if (result_.colors.empty()) return;
     map(*layer, "ColorIndex", result_.colors.size(), &FbxGeometry::Corner::color);
     require_finite(result_.colors, &FbxGeometry::Corner::color, "Colors");

@@ -105,7 +105,8 @@ class FbxReader {
     }
     const double centimetres = settings.number("UnitScaleFactor").value_or(1);
     if (centimetres == 1)
-      mesh_.warnings.push_back("The file's unit is the centimetre, and its numbers are kept: --unit cm gives metres");
+      mesh_.warnings.emplace_back(
+          "The file's unit is the centimetre, and its numbers are kept: --unit cm gives metres");
     else if (centimetres != 100) {
       std::ostringstream text;
       text << "The file's unit is " << centimetres << " cm, and its numbers are kept";
@@ -139,11 +140,12 @@ class FbxReader {
       if (chain.size() > objects_.all().size())
         document_.fail("model '" + model.name() + "' is beneath itself", "models that form a tree");
     }
-    for (auto link = chain.rbegin(); link != chain.rend(); ++link) {
-      const FbxProperties properties = objects_.properties(**link);
-      const Object* parent = parent_of(**link);
+    std::reverse(chain.begin(), chain.end());
+    for (const Object* link : chain) {
+      const FbxProperties properties = objects_.properties(*link);
+      const Object* parent = parent_of(*link);
       const Eigen::Matrix4d above = parent == nullptr ? axes_ : worlds_.at(parent->id);
-      worlds_[(*link)->id] = above * local_transform(properties);
+      worlds_[link->id] = above * local_transform(properties);
       if (parent == nullptr) continue;
       // Models of other types than RSrs (1) ignore a part of their parents' scaling.
       const Vector scaling = objects_.properties(*parent).vector("Lcl Scaling").value_or(Vector::Ones());
@@ -231,7 +233,7 @@ class FbxReader {
       const auto [place, is_new] =
           place_of.try_emplace(std::uint64_t{corner.vertex} << 32 | corner.color, mesh_.places.size());
       if (is_new) {
-        mesh_.places.push_back(Vector(mesh_.places[own]));
+        mesh_.places.emplace_back(mesh_.places[own]);
         mesh_.colors.push_back(color);
         mesh_.is_unwelded = true;
       }

@@ -162,7 +162,7 @@ class PrimitiveReader {
         result_.uvs.emplace_back(static_cast<float>(uvs->value(vertex, 0)),
                                  static_cast<float>(1 - uvs->value(vertex, 1)));
     if (const GltfAccessor* colors = optional_attribute("COLOR_0", 3, 4))
-      for (const std::uint32_t vertex : used) result_.colors.push_back(vector3(*colors, vertex).cast<float>());
+      for (const std::uint32_t vertex : used) result_.colors.emplace_back(vector3(*colors, vertex).cast<float>());
     for (const Eigen::Vector3d& position : result_.positions)
       result_.largest = std::max(result_.largest, position.cwiseAbs().maxCoeff());
     read_joints();

@@ -104,7 +104,7 @@ class SceneAssembler {
   void add_colors(const GltfPrimitive& primitive) {
     if (primitive.colors.empty() && mesh_.colors.empty()) return;
     mesh_.colors.resize(first_place_, Eigen::Vector3f::Ones());
-    for (const Eigen::Vector3f& color : primitive.colors) mesh_.colors.push_back(color.cwiseMax(0).cwiseMin(1));
+    for (const Eigen::Vector3f& color : primitive.colors) mesh_.colors.emplace_back(color.cwiseMax(0).cwiseMin(1));
     mesh_.colors.resize(mesh_.places.size(), Eigen::Vector3f::Ones());
   }
 

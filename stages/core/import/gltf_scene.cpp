@@ -42,7 +42,7 @@ class SceneReader {
         std::any_of(nodes_.begin(), nodes_.end(), [](const Node& node) { return node.mesh != no_node; });
     if (!has_placed_meshes) {
       for (std::size_t mesh = 0; mesh < document_.count("meshes"); ++mesh) place(mesh, Eigen::Matrix4d::Identity(), {});
-      if (!placements_.empty()) warnings.push_back("No node places a mesh, so all meshes are read as they are");
+      if (!placements_.empty()) warnings.emplace_back("No node places a mesh, so all meshes are read as they are");
     }
     if (skinned_ > 0)
       warnings.push_back(std::to_string(skinned_) + (skinned_ == 1 ? " skinned mesh" : " skinned meshes") +

@@ -111,13 +111,12 @@ void set_normals(TriangleMesh& mesh, const CornerAttributes& attributes, const N
   if (choice.kind == Kind::file && !attributes.has_normals())
     throw BadInput(name, "has no normals", "a file with normals, as --normals file asks for",
                    "export them, or leave --normals out");
+  const bool asks_file = choice.kind != Kind::smooth;
   if (choice.kind == Kind::angle) {
     compute_normals_between(mesh, hard_edges_by_angle(mesh, choice.degrees));
-  } else if (choice.kind == Kind::smooth) {
-    compute_vertex_normals(mesh);
-  } else if (attributes.has_normals()) {
+  } else if (asks_file && attributes.has_normals()) {
     take_file_normals(mesh, attributes, warnings);
-  } else if (attributes.has_smoothing_groups()) {
+  } else if (asks_file && attributes.has_smoothing_groups()) {
     compute_normals_between(mesh, hard_edges_of_groups(mesh, attributes.smoothing_groups()));
   } else {
     compute_vertex_normals(mesh);

@@ -92,7 +92,7 @@ void ObjColors::scale(std::vector<std::string>& warnings) {
   if (std::all_of(colors_.begin(), colors_.end(), are_bytes)) {
     for (std::size_t k = 0; k < colors_.size(); ++k)
       if (has_color_[k]) colors_[k] /= 255;
-    warnings.push_back("vertex colours are whole numbers up to 255, and taken for bytes: 255 is 1");
+    warnings.emplace_back("vertex colours are whole numbers up to 255, and taken for bytes: 255 is 1");
     return;
   }
   for (Eigen::Vector3f& color : colors_)
@@ -103,7 +103,7 @@ void ObjColors::scale(std::vector<std::string>& warnings) {
 std::vector<Eigen::Vector3f> ObjColors::finish(const std::vector<bool>& is_used, std::vector<std::string>& warnings) {
   if (!colors_.empty()) {
     scale(warnings);
-    if (!polypaint_.empty()) warnings.push_back("polypaint (#MRGB) is not used beside the colours on vertex lines");
+    if (!polypaint_.empty()) warnings.emplace_back("polypaint (#MRGB) is not used beside the colours on vertex lines");
   } else if (!polypaint_.empty()) {
     take_polypaint(is_used.size(), warnings);
   }

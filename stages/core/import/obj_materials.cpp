@@ -171,7 +171,7 @@ std::vector<std::int32_t> ObjMaterials::read_used(const fs::path& file, const st
     if (material == nullptr)
       throw BadInput(file.string(), "uses the material " + shown(unquoted(names_[k])),
                      "one that its material library has", "export the materials again, or give --albedo a number");
-    if (material->fault) throw *material->fault;
+    if (material->fault) throw BadInput(*material->fault);
     const auto [found, inserted] = numbers.try_emplace(material, static_cast<std::int32_t>(mesh.materials.size()));
     number_of[k] = found->second;
     if (!inserted) continue;

@@ -36,12 +36,13 @@ class OffHeaderReader {
  private:
   /// Reads the keyword; returns the word after it on the same line, or the number attached to it.
   std::string_view read_keyword(std::string_view word) {
-    const auto end = std::ranges::search(word, std::string_view("OFF"), [](char a, char b) {
+    constexpr std::string_view keyword = "OFF";
+    const auto* const end = std::search(word.begin(), word.end(), keyword.begin(), keyword.end(), [](char a, char b) {
       return same_word({&a, 1}, {&b, 1});
     });
-    const auto prefix = word.substr(0, static_cast<std::size_t>(end.begin() - word.begin()));
+    const auto prefix = word.substr(0, static_cast<std::size_t>(end - word.begin()));
     std::string_view stuck = word.substr(std::min(prefix.size() + 3, word.size()));
-    if (end.empty() || !read_prefix(prefix, word) || (!stuck.empty() && !parse_integer(stuck)))
+    if (end == word.end() || !read_prefix(prefix, word) || (!stuck.empty() && !parse_integer(stuck)))
       throw BadInput(words_.where(), "begins with " + in_quotes(word), "an OFF file, whose first word is 'OFF'",
                      "check what file it is");
     if (!stuck.empty()) return stuck;

@@ -28,8 +28,9 @@ constexpr std::size_t stl_header_size = 84, record_size = 50;
 
 /// Tells whether a text begins with a word, in any case of letters.
 bool has_word(std::string_view text, std::string_view word) {
-  const auto found = std::ranges::search(text, word, [](char a, char b) { return same_word({&a, 1}, {&b, 1}); });
-  return !found.empty();
+  return std::search(text.begin(), text.end(), word.begin(), word.end(), [](char a, char b) {
+           return same_word({&a, 1}, {&b, 1});
+         }) != text.end();
 }
 
 std::string triangle_name(std::size_t triangle, std::size_t count) {

@@ -85,7 +85,7 @@ void use_face_colors(SourceMesh& mesh, const std::vector<Eigen::Vector3f>& color
                             " lie outside 0 to 1 and were brought inside");
   if (assign_materials(mesh, colors, place, false)) return;
   assign_materials(mesh, colors, place, true);
-  mesh.warnings.push_back(
+  mesh.warnings.emplace_back(
       "the faces have more than 65536 colours, which were rounded to 32 steps of red, green and blue");
 }
 

@@ -29,7 +29,7 @@ TriangleMesh ground_square(const Eigen::Vector3d& centre, double half_size) {
   TriangleMesh mesh;
   mesh.frame.origin = centre;
   for (const auto& [x, z] : {std::pair(-1, 1), std::pair(1, 1), std::pair(1, -1), std::pair(-1, -1)})
-    mesh.positions.push_back((half_size * Eigen::Vector3d(x, 0, z)).cast<float>());
+    mesh.positions.emplace_back((half_size * Eigen::Vector3d(x, 0, z)).cast<float>());
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   compute_vertex_normals(mesh);
   return mesh;

@@ -38,7 +38,7 @@ SampledSurface to_sampled(const TriangleMesh& mesh) {
     surface.area_up_to.push_back(area);
   }
   for (std::uint32_t i = 0; i < used.size(); ++i)
-    if (used[i]) surface.vertices.push_back(mesh.positions[i].cast<double>());
+    if (used[i]) surface.vertices.emplace_back(mesh.positions[i].cast<double>());
   return surface;
 }
 
@@ -72,7 +72,7 @@ struct OneWay {
 };
 
 OneWay distance_to(const SampledSurface& from, const NearestSurface& to, const MeshDistanceSettings& settings) {
-  const std::uint64_t samples = static_cast<std::uint64_t>(settings.samples);
+  const auto samples = static_cast<std::uint64_t>(settings.samples);
   const std::size_t points = samples + from.vertices.size();
   // Chunks of a fixed size, summed in order, make the result independent of the threads.
   constexpr std::size_t chunk_points = 512;

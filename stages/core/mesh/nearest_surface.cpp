@@ -268,7 +268,7 @@ NearestSurface::Hit NearestSurface::nearest(const Eigen::Vector3d& point, std::u
 std::optional<NearestSurface::Hit> NearestSurface::nearest_facing(const Eigen::Vector3d& point, const Facing& facing,
                                                                   std::uint32_t hint) const {
   const Eigen::Vector3f normal = facing.normal.normalized().cast<float>();
-  const float smallest = static_cast<float>(facing.smallest_cosine);
+  const auto smallest = static_cast<float>(facing.smallest_cosine);
   constexpr float rounding = 1e-4f;  // slack for rounding of cones
   constexpr std::uint32_t none = ~0u;
   Hit hit;

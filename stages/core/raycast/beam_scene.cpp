@@ -35,9 +35,9 @@ Neighbours neighbours_of(std::span<const Triangle> triangles, std::span<const Tr
   Neighbours neighbours;
   neighbours.across.assign(triangles.size(), {no_neighbour, no_neighbour, no_neighbour});
   TriangleEdges(welded).for_each([&](std::span<const std::uint32_t> sides) {
-    const auto [low, high] = edge_at(welded, sides[0]);
-    if (low == high) return;
-    const auto is_forwards = [&](std::uint32_t side) { return vertex_at(welded, side) == low; };
+    const EdgeKey edge = edge_at(welded, sides[0]);
+    if (edge.first == edge.second) return;
+    const auto is_forwards = [&](std::uint32_t side) { return vertex_at(welded, side) == edge.first; };
     std::int64_t surplus = 0;
     for (const std::uint32_t side : sides) surplus += is_forwards(side) ? 1 : -1;
     if (surplus != 0) {

@@ -153,31 +153,57 @@ SurfacePoint RayScene::first_hit(const Eigen::Vector3f& origin, const Eigen::Vec
   return {query.hit.primID, query.hit.u, query.hit.v, query.ray.tfar};
 }
 
+namespace {
+
+/// Sixteen parallel rays for rtcIntersect16.
+struct RayPacket {
+  alignas(64) int valid[RayScene::PacketHits::lanes];
+  RTCRayHit16 query;
+
+  RayPacket(const float (&origin)[3][RayScene::PacketHits::lanes], const Eigen::Vector3f& direction, std::uint32_t rays,
+            float nearest) {
+    for (std::size_t k = 0; k < RayScene::PacketHits::lanes; ++k) {
+      valid[k] = (rays >> k & 1) != 0 ? -1 : 0;
+      query.ray.org_x[k] = origin[0][k];
+      query.ray.org_y[k] = origin[1][k];
+      query.ray.org_z[k] = origin[2][k];
+      query.ray.tnear[k] = nearest;
+      query.ray.dir_x[k] = direction.x();
+      query.ray.dir_y[k] = direction.y();
+      query.ray.dir_z[k] = direction.z();
+      query.ray.time[k] = 0;
+      query.ray.tfar[k] = std::numeric_limits<float>::infinity();
+      query.ray.mask[k] = ~0u;
+      query.ray.id[k] = 0;
+      query.ray.flags[k] = 0;
+      query.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+    }
+  }
+
+  void intersect(RTCScene scene) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(valid, scene, &context, &query);
+  }
+};
+
+}  // namespace
+
+void RayScene::first_distances(const float (&origin)[3][PacketHits::lanes], const Eigen::Vector3f& direction,
+                               std::uint32_t rays, float nearest, float (&distances)[PacketHits::lanes]) const {
+  RayPacket packet(origin, direction, rays, nearest);
+  packet.intersect(implementation_->scene);
+  for (std::size_t k = 0; k < PacketHits::lanes; ++k)
+    distances[k] = packet.query.hit.geomID[k] != RTC_INVALID_GEOMETRY_ID ? packet.query.ray.tfar[k]
+                                                                         : std::numeric_limits<float>::infinity();
+}
+
 std::uint32_t RayScene::first_front_hits(const float (&origin)[3][PacketHits::lanes], const Eigen::Vector3f& direction,
                                          std::uint32_t rays, PacketHits& hits) const {
-  constexpr std::size_t lanes = PacketHits::lanes;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  alignas(64) int valid[lanes];
-  RTCRayHit16 query;
-  for (std::size_t k = 0; k < lanes; ++k) {
-    valid[k] = (rays >> k & 1) != 0 ? -1 : 0;
-    query.ray.org_x[k] = origin[0][k];
-    query.ray.org_y[k] = origin[1][k];
-    query.ray.org_z[k] = origin[2][k];
-    query.ray.tnear[k] = 0;
-    query.ray.dir_x[k] = direction.x();
-    query.ray.dir_y[k] = direction.y();
-    query.ray.dir_z[k] = direction.z();
-    query.ray.time[k] = 0;
-    query.ray.tfar[k] = std::numeric_limits<float>::infinity();
-    query.ray.mask[k] = ~0u;
-    query.ray.id[k] = 0;
-    query.ray.flags[k] = 0;
-    query.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-  }
-  rtcIntersect16(valid, implementation_->scene, &context, &query);
+  RayPacket packet(origin, direction, rays, 0);
+  packet.intersect(implementation_->scene);
+  const RTCRayHit16& query = packet.query;
   std::uint32_t found = 0;
   for (; rays != 0; rays &= rays - 1) {
     const auto k = static_cast<std::size_t>(std::countr_zero(rays));

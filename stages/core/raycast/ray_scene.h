@@ -39,6 +39,11 @@ class RayScene {
   std::uint32_t first_front_hits(const float (&origin)[3][PacketHits::lanes], const Eigen::Vector3f& direction,
                                  std::uint32_t rays, PacketHits& hits) const;
 
+  /// Finds how far 16 parallel rays go from `nearest` on before they meet anything: those whose bit is set in `rays`;
+  /// infinity where there is nothing.
+  void first_distances(const float (&origin)[3][PacketHits::lanes], const Eigen::Vector3f& direction,
+                       std::uint32_t rays, float nearest, float (&distances)[PacketHits::lanes]) const;
+
   /// Finds the surface point closest to `point`, at most `farthest` away.
   SurfacePoint closest_point(const Eigen::Vector3f& point, float farthest) const;
 

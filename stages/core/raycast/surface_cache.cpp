@@ -35,7 +35,7 @@ void cut_long_edges(std::vector<Eigen::Vector3f>& positions, std::vector<Piece>&
     std::map<EdgeKey, std::uint32_t> middles;
     const auto middle = [&](std::uint32_t a, std::uint32_t b) {
       const auto [found, fresh] = middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(positions.size()));
-      if (fresh) positions.push_back(0.5f * (positions[a] + positions[b]));
+      if (fresh) positions.emplace_back(0.5f * (positions[a] + positions[b]));
       return found->second;
     };
     std::vector<Piece> finer;

@@ -11,7 +11,7 @@
 #include "base/files.h"
 #include "base/json.h"
 #include "kiln/build.h"
-#include "kiln/shipped.h"
+#include "asset/shipped.h"
 #include "kiln/text_file.h"
 
 namespace kiln {

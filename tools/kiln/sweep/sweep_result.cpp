@@ -9,7 +9,7 @@
 #include "base/asset_layout.h"
 #include "base/files.h"
 #include "kiln/gate/metric_changes.h"
-#include "kiln/shipped.h"
+#include "asset/shipped.h"
 #include "report/judging.h"
 
 namespace kiln {

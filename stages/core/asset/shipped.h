@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace kiln {
+
+/// Parts of an asset's folder that its transfer does not need.
+struct ShippedParts {
+  int normal_bits = 16;  ///< bits of the normal map, 8 or 16; 0: no normal map
+
+  bool operator==(const ShippedParts&) const = default;
+};
+
+/// Name of the setting of the bake that says them.
+inline constexpr const char* ship_setting = "ship";
+
+/// Parses "normal=none", "normal=8" or "normal=16". Throws WrongUsage.
+ShippedParts parse_shipped_parts(const std::string& text);
+std::string text_of(const ShippedParts& parts);
+
+/// Returns the bytes of what ships of an asset in a folder of kiln-bake or kiln-compress: all its files but the record,
+/// which no runtime reads.
+std::uint64_t shipped_bytes(const std::filesystem::path& folder);
+
+}  // namespace kiln

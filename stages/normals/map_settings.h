@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/options.h"
+
+namespace kiln {
+
+/// Further maps that artists' materials use, of the high mesh in the texels of the atlas.
+enum class MapKind { ambient_occlusion, bent_normal, thickness, curvature, height, position, material };
+inline constexpr int map_kinds = 7;
+
+enum class MapFormat { png8, png16, exr };
+
+struct MapSettings {
+  std::vector<MapKind> kinds;           ///< in the order of MapKind, each once
+  MapFormat format = MapFormat::png16;  ///< except of materials, which are 8 bits always
+  int directions = 1024;                ///< spread over the sphere, of rays
+};
+
+/// Returns the name of a kind, as --maps and the record have it; with `_` for `-` it is the name of its file.
+std::string map_name(MapKind kind);
+std::string map_file(MapKind kind, MapFormat format);
+
+/// Parses "none", "all" or names separated by commas. Throws WrongUsage.
+std::vector<MapKind> parse_map_kinds(const std::string& text);
+std::string text_of(const std::vector<MapKind>& kinds);
+
+void add_map_options(OptionSet& options, MapSettings& settings);
+
+}  // namespace kiln
