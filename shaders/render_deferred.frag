@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Second pass of deferred shading: computes light once for each visible sample of one asset.
 #include "common_prt.glsl"
+#define ALBEDO_FIRST_LEVEL
 #include "render_albedo.glsl"
 #include "render_contributions.glsl"
 

@@ -43,7 +43,7 @@ AssetRenderer::AssetRenderer(const PrtAsset& asset, int incident_samples)
     : asset_(asset),
       samples_(place_incident_samples(asset.mesh, incident_samples)),
       mesh_(upload_mesh(asset.mesh, samples_)),
-      albedo_map_(upload_albedo(asset.albedo.picture)),
+      albedo_map_(upload_albedo(asset.albedo.picture, albedo_levels(asset))),
       white_(upload_albedo(Image<std::uint8_t>(1, 1, 3, 255))) {}
 
 std::array<float, 3> AssetRenderer::albedo() const {

@@ -2,6 +2,7 @@
 #include "runtime/draw/asset_uploads.h"
 
 #include <algorithm>
+#include <bit>
 #include <numeric>
 #include <string>
 
@@ -130,16 +131,26 @@ UploadedTexture upload_normal_map(const PrtAsset& asset) {
   return map;
 }
 
-UploadedTexture upload_albedo(const Image<std::uint8_t>& picture) {
+int albedo_levels(const PrtAsset& asset) {
+  if (!asset.albedo.has_own_size()) return 1;
+  const int times = std::min(asset.albedo.width / asset.width, asset.albedo.height / asset.height);
+  return times > 1 ? std::bit_width(static_cast<unsigned>(times)) : 1;
+}
+
+UploadedTexture upload_albedo(const Image<std::uint8_t>& picture, int levels) {
   if (picture.values().empty()) return {};
   require_at_most(GL_MAX_TEXTURE_SIZE, std::max(picture.width(), picture.height()), "textures with a side");
   UploadedTexture map{make_texture(GL_TEXTURE_2D),
                       4 * picture.values().size() / 3};  // drivers pad RGB to four channels
-  glTextureStorage2D(map.texture.name(), 1, GL_SRGB8, picture.width(), picture.height());
+  glTextureStorage2D(map.texture.name(), levels, GL_SRGB8, picture.width(), picture.height());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTextureSubImage2D(map.texture.name(), 0, 0, 0, picture.width(), picture.height(), GL_RGB, GL_UNSIGNED_BYTE,
                       picture.values().data());
   set_sampling(map.texture, GL_LINEAR);
+  if (levels > 1) {
+    glGenerateTextureMipmap(map.texture.name());
+    glTextureParameteri(map.texture.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+  }
   check_gl("uploading the albedo");
   return map;
 }

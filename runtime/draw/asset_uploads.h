@@ -34,8 +34,13 @@ UploadedTexture upload_cluster_ids(const PrtAsset& asset);
 /// Uploads the asset's normal map as object-space n * 0.5 + 0.5, 16 bits. Throws BadInput.
 UploadedTexture upload_normal_map(const PrtAsset& asset);
 
-/// Uploads an albedo that the texture unit decodes from sRGB, with bilinear lookup; no texture if the picture is empty.
-UploadedTexture upload_albedo(const Image<std::uint8_t>& picture);
+/// Returns how many levels the asset's albedo has room for: each halves the texels, down to those of the planes, for
+/// which gutters are wide enough.
+int albedo_levels(const PrtAsset& asset);
+
+/// Uploads an albedo that the texture unit decodes from sRGB, with bilinear lookup between texels and linear between
+/// levels; no texture if the picture is empty.
+UploadedTexture upload_albedo(const Image<std::uint8_t>& picture, int levels = 1);
 
 /// Transfer vectors at the vertices, float32, in a buffer texture: four coefficients per texel, layer_count texels per
 /// vertex. Those of a textured asset are looked up at the vertices' uvs.

@@ -133,7 +133,14 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
 PrtAlbedo shipped_albedo(const DetailMaps& detail, const MaterialSettings& material) {
   const auto given = material.albedo;
   if (given) return PrtAlbedo::of_constant({(*given)[0], (*given)[1], (*given)[2]});
-  if (!detail.albedo.values().empty()) return PrtAlbedo::of_picture(albedo_map_name);
+  if (!detail.albedo.values().empty()) {
+    PrtAlbedo albedo = PrtAlbedo::of_picture(albedo_map_name);
+    if (detail.albedo_width != detail.width || detail.albedo_height != detail.height) {
+      albedo.width = detail.albedo_width;
+      albedo.height = detail.albedo_height;
+    }
+    return albedo;
+  }
   return detail.albedo_known ? PrtAlbedo::of_constant(detail.constant_albedo) : PrtAlbedo();
 }
 

@@ -30,7 +30,9 @@ AlbedoMap make_albedo_map(Image<float> linear, const std::vector<std::uint8_t>& 
 }
 
 Json AlbedoMap::to_json() const {
-  return {{"error_rms", error.rms},
+  return {{"width", picture.width()},
+          {"height", picture.height()},
+          {"error_rms", error.rms},
           {"error_p95", error.percentile_95},
           {"seam_mismatch_mean_before", seam_before.mean},
           {"seam_mismatch_max_before", seam_before.largest},

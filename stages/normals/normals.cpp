@@ -183,6 +183,16 @@ void measure_maps(const MapVersions& map, const Seams& seams, const TriangleMesh
   result.seam_change_degrees_rms = angles_between(map.before, map.after, raster).rms;
 }
 
+/// Makes the map of the albedo at a size of its own, from points of its own texels.
+AlbedoMap albedo_of_own_size(const HighSurface& high, const TriangleMesh& atlas, const MatchLimits& limits,
+                             const NormalsSettings& settings) {
+  const Extent& size = settings.albedo_size;
+  const UvRaster raster = rasterise_uvs(atlas, size.width, size.height);
+  TexelMatches matches = match_texels(high, atlas, raster, limits, settings.samples, settings.fit, no_progress);
+  return make_albedo_map(std::move(matches.albedo), coverage_of(matches.known), coverage_of(raster),
+                         Seams(atlas, size.width, size.height), settings.seams);
+}
+
 }  // namespace
 
 NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, const NormalsSettings& settings,
@@ -234,9 +244,12 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
                  [](std::uint8_t c) { return static_cast<std::uint8_t>(c != 0 ? 255 : 0); });
   result.match = picture_of(ways);
   result.albedo = albedo;
-  if (!albedo.is_constant())
-    result.albedo_map =
-        make_albedo_map(std::move(matches.albedo), coverage_of(matches.known), covered, seams, settings.seams);
+  if (!albedo.is_constant()) {
+    const bool own_size = settings.albedo_size.width > 0 && settings.albedo_size != size;
+    result.albedo_map = own_size ? albedo_of_own_size({high, scene, albedo, is_buried}, atlas, limits, settings)
+                                 : make_albedo_map(std::move(matches.albedo), coverage_of(matches.known), covered,
+                                                   seams, settings.seams);
+  }
 
   // Step 5: make further maps.
   if (!settings.maps.kinds.empty()) {

@@ -11,6 +11,9 @@ OptionSet normals_options(NormalsSettings& settings) {
   options.extent(
       "size", settings.size, 0, 16384,
       "Width and height of the maps in texels; 0 is the size in atlas.json beside the atlas, or 512 without it");
+  options.extent(
+      "albedo-size", settings.albedo_size, 0, 16384,
+      "Width and height of albedo.png in texels, where colours vary more than light; 0 is the size of the maps");
   options.choice<int>("samples", settings.samples, {{"1", 1}, {"4", 4}, {"16", 16}, {"64", 64}},
                       "Points per texel that normals are averaged over");
   options.toggle(

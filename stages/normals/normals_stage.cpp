@@ -10,14 +10,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The last six where the surface has an albedo that varies.
+/// The last eight where the surface has an albedo that varies.
 constexpr const char* metric_names =
     "width height covered_texels found_by_ray_outwards found_by_ray_inwards found_by_nearest_point disagreeing "
     "buried_texels cage_distance mean_distance largest_distance normal_deviation_degrees_mean "
     "normal_deviation_degrees_largest "
     "quantisation_degrees_largest map_error_degrees_mean map_error_degrees_p95 map_error_degrees_max seam_edges "
     "seam_mismatch_degrees_mean_before seam_mismatch_degrees_max_before seam_mismatch_degrees_mean "
-    "seam_mismatch_degrees_max seam_change_degrees_rms map_seconds measuring_seconds albedo.error_rms albedo.error_p95 "
+    "seam_mismatch_degrees_max seam_change_degrees_rms map_seconds measuring_seconds albedo.width albedo.height "
+    "albedo.error_rms albedo.error_p95 "
     "albedo.seam_mismatch_mean_before albedo.seam_mismatch_max_before albedo.seam_mismatch_mean "
     "albedo.seam_mismatch_max";
 

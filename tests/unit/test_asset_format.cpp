@@ -176,6 +176,35 @@ TEST(Versions, OriginIsReadAndWritten) {
   EXPECT_NE(refusal(copy.folder()).find("origin is a list of 2"), std::string::npos) << refusal(copy.folder());
 }
 
+TEST(Albedo, MayHaveASizeOfItsOwn) {
+  const Copy copy("textured");  // 32 x 32
+  Image<std::uint8_t> picture(128, 64, 3);
+  for (int j = 0; j < 64; ++j)
+    for (int i = 0; i < 128; ++i)
+      for (int c = 0; c < 3; ++c) picture.at(i, j, c) = static_cast<std::uint8_t>(i % 4 < 2 ? 255 : c == 0 ? 255 : 0);
+  write_png(copy.folder() / "albedo.png", picture);
+  copy.raise({"albedo", "albedo_size"});
+  copy.set("/albedo", "albedo.png");
+  copy.set("/albedo_width", 128);
+  copy.set("/albedo_height", 64);
+  EXPECT_EQ(joined(faults_of(copy.folder())), "");
+  const PrtAsset asset = load_prt_asset(copy.folder());
+  EXPECT_EQ(asset.albedo.picture.values(), picture.values());
+  // A texel of the planes covers 4 x 2 of the picture: half of them red, half of them white.
+  EXPECT_LT((asset.albedo.at(5) - Eigen::Vector3f(1, 0.5f, 0.5f)).norm(), 0.01f);  // 8 bits
+  const Json written = Json::parse(description_text(load_prt_description(copy.folder())));
+  EXPECT_EQ(written["albedo_width"], 128);
+  EXPECT_EQ(written["albedo_height"], 64);
+
+  copy.raise({"albedo"});
+  EXPECT_NE(joined(faults_of(copy.folder())).find("requires lacks albedo_size"), std::string::npos);
+  copy.raise({"albedo", "albedo_size"});
+  copy.set("/albedo_height", 128);
+  EXPECT_NE(refusal(copy.folder()).find("is 128 x 64 texels"), std::string::npos) << refusal(copy.folder());
+  copy.set("/albedo_height", nullptr);
+  EXPECT_NE(refusal(copy.folder()).find("albedo_height"), std::string::npos) << refusal(copy.folder());
+}
+
 TEST(Check, TellsEveryFault) {
   const Copy copy("textured");
   copy.raise({"vertices"});

@@ -265,9 +265,9 @@ TEST(Pipeline, WhatCannotWorkIsRefusedAtOnce) {
     EXPECT_NE(message.find("pipeline.yaml:4: "), std::string::npos) << settings << ": " << message;
     EXPECT_NE(message.find(word), std::string::npos) << settings << ": " << message;
   }
-  for (const char* settings :
-       {"bake: {receiver: low}", "bake: {receiver: low, bounces: 1, albedo: 0.5}", "bake: {max-error: auto}",
-        "compress: {pca: 25}", "atlas: {uv: auto}", "atlas: {uv: new}", "report: {lights: ['cone:45,30,5', 'ambient:1,0.5,0']}"})
+  for (const char* settings : {"bake: {receiver: low}", "bake: {receiver: low, bounces: 1, albedo: 0.5}",
+                               "bake: {max-error: auto}", "compress: {pca: 25}", "atlas: {uv: auto}",
+                               "atlas: {uv: new}", "report: {lights: ['cone:45,30,5', 'ambient:1,0.5,0']}"})
     EXPECT_EQ(refusal_of(settings), "") << settings;
 }
 

@@ -17,6 +17,7 @@
 #include "base/hashes.h"
 #include "image/gutter.h"
 #include "image/image_file.h"
+#include "image/resize.h"
 #include "scratch.h"
 
 namespace kiln {
@@ -70,6 +71,31 @@ TEST_F(ImageFile, EightBitsSpreadOverSixteen) {
   write_png(folder_ / "sixteen.png", sixteen);
   expect_same(sixteen, read_png_as16(folder_ / "sixteen.png", &bits));
   EXPECT_EQ(bits, 16);
+}
+
+TEST(Resize, KeepsMeansAndLinearRamps) {
+  Image<float> image = Image<float>(12, 9, 2);
+  for (int j = 0; j < 9; ++j)
+    for (int i = 0; i < 12; ++i) {
+      image.at(i, j, 0) = static_cast<float>(i * i + 3 * j);
+      image.at(i, j, 1) = static_cast<float>(2 * i - j);
+    }
+  const auto mean = [](const Image<float>& of, int channel) {
+    double sum = 0;
+    for (int j = 0; j < of.height(); ++j)
+      for (int i = 0; i < of.width(); ++i) sum += static_cast<double>(of.at(i, j, channel));
+    return sum / (of.width() * of.height());
+  };
+  for (const auto& [width, height] : {std::pair{4, 3}, {5, 7}, {1, 1}}) {
+    const Image<float> small = resized(image, width, height);
+    EXPECT_NEAR(mean(small, 0), mean(image, 0), 1e-3);
+    EXPECT_NEAR(mean(small, 1), mean(image, 1), 1e-4);
+  }
+  // Blocks of whole pixels are means of them, and a ramp goes on between pixels.
+  EXPECT_FLOAT_EQ(resized(image, 4, 3).at(1, 2, 1), 2 * 4 - 7);
+  const Image<float> large = resized(image, 24, 9);
+  EXPECT_FLOAT_EQ(large.at(7, 4, 1), 2 * 3.25f - 4);
+  EXPECT_EQ(resized(image, 12, 9).values(), image.values());
 }
 
 /// Lists the chunks of a PNG in order: kind and body.

@@ -65,6 +65,8 @@ inline constexpr const char* mesh = "mesh";
 inline constexpr const char* normals = "normals";
 inline constexpr const char* normal_space = "normal_space";
 inline constexpr const char* albedo = "albedo";
+inline constexpr const char* albedo_width = "albedo_width";
+inline constexpr const char* albedo_height = "albedo_height";
 inline constexpr const char* origin = "origin";
 inline constexpr const char* planes = "planes";
 inline constexpr const char* file = "file";
@@ -95,6 +97,7 @@ inline constexpr const char* ranges = "ranges";
 /// would misread without knowing them.
 namespace requirement {
 inline constexpr const char* albedo = "albedo";
+inline constexpr const char* albedo_size = "albedo_size";
 inline constexpr const char* tangent_normals = "tangent_normals";
 inline constexpr const char* vertices = "vertices";
 }  // namespace requirement

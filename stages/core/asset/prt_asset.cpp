@@ -7,6 +7,7 @@
 #include "asset/read_description.h"
 #include "asset/read_parts.h"
 #include "base/errors.h"
+#include "image/resize.h"
 #include "image/srgb.h"
 
 namespace kiln {
@@ -68,6 +69,9 @@ void load_vertices(const fs::path& folder, PrtAsset& asset) {
 void load_pictures(const fs::path& folder, PrtAsset& asset) {
   const std::string remedy = remedy_for(asset);
   asset.albedo.picture = read_albedo_picture(folder, asset);
+  if (asset.albedo.has_own_size())
+    asset.albedo.at_planes =
+        srgb_bytes(resized(linear_from_srgb_bytes(asset.albedo.picture), asset.width, asset.height));
   asset.mesh = read_atlas_mesh(folder, asset);
   if (asset.pca) asset.clusters = read_clusters(folder, asset);
   if (asset.bits == 8) {
@@ -91,8 +95,9 @@ PrtDescription load_prt_description(const fs::path& folder) {
 Eigen::Vector3f PrtAlbedo::at(std::size_t texel) const {
   if (!known) return Eigen::Vector3f::Ones();
   if (picture.width() == 0) return constant;
+  const Image<std::uint8_t>& of_planes = has_own_size() ? at_planes : picture;
   const auto channel = [&](std::size_t c) {
-    return linear_from_srgb(static_cast<float>(picture.values()[3 * texel + c]) / 255);
+    return linear_from_srgb(static_cast<float>(of_planes.values()[3 * texel + c]) / 255);
   };
   return {channel(0), channel(1), channel(2)};
 }

@@ -57,18 +57,22 @@ struct PrtClusters {
 /// Reflectance of the asset's surface, which its transfer does not include: exit radiance is albedo times the sum of
 /// light and transfer coefficients.
 struct PrtAlbedo {
-  bool known = false;                ///< whether the asset states its albedo; if not, consumers choose a grey
-  std::string file = {};             ///< the picture, relative to the asset's folder; empty if there is none
-  Image<std::uint8_t> picture = {};  ///< 3 channels, sRGB-encoded, of the asset's size; empty if constant
+  bool known = false;                  ///< whether the asset states its albedo; if not, consumers choose a grey
+  std::string file = {};               ///< the picture, relative to the asset's folder; empty if there is none
+  int width = 0, height = 0;           ///< texels of the picture where they are not those of the planes; else 0
+  Image<std::uint8_t> picture = {};    ///< 3 channels, sRGB-encoded; empty if constant
+  Image<std::uint8_t> at_planes = {};  ///< the same at the size of the planes, where that is another
   Eigen::Vector3f constant = Eigen::Vector3f::Ones();  ///< linear; used if there is no picture
   bool within_transfer = false;  ///< whether the bake has multiplied transfer by albedo, which is 1 here then
 
   /// Returns the linear albedo of a texel, j * width + i; ones where it is not known.
   Eigen::Vector3f at(std::size_t texel) const;
 
-  static PrtAlbedo of_constant(const Eigen::Vector3f& linear) { return {true, "", {}, linear}; }
-  static PrtAlbedo of_picture(const std::string& name) { return {true, name}; }
-  static PrtAlbedo of_transfer() { return {true, "", {}, Eigen::Vector3f::Ones(), true}; }
+  bool has_own_size() const { return width > 0; }
+
+  static PrtAlbedo of_constant(const Eigen::Vector3f& linear) { return {.known = true, .constant = linear}; }
+  static PrtAlbedo of_picture(const std::string& name) { return {.known = true, .file = name}; }
+  static PrtAlbedo of_transfer() { return {.known = true, .within_transfer = true}; }
 };
 
 /// Description of the means and basis vectors in pca.json; PrtClusters has them decoded.

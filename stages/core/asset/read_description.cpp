@@ -57,6 +57,10 @@ void read_shared(const Fields& fields, PrtDescription& asset) {
   asset.mesh_file = fields.safe_path(key::mesh);
   read_normals(fields, asset);
   asset.albedo = read_albedo(fields, asset.vertices == 0);
+  if (!asset.albedo.file.empty() && (fields.has(key::albedo_width) || fields.has(key::albedo_height))) {
+    asset.albedo.width = fields.integer(key::albedo_width, 1, largest_asset_side);
+    asset.albedo.height = fields.integer(key::albedo_height, 1, largest_asset_side);
+  }
   asset.origin = read_origin(fields);
 }
 
@@ -163,7 +167,7 @@ std::pair<PrtDescription, FormatHead> read_description(const fs::path& file, Fau
   if (!faults.guard([&] { document = parse_json(file, is_pca ? "kiln-compress" : "kiln-bake", remedy); }))
     return {asset, {}};
   const Fields fields(file.string(), "", document, remedy, &faults);
-  std::vector<std::string> known = {requirement::albedo, requirement::tangent_normals};
+  std::vector<std::string> known = {requirement::albedo, requirement::albedo_size, requirement::tangent_normals};
   if (!is_pca) known.emplace_back(requirement::vertices);
   const FormatHead head = read_head(fields, is_pca ? pca_format : prt_format, known);
   asset.bands = fields.integer(key::bands, 1, most_asset_bands);
@@ -175,6 +179,7 @@ std::pair<PrtDescription, FormatHead> read_description(const fs::path& file, Fau
 std::vector<std::string> requirements(const PrtDescription& asset) {
   std::vector<std::string> required;
   if (asset.albedo.known) required.emplace_back(requirement::albedo);
+  if (asset.albedo.has_own_size()) required.emplace_back(requirement::albedo_size);
   if (!asset.normals_file.empty() && asset.normal_space == NormalSpace::tangent)
     required.emplace_back(requirement::tangent_normals);
   if (asset.vertices > 0) required.emplace_back(requirement::vertices);

@@ -134,7 +134,9 @@ Image<std::uint8_t> read_albedo_picture(const fs::path& folder, const PrtDescrip
   if (asset.albedo.file.empty()) return {};
   const fs::path file = folder / asset.albedo.file;
   Image<std::uint8_t> picture = read_png8(file);
-  require_picture(picture, file, asset.width, asset.height, 3, remedy_for(asset));
+  const PrtAlbedo& albedo = asset.albedo;
+  require_picture(picture, file, albedo.has_own_size() ? albedo.width : asset.width,
+                  albedo.has_own_size() ? albedo.height : asset.height, 3, remedy_for(asset));
   return picture;
 }
 

@@ -28,6 +28,10 @@ Json head_of(const PrtDescription& asset) {
 void add_albedo(Json& head, const PrtAlbedo& albedo) {
   const Eigen::Vector3f& constant = albedo.constant;
   if (!albedo.known) return;
+  if (albedo.has_own_size()) {
+    head[key::albedo_width] = albedo.width;
+    head[key::albedo_height] = albedo.height;
+  }
   if (!albedo.file.empty())
     head[key::albedo] = albedo.file;
   else if (albedo.within_transfer)

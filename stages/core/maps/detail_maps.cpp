@@ -12,6 +12,7 @@
 #include "base/json.h"
 #include "image/gutter.h"
 #include "image/image_file.h"
+#include "image/resize.h"
 #include "image/srgb.h"
 #include "mesh/tangent_space.h"
 
@@ -96,10 +97,13 @@ void read_albedo(const std::filesystem::path& folder, const Json& record, Detail
     return;
   }
   const Image<std::uint8_t> encoded = read_png8(folder / layout::albedo_map);
-  if (encoded.width() != maps.width || encoded.height() != maps.height || encoded.channels() != 3)
+  const int width = albedo.value("width", maps.width), height = albedo.value("height", maps.height);
+  if (encoded.width() != width || encoded.height() != height || encoded.channels() != 3)
     refuse(folder / layout::albedo_map, size_text(encoded),
-           std::to_string(maps.width) + " x " + std::to_string(maps.height) + " texels of 3 channels");
-  maps.albedo = linear_from_srgb_bytes(encoded);
+           std::to_string(width) + " x " + std::to_string(height) + " texels of 3 channels");
+  maps.albedo_width = encoded.width();
+  maps.albedo_height = encoded.height();
+  maps.albedo = resized(linear_from_srgb_bytes(encoded), maps.width, maps.height);
 }
 
 }  // namespace

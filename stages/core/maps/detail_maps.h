@@ -22,6 +22,7 @@ struct DetailMaps {
   Image<float> normal_object;                      ///< 3 channels, unit vectors in object space; gutters filled
   NormalSpace normal_space = NormalSpace::object;  ///< space of the map in the file
   Image<float> albedo;                             ///< 3 channels, linear, gutters filled; empty where it is constant
+  int albedo_width = 0, albedo_height = 0;  ///< texels of its file, from which `albedo` is resized where they differ
   Eigen::Vector3f constant_albedo = Eigen::Vector3f::Ones();  ///< linear; used where `albedo` is empty
   bool albedo_known = false;                                  ///< the normals stage found an albedo or was given one
 
