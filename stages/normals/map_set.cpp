@@ -96,15 +96,31 @@ class MapMaker {
     return covered_;
   }
 
-  /// Fills the texels that are not seen, makes both sides of seams equal, and keeps values between bounds.
+  /// Fills the texels that are not seen, makes both sides of seams equal where lookups see them, and keeps values
+  /// between bounds.
   void finish(Image<float>& image, double lowest, double highest) {
     fill_gutters(image, in_.seen);
     if (equalises()) {
+      const Image<float> filled = image;
       if (!solver_) solver_.emplace(in_.seams, covered());
       solver_->equalise(image, static_cast<float>(lowest), static_cast<float>(highest));
+      for (int j = 0; j < image.height(); ++j)
+        for (int i = 0; i < image.width(); ++i)
+          if (!is_near_seen(i, j)) std::ranges::copy(filled.pixel(i, j), image.pixel(i, j).begin());
     }
     for (float& value : image.values())
       value = std::clamp(value, static_cast<float>(lowest), static_cast<float>(highest));
+  }
+
+  /// Tells whether a seen texel is within two of this one: seams of charts that are inside another part have none.
+  bool is_near_seen(int i, int j) const {
+    constexpr int reach = 2;
+    const int width = in_.raster.width, height = in_.raster.height;
+    for (int y = std::max(0, j - reach); y <= std::min(height - 1, j + reach); ++y)
+      for (int x = std::max(0, i - reach); x <= std::min(width - 1, i + reach); ++x)
+        if (in_.seen[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] != 0)
+          return true;
+    return false;
   }
 
   /// Makes a map of one value per seen texel.
