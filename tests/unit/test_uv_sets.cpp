@@ -86,7 +86,8 @@ TEST(UvSets, AnAtlasDoesNotSeeTheSeamsOfTextures) {
     TriangleMesh plain = mesh;
     compute_vertex_normals(plain);
     const TriangleMesh textured = with_uvs(plain, overlapping_uvs(plain));
-    const AtlasResult without = make_atlas(plain, quick_settings(128)), with = make_atlas(textured, quick_settings(128));
+    const AtlasResult without = make_atlas(plain, quick_settings(128)),
+                      with = make_atlas(textured, quick_settings(128));
     EXPECT_TRUE(without.mesh.texture_uvs.empty());
     // The same atlas at every corner, though the vertices are others.
     EXPECT_EQ(uvs_at_corners(with.mesh.triangles, with.mesh.uvs),
@@ -104,8 +105,7 @@ TEST(UvSets, AFileHoldsBoth) {
   const Scratch folder;
   const TriangleMesh sphere = shapes::icosphere(2);
   const CornerUvs uvs = overlapping_uvs(sphere);
-  const WrittenAtlas atlas =
-      write_atlas(folder / "atlas.drc", make_atlas(with_uvs(sphere, uvs), quick_settings(128)));
+  const WrittenAtlas atlas = write_atlas(folder / "atlas.drc", make_atlas(with_uvs(sphere, uvs), quick_settings(128)));
   ASSERT_EQ(atlas.mesh.triangles.size(), sphere.triangles.size());
   ASSERT_EQ(atlas.mesh.texture_uvs.size(), atlas.mesh.positions.size());
   EXPECT_EQ(atlas.measures.overlapping_texels, 0);

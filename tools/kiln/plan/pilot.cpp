@@ -6,12 +6,12 @@
 #include <fmt/format.h>
 #include <limits>
 
+#include "asset/shipped.h"
 #include "base/asset_layout.h"
 #include "base/errors.h"
 #include "base/files.h"
 #include "base/json.h"
 #include "kiln/build.h"
-#include "asset/shipped.h"
 #include "kiln/text_file.h"
 
 namespace kiln {

@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 #include <set>
 
+#include "asset/shipped.h"
 #include "base/asset_layout.h"
 #include "base/files.h"
 #include "kiln/gate/metric_changes.h"
-#include "asset/shipped.h"
 #include "report/judging.h"
 
 namespace kiln {
