@@ -455,7 +455,7 @@ KILN_ANY_VECTOR_WIDTH BlockLanes blocked_lanes(const BeamWeights& weights) {
   for (std::uint32_t left = weights.facing & ~weights.lit; left != 0; left &= left - 1) {
     const int d = __builtin_ctz(left);
     std::uint32_t lanes = 0;
-    for (int r = 0; r < beam_lanes; ++r) lanes |= (weights.weight[d][r] > 0 ? 0u : 1u) << r;
+    for (int r = beam_lanes - 1; r >= 0; --r) lanes = 2 * lanes + (weights.weight[d][r] > 0 ? 0u : 1u);
     blocked[d] = static_cast<std::uint16_t>(lanes);
   }
   return blocked;
