@@ -140,7 +140,8 @@ class Reader {
 
   /// Adds a named asset: one with a mesh of its own, or settings for one that an earlier pattern has found.
   void add_asset(const YAML::Node& key, const YAML::Node& body) {
-    const std::string name = key.Scalar(), fault = fault_of_name(name);
+    const std::string& name = key.Scalar();
+    const std::string fault = fault_of_name(name);
     file_.require(fault.empty(), key, fmt::format("asset '{}', whose name {}", name, fault), what_a_name_is);
     std::vector<SettingsLayer> layers;
     const std::optional<bool> on_request = read_body(body, {"mesh", "low"}, layers);

@@ -45,7 +45,7 @@ class StlText {
     pass_comments();
     while (words_.to_word()) read_word(words_.next_on_line());
     if (in_facet_) throw truncated();
-    if (in_solid_) mesh_.warnings.push_back("the last solid has no 'endsolid'; the file may have been cut short");
+    if (in_solid_) mesh_.warnings.emplace_back("the last solid has no 'endsolid'; the file may have been cut short");
     check_places();
     return std::move(mesh_);
   }

@@ -405,9 +405,9 @@ void BeamTracer::trace(const BeamBlock& block, BeamWeights& weights) {
 void BeamTracer::pack(const BeamShaft& shaft) {
   Front& front = of_quarter_;
   work_.packed += front.clusters.size();
-  const std::size_t count = static_cast<std::size_t>(kernels_.pack(shaft, span_, front.clusters.data(),
-                                                                   static_cast<int>(front.clusters.size()),
-                                                                   packed_.data(), front.boxes.data()));
+  const auto count = static_cast<std::size_t>(kernels_.pack(shaft, span_, front.clusters.data(),
+                                                            static_cast<int>(front.clusters.size()), packed_.data(),
+                                                            front.boxes.data()));
   front.clusters.resize(count);
   for (std::size_t k = 0; k < count; ++k) front.clusters[k] = &packed_[k];
 }

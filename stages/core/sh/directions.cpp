@@ -57,7 +57,7 @@ std::vector<Eigen::Vector3f> sample_directions(Sampling sampling, int count, std
   std::vector<Eigen::Vector3f> directions;
   directions.reserve(count);
   const auto keep = [&](const Eigen::Vector3d& direction) {
-    directions.push_back(direction.normalized().cast<float>());
+    directions.emplace_back(direction.normalized().cast<float>());
   };
 
   if (sampling == Sampling::fibonacci) {
@@ -107,7 +107,7 @@ std::vector<Eigen::Vector3f> progressive_directions(std::int64_t first, int coun
   for (int i = 0; i < count; ++i) {
     const std::uint64_t inverse = radical_inverse(static_cast<std::uint64_t>(first + i));  // products wrap: fractions
     const Eigen::Vector3d point = on_sphere(1 - 2 * as_fraction(inverse + third), as_fraction(inverse * multiplier));
-    directions.push_back((rotation * point).normalized().cast<float>());
+    directions.emplace_back((rotation * point).normalized().cast<float>());
   }
   return directions;
 }

@@ -60,7 +60,7 @@ ShRotation::ShRotation(int bands, const Eigen::Matrix3d& rotation) {
   constexpr double tolerance = 1e-4;
   if (!(rotation * rotation.transpose()).isIdentity(tolerance) || !(rotation.determinant() > 0))
     throw std::invalid_argument("ShRotation: the matrix is no rotation");
-  matrices_.push_back(Eigen::MatrixXd::Identity(1, 1));
+  matrices_.emplace_back(Eigen::MatrixXd::Identity(1, 1));
   if (bands == 1) return;
   // Band 1 is the rotation itself, its axes in the order y, z, x.
   constexpr int axis[3] = {1, 2, 0};
