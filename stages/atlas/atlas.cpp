@@ -233,6 +233,12 @@ WrittenAtlas write_atlas(const std::filesystem::path& file, const AtlasResult& a
   return written;
 }
 
+void require_texels(const WrittenAtlas& atlas, const Extent& size, const std::string& name) {
+  if (atlas.measures.covered_texels == 0)
+    throw BadInput(name, "is so thin that its atlas of " + size.text() + " texels covers the centre of none",
+                   "charts wider than a texel", "give a larger --size");
+}
+
 Json AtlasResult::to_json() const {
   return {{"width", size.width},
           {"height", size.height},

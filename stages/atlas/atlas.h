@@ -56,4 +56,8 @@ struct WrittenAtlas {
 /// cover one texel or the gutter is not kept: a defect of Kiln.
 WrittenAtlas write_atlas(const std::filesystem::path& file, const AtlasResult& atlas);
 
+/// Throws BadInput, which names the mesh, where its atlas of this size is so thin that it covers the centre of no
+/// texel.
+void require_texels(const WrittenAtlas& atlas, const Extent& size, const std::string& name);
+
 }  // namespace kiln

@@ -51,10 +51,7 @@ int main(int argc, char** argv) {
 
     // Save, and measure what was saved.
     const WrittenAtlas written = write_atlas(outputs.add(atlas_file.filename().string()), result);
-    if (written.measures.covered_texels == 0)
-      throw BadInput(low_file.string(),
-                     "is so thin that its atlas of " + result.size.text() + " texels covers the centre of none",
-                     "charts wider than a texel", "give a larger --size");
+    require_texels(written, result.size, low_file.string());
     write_png(outputs.add(layout::atlas_picture), draw_atlas(written.mesh, result.size, settings.gutter));
     Json metrics = written.to_json();
     metrics.update(result.to_json());
