@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
     command.warn(high.warnings, hints.warnings);
     command.warn(material.warnings());
     command.also_read(material.files);
-    const MaterialIds materials = find_material_ids(high);
+    const MaterialIds materials = settings.maps.kinds.empty() ? MaterialIds{} : find_material_ids(high);
     OutputSet outputs(folder);
 
     // Run.

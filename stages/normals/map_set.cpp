@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 
 #include "base/asset_layout.h"
 #include "base/json.h"
@@ -294,6 +295,10 @@ std::vector<SurfaceMap> make_maps(const MapInputs& inputs, const MapSettings& se
                                   const ProgressFunction& progress) {
   std::vector<SurfaceMap> maps;
   if (settings.kinds.empty()) return maps;
+  const bool wants_materials =
+      std::find(settings.kinds.begin(), settings.kinds.end(), MapKind::material) != settings.kinds.end();
+  if (wants_materials && inputs.materials.of_triangle.size() != inputs.high.triangles.size())
+    throw std::invalid_argument("make_maps: a map of materials needs one id per triangle");
   MapMaker maker(inputs, settings);
   for (const MapKind kind : settings.kinds) {
     maps.push_back(maker.make(kind));

@@ -12,7 +12,8 @@ namespace kiln {
 /// Materials of a mesh's triangles as numbers: those of its file, or the parts that share no vertex where it has none.
 struct MaterialIds {
   std::vector<std::uint32_t> of_triangle;
-  std::vector<std::string> names;  ///< by id; "part 1" and so on for parts, "none" for triangles without a material
+  /// By id, each once: "part 1" and so on for parts, "none" for triangles without a material.
+  std::vector<std::string> names;
 };
 
 /// Finds the ids that the triangles use, in the order in which they use them.

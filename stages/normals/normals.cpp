@@ -188,6 +188,8 @@ AlbedoMap albedo_of_own_size(const HighSurface& high, const TriangleMesh& atlas,
                              const NormalsSettings& settings) {
   const Extent& size = settings.albedo_size;
   const UvRaster raster = rasterise_uvs(atlas, size.width, size.height);
+  if (raster.covered_texels == 0)
+    throw WrongUsage("the atlas covers no texel at --albedo-size " + size.text() + "; give a larger one");
   TexelMatches matches = match_texels(high, atlas, raster, limits, settings.samples, settings.fit, no_progress);
   return make_albedo_map(std::move(matches.albedo), coverage_of(matches.known), coverage_of(raster),
                          Seams(atlas, size.width, size.height), settings.seams);

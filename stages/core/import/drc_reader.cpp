@@ -78,6 +78,8 @@ SourceMesh read_drc(const std::filesystem::path& file) {
   SourceMesh mesh;
   mesh.is_unwelded = true;
   read_attributes(*source, mesh);
+  if (source->NumNamedAttributes(draco::GeometryAttribute::TEX_COORD) > 1)
+    mesh.warnings.emplace_back("only the first of its sets of texture coordinates is used");
   if (mesh.places.empty() || source->num_faces() == 0)
     throw BadInput(name, "has no triangles", "a Draco mesh of triangles", encode_again);
   for (std::uint32_t i = 0; i < source->num_faces(); ++i) {
