@@ -3,6 +3,7 @@
 // direction arrives as irradiance in nine harmonics [Ramamoorthi 2001].
 // NORMAL_MAP: takes normals of the high mesh, object space, instead of the low mesh's.
 #include "render_albedo.glsl"
+#include "render_opacity.glsl"
 
 struct DirectLight {
   vec4 place;     // xyz: a ball's centre, or the unit vector towards a distant light; w: a ball's radius, 0 if distant
@@ -45,6 +46,7 @@ vec3 diffuse_light(vec3 n) {
 }
 
 void main() {
+  discard_clear(surface_uv);
   vec3 normal = shading_normal();
   vec3 to_eye = normalize(phong_eye.xyz - surface_position);
   vec3 diffuse = diffuse_light(normal), specular = vec3(0.0);

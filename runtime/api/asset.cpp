@@ -85,4 +85,8 @@ Color Asset::albedo(std::uint32_t point) const {
   return {albedo.x(), albedo.y(), albedo.z()};
 }
 
+std::span<const std::uint8_t> Asset::opacity() const { return asset_->opacity.values(); }
+int Asset::opacity_width() const { return asset_->opacity.width(); }
+int Asset::opacity_height() const { return asset_->opacity.height(); }
+
 }  // namespace kiln::runtime

@@ -6,9 +6,9 @@
 namespace kiln::runtime {
 
 std::vector<std::string_view> shader_names() {
-  return {"common_prt.glsl",      "render_albedo.glsl",     "render_contributions.glsl", "render_surface.vert",
-          "render_prt.frag",      "render_vertex_prt.vert", "render_vertex_prt.frag",    "render_appearance.frag",
-          "render_deferred.vert", "render_deferred.frag",   "render_phong.frag"};
+  return {"common_prt.glsl",        "render_albedo.glsl",   "render_contributions.glsl", "render_opacity.glsl",
+          "render_surface.vert",    "render_prt.frag",      "render_vertex_prt.vert",    "render_vertex_prt.frag",
+          "render_appearance.frag", "render_deferred.vert", "render_deferred.frag",      "render_phong.frag"};
 }
 
 std::string_view shader_text(std::string_view name) {

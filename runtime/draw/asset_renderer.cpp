@@ -16,7 +16,7 @@ namespace {
 
 // Bindings and locations of shaders/common_prt.glsl and shaders/render_*.
 constexpr GLuint planes_unit = 0, cluster_ids_unit = 1, light_unit = 2, albedo_unit = 3, vertex_transfer_unit = 4,
-                 normal_map_unit = 5, phong_binding = 1;
+                 normal_map_unit = 5, opacity_unit = 9, phong_binding = 1;
 constexpr GLint clip_from_object_location = 0, layers_location = 1, clusters_location = 2, asset_number_location = 3;
 
 bool is_textured(Technique technique) {
@@ -44,7 +44,8 @@ AssetRenderer::AssetRenderer(const PrtAsset& asset, int incident_samples)
       samples_(place_incident_samples(asset.mesh, incident_samples)),
       mesh_(upload_mesh(asset.mesh, samples_)),
       albedo_map_(upload_albedo(asset.albedo.picture, albedo_levels(asset))),
-      white_(upload_albedo(Image<std::uint8_t>(1, 1, 3, 255))) {}
+      white_(upload_albedo(Image<std::uint8_t>(1, 1, 3, 255))),
+      opacity_map_(upload_opacity(asset.opacity)) {}
 
 std::array<float, 3> AssetRenderer::albedo() const {
   constexpr float grey = 0.8f;
@@ -54,7 +55,8 @@ std::array<float, 3> AssetRenderer::albedo() const {
   return albedo;
 }
 
-void AssetRenderer::bind_albedo() const {
+void AssetRenderer::bind_surface_maps() const {
+  if (opacity_map_.texture.name() != 0) glBindTextureUnit(opacity_unit, opacity_map_.texture.name());
   if (albedo_map_.texture.name() != 0)
     glBindTextureUnit(albedo_unit, (look_.own_albedo ? albedo_map_ : white_).texture.name());
 }
@@ -64,6 +66,7 @@ const GlProgram& AssetRenderer::program(Pass pass) {
   ShaderDefines defines = {{"PRT_SAMPLES", std::to_string(samples_.count())}};
   if (is_clustered()) defines.emplace_back("PRT_CLUSTERED", "1");
   if (albedo_map_.texture.name() != 0) defines.emplace_back("ALBEDO_MAP", "1");
+  if (opacity_map_.texture.name() != 0) defines.emplace_back("OPACITY_MAP", "1");
   ShaderDefines phong = defines;
   phong.emplace_back("PHONG", "1");
   ShaderDefines normal_mapped = phong;
@@ -134,7 +137,7 @@ void AssetRenderer::draw(Technique technique, const Eigen::Matrix4f& clip_from_o
                          const Eigen::Vector3f& eye_object) {
   prepare(technique);
   if (!set_light_) throw std::logic_error("AssetRenderer: no light was set");
-  bind_albedo();
+  bind_surface_maps();
   if (technique == Technique::phong || technique == Technique::normal_map) {
     const GlProgram& used = program(technique == Technique::phong ? Pass::phong : Pass::normal_map);
     std::vector<float> values = phong_buffer(*set_light_, albedo(), look_, eye_object);
@@ -164,6 +167,7 @@ void AssetRenderer::bind_planes(const GlProgram& used) const {
 void AssetRenderer::draw_appearance(const Eigen::Matrix4f& clip_from_object, int number) {
   const GlProgram& used = program(Pass::appearance);
   glProgramUniform1f(used.name(), asset_number_location, static_cast<float>(number));
+  bind_surface_maps();
   draw_triangles(used, clip_from_object);
 }
 
@@ -172,7 +176,7 @@ void AssetRenderer::shade_appearance(int number) {
   if (!set_light_) throw std::logic_error("AssetRenderer: no light was set");
   const GlProgram& used = program(Pass::deferred);
   bind_planes(used);
-  bind_albedo();
+  bind_surface_maps();
   glProgramUniform1f(used.name(), asset_number_location, static_cast<float>(number));
   glUseProgram(used.name());
   glBindVertexArray(mesh_.vertices.name());  // the core profile requires one, although the shader reads nothing from it
@@ -194,7 +198,7 @@ GpuMemory AssetRenderer::memory(Technique technique) const {
     memory.per_mesh += vertex_light_.bytes;
     memory.per_vertex += vertex_transfer_.bytes / std::max<std::size_t>(1, mesh_.vertex_count);
   }
-  memory.per_mesh += albedo_map_.bytes;
+  memory.per_mesh += albedo_map_.bytes + opacity_map_.bytes;
   if (is_textured(technique)) memory.per_mesh += planes_.bytes + cluster_ids_.bytes + light_.bytes;
   return memory;
 }

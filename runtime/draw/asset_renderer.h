@@ -63,7 +63,8 @@ class AssetRenderer {
   const GlProgram& program(Pass pass);
   void bind_prt(const GlProgram& program, const UploadedTexture& light, int layers, int clusters) const;
   std::array<float, 3> albedo() const;
-  void bind_albedo() const;
+  /// Binds the albedo and the opacity.
+  void bind_surface_maps() const;
   void bind_planes(const GlProgram& program) const;
   void draw_triangles(const GlProgram& program, const Eigen::Matrix4f& clip_from_object) const;
   bool is_clustered() const { return asset_.clusters && asset_.clusters->count > 1; }
@@ -72,7 +73,7 @@ class AssetRenderer {
   IncidentSamples samples_;
   UploadedMesh mesh_;
   std::map<Pass, GlProgram> programs_;
-  UploadedTexture planes_, cluster_ids_, normal_map_, albedo_map_, white_;
+  UploadedTexture planes_, cluster_ids_, normal_map_, albedo_map_, white_, opacity_map_;
   UploadedVertexTransfer vertex_transfer_;
   UploadedTexture light_, vertex_light_;
   GlBuffer phong_lights_;

@@ -155,6 +155,19 @@ UploadedTexture upload_albedo(const Image<std::uint8_t>& picture, int levels) {
   return map;
 }
 
+UploadedTexture upload_opacity(const Image<std::uint8_t>& picture) {
+  if (picture.values().empty()) return {};
+  require_at_most(GL_MAX_TEXTURE_SIZE, std::max(picture.width(), picture.height()), "textures with a side");
+  UploadedTexture map{make_texture(GL_TEXTURE_2D), picture.values().size()};
+  glTextureStorage2D(map.texture.name(), 1, GL_R8, picture.width(), picture.height());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage2D(map.texture.name(), 0, 0, 0, picture.width(), picture.height(), GL_RED, GL_UNSIGNED_BYTE,
+                      picture.values().data());
+  set_sampling(map.texture, GL_LINEAR);
+  check_gl("uploading the opacity");
+  return map;
+}
+
 UploadedVertexTransfer upload_vertex_transfer(const PrtAsset& asset) {
   const std::vector<float> vectors = asset.is_per_vertex() ? asset.vertex_transfer : looked_up_transfer(asset);
   const std::size_t length = asset.vector_length(), vertices = asset.mesh.positions.size();

@@ -42,6 +42,9 @@ int albedo_levels(const PrtAsset& asset);
 /// levels; no texture if the picture is empty.
 UploadedTexture upload_albedo(const Image<std::uint8_t>& picture, int levels = 1);
 
+/// Uploads a map of opacity, with bilinear lookup; none where the picture is empty.
+UploadedTexture upload_opacity(const Image<std::uint8_t>& picture);
+
 /// Transfer vectors at the vertices, float32, in a buffer texture: four coefficients per texel, layer_count texels per
 /// vertex. Those of a textured asset are looked up at the vertices' uvs.
 struct UploadedVertexTransfer {

@@ -7,7 +7,10 @@
 #include "bake/planes/coefficient_planes.h"
 #include "bake/planes/vertex_planes.h"
 #include "bake/verify.h"
+#include "base/asset_layout.h"
 #include "base/command_line.h"
+#include "base/errors.h"
+#include "base/files.h"
 #include "base/json.h"
 #include "base/outputs.h"
 #include "image/image_file.h"
@@ -60,6 +63,29 @@ void ship_normals(const fs::path& from, const fs::path& to, int bits) {
   write_png(to, narrow);
 }
 
+/// Copies the further maps that ship. Throws BadInput for one that the folder of the normals stage has not.
+std::vector<PrtMap> ship_maps(OutputSet& outputs, const fs::path& detail, const ShippedParts& ship) {
+  std::vector<PrtMap> shipped;
+  if (!ship.all_maps && ship.maps.empty()) return shipped;
+  const fs::path record_file = layout::record_in(detail, "normals");
+  const Json record = detail.empty() ? Json::object() : Json::parse(read_text(record_file), nullptr, false);
+  const Json maps = record.is_object() ? record.value("map_files", Json::object()) : Json::object();
+  std::vector<std::string> names = ship.maps;
+  if (ship.all_maps)
+    for (const auto& [name, entry] : maps.items()) names.push_back(name);
+  for (const std::string& name : names) {
+    if (!maps.contains(name))
+      throw BadInput(record_file.string(), "has no map '" + name + "', which --ship names",
+                     "it among the maps of the normals stage", "give kiln-normals --maps " + name);
+    const Json& entry = maps[name];
+    PrtMap map{name, entry.at("file").get<std::string>(), std::nullopt};
+    if (entry.contains("min")) map.range = PlaneRange{entry["min"].get<double>(), entry["max"].get<double>()};
+    fs::copy_file(detail / map.file, outputs.add(map.file), fs::copy_options::overwrite_existing);
+    shipped.push_back(std::move(map));
+  }
+  return shipped;
+}
+
 /// Writes the planes of an atlas. Returns the metrics of storing and of the seams, for bake.json.
 Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene& scene, const BakeResult& result,
                     const BakeSettings& settings) {
@@ -71,7 +97,10 @@ Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene&
   if (!paths.detail.empty() && settings.ship.normal_bits > 0) {
     asset.normals_file = normal_map_name;
     asset.normal_space = scene.normal_space;
-    ship_normals(paths.detail / normal_map_name, outputs.add(normal_map_name), settings.ship.normal_bits);
+    asset.normal_width = scene.own_normal_width;
+    asset.normal_height = scene.own_normal_height;
+    const char* file = scene.own_normal_width > 0 ? layout::own_normal_map : layout::normal_map;
+    ship_normals(paths.detail / file, outputs.add(normal_map_name), settings.ship.normal_bits);
   } else {
     outputs.remove_stale(normal_map_name);
   }
@@ -79,6 +108,13 @@ Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene&
     fs::copy_file(paths.detail / albedo_map_name, outputs.add(albedo_map_name), fs::copy_options::overwrite_existing);
   else
     outputs.remove_stale(albedo_map_name);
+  if (scene.has_opacity_map) {
+    asset.opacity_file = opacity_map_name;
+    fs::copy_file(paths.detail / opacity_map_name, outputs.add(opacity_map_name), fs::copy_options::overwrite_existing);
+  } else {
+    outputs.remove_stale(opacity_map_name);
+  }
+  asset.maps = ship_maps(outputs, paths.detail, settings.ship);
   const Seams seams(scene.atlas, scene.receivers.width, scene.receivers.height);
   const WrittenPlanes done = write_planes(outputs, result.channels, scene.receivers, asset, seams, settings.seams);
   outputs.remove_stale(vertex_mesh_name);

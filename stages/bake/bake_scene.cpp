@@ -12,6 +12,7 @@
 #include "import/import_mesh.h"
 #include "maps/asset_hints.h"
 #include "maps/detail_maps.h"
+#include "material/cut_out.h"
 #include "material/load_albedo.h"
 #include "material/surroundings.h"
 #include "mesh/draco_file.h"
@@ -63,7 +64,16 @@ std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSetti
   };
   for (std::size_t k = 0; k < files.size() && with_albedo; ++k)
     add_albedo(files[k].string(), load_albedo(imported[k], settings.material));
-  for (ImportedMesh& mesh : imported) meshes.push_back(std::move(mesh.mesh));
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    const LoadedOpacity loaded = load_opacity(imported[k], settings.material);
+    scene.add_warnings(loaded.warnings);
+    scene.further_files.insert(scene.further_files.end(), loaded.files.begin(), loaded.files.end());
+    meshes.push_back(std::move(imported[k].mesh));
+    SurfaceAlbedo none;
+    const bool cut = cut_occluder(meshes.back(), with_albedo ? albedos[k] : none, loaded.opacity, files[k].string());
+    if (cut && settings.per_vertex)
+      scene.add_warnings({"the surface is not opaque everywhere, which an asset baked per vertex does not show"});
+  }
 
   // Add the surroundings.
   scene.neighbours = settings.surroundings.neighbours;
@@ -73,6 +83,7 @@ std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSetti
     scene.add_warnings(placed.warnings);
     meshes.push_back(std::move(placed.mesh));
     if (with_albedo) add_albedo(placed.name, placed.material);
+    scene.further_files.insert(scene.further_files.end(), placed.opacity_files.begin(), placed.opacity_files.end());
     if (fs::is_regular_file(placed.name)) scene.further_files.emplace_back(placed.name);
   }
   scene.occluders = join_occluders(meshes, std::move(albedos));
@@ -104,6 +115,8 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
         "--occluder as the high mesh");
   if (settings.adaptive > 0)
     throw WrongUsage("per-vertex: found --adaptive; expected none, it goes by squares of texels");
+  if (settings.ship.all_maps || !settings.ship.maps.empty())
+    throw WrongUsage("per-vertex: found maps in --ship; expected none, they are looked up with the uvs of an atlas");
   if (settings.size.width != 0) throw WrongUsage("per-vertex: found --size; expected none, which is for texels");
   BakeScene scene;
   std::vector<std::string> warnings;
@@ -167,6 +180,13 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
     detail = load_detail_maps(paths.detail, atlas);
     scene.albedo = has_albedo_within(settings) ? PrtAlbedo::of_transfer() : shipped_albedo(*detail, settings.material);
     scene.normal_space = detail->normal_space;
+    scene.own_normal_width = detail->own_normal_width;
+    scene.own_normal_height = detail->own_normal_height;
+    scene.has_opacity_map = detail->has_opacity;
+    if (detail->has_opacity && paths.occluders.empty())
+      scene.add_warnings(
+          {"the low mesh casts shadows as if it were opaque, although its maps have opacity; give "
+           "--occluder the high mesh"});
   }
 
   if (settings.receiver == BakeReceiver::high) {

@@ -32,9 +32,11 @@ struct BakeScene {
   std::vector<std::string> said_warnings;  ///< warnings that an earlier stage has said
   void add_warnings(const std::vector<std::string>& further);
 
-  NormalSpace normal_space = NormalSpace::object;  ///< space of the normal map
-  PrtAlbedo albedo;                                ///< albedo of the receivers, for ranges.json
-  BuriedReport buried;                             ///< receivers that were set aside
+  NormalSpace normal_space = NormalSpace::object;   ///< space of the normal map
+  PrtAlbedo albedo;                                 ///< albedo of the receivers, for ranges.json
+  int own_normal_width = 0, own_normal_height = 0;  ///< texels of the normal map that ships, as DetailMaps has them
+  bool has_opacity_map = false;                     ///< the detail folder has a map of opacity
+  BuriedReport buried;                              ///< receivers that were set aside
   double high_area = 0;  ///< area of the high mesh that receivers stand on, square object units; else 0
 
   // A bake per vertex alone has these.

@@ -142,7 +142,7 @@ void add_main_options(OptionSet& options, BakeSettings& settings) {
       .affects(Affects::sums)
       .integer("bits", settings.bits, 8, 16, "Bits of a stored coefficient, 8 or 16")
       .affects(Affects::storing)
-      .typed<ShippedParts>(ship_setting, settings.ship, "normal=none, normal=8 or normal=16",
+      .typed<ShippedParts>(ship_setting, settings.ship, ship_range,
                            "What the folder holds beside transfer, which needs none of it: the normal map of --detail, "
                            "with bits of 8 or "
                            "16, or no normal map",

@@ -98,7 +98,7 @@ StageRun run(const AssetPlan& plan) {
 const StageInfo& bake_stage() {
   static const StageInfo info = {.name = "bake",
                                  .options = options,
-                                 .rivals = {{"albedo", "albedo-texture"}},
+                                 .rivals = {{"albedo", "albedo-texture"}, {"opacity", "opacity-texture"}},
                                  .metrics = metric_groups(),
                                  .run = run};
   return info;

@@ -135,6 +135,11 @@ Json save_compressed(OutputSet& outputs, const fs::path& input, const PrtAsset& 
     copy_into(outputs, input, asset.albedo.file);
   else
     outputs.remove_stale(albedo_map_name);
+  if (!asset.opacity_file.empty())
+    copy_into(outputs, input, asset.opacity_file);
+  else
+    outputs.remove_stale(opacity_map_name);
+  for (const PrtMap& map : asset.maps) copy_into(outputs, input, map.file);
   for (const auto& [name, bytes] : result.files) {
     const fs::path file = outputs.add(name);
     std::ofstream stream(file, std::ios::binary);

@@ -80,6 +80,14 @@ class MapMaker {
         return position();
       case MapKind::material:
         return material();
+      case MapKind::roughness:
+        return share(kind, in_.materials.roughness);
+      case MapKind::metalness:
+        return share(kind, in_.materials.metalness);
+      case MapKind::emission:
+        return emission();
+      case MapKind::orm:
+        return orm();
     }
     return {};
   }
@@ -154,7 +162,7 @@ class MapMaker {
     const auto& kinds = settings_.kinds;
     const int bands = std::find(kinds.begin(), kinds.end(), MapKind::bent_normal) != kinds.end() ? 2 : 1;
     if (!transfer_)
-      transfer_ = surface_transfer(in_.high, seen_.points(), {.bands = bands, .directions = settings_.directions});
+      transfer_ = surface_transfer(in_.occluder, seen_.points(), {.bands = bands, .directions = settings_.directions});
     return *transfer_;
   }
 
@@ -181,8 +189,11 @@ class MapMaker {
 
   SurfaceMap thickness() {
     // A mean over distances varies less than one over what is hidden: a quarter of the directions will do.
-    std::vector<float> lengths = surface_thickness(in_.scene, seen_.points(), std::max(1, settings_.directions / 4),
-                                                   rounding_offset(in_.high.positions));
+    std::optional<RayScene> cut;
+    if (&in_.occluder != &in_.high) cut.emplace(in_.occluder);
+    std::vector<float> lengths =
+        surface_thickness(cut ? *cut : in_.scene, seen_.points(), std::max(1, settings_.directions / 4),
+                          rounding_offset(in_.high.positions));
     for (float& length : lengths) length = static_cast<float>(unit() * length);
     const double largest = magnitude(lengths, 1);
     return scalar(MapKind::thickness, lengths, 0, largest > 0 ? largest : 1, "length");
@@ -227,6 +238,43 @@ class MapMaker {
     return map;
   }
 
+  /// Means of a share over texels.
+  SurfaceMap share(MapKind kind, const SurfaceShare& share) {
+    SurfaceMap map{kind, share_picture(share), 0, 1, ""};
+    return map;
+  }
+
+  Image<float> share_picture(const SurfaceShare& share) {
+    Image<float> image = in_.means->of(1, [&](const SurfacePoint& point) {
+      return Eigen::Vector3f(share.at(point.triangle, point.u, point.v), 0, 0);
+    });
+    finish(image, 0, 1);
+    return image;
+  }
+
+  /// Light that the surface gives off, linear; a PNG has it sRGB-encoded.
+  SurfaceMap emission() {
+    SurfaceMap map{MapKind::emission, {}, 0, 1, ""};
+    map.values = in_.means->of(
+        3, [&](const SurfacePoint& point) { return in_.materials.emission.at(point.triangle, point.u, point.v); });
+    const double brightest =
+        map.values.values().empty() ? 0 : static_cast<double>(*std::ranges::max_element(map.values.values()));
+    map.highest = std::max(1.0, brightest);
+    finish(map.values, 0, map.highest);
+    return map;
+  }
+
+  /// Ambient occlusion, roughness and metalness in one picture [Khronos 2021, 3.9.2].
+  SurfaceMap orm() {
+    SurfaceMap map{MapKind::orm, picture(3), 0, 1, ""};
+    const std::array<Image<float>, 3> channels = {scalar(MapKind::ambient_occlusion, openness(), 0, 1, "").values,
+                                                  share_picture(in_.materials.roughness),
+                                                  share_picture(in_.materials.metalness)};
+    for (std::size_t texel = 0; texel < channels[0].values().size(); ++texel)
+      for (std::size_t c = 0; c < 3; ++c) map.values.values()[3 * texel + c] = channels[c].values()[texel];
+    return map;
+  }
+
   /// Flat colours, which gutters and texels that are not seen have of their nearest neighbour.
   SurfaceMap material();
 
@@ -255,7 +303,7 @@ SurfaceMap MapMaker::material() {
   std::vector<std::uint32_t> ids(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), none);
   parallel_for(std::size_t{0}, seen_.texels.size(), 256, [&](std::size_t k) {
     const SurfacePoint point = in_.scene.closest_point(seen_.positions[k], std::numeric_limits<float>::infinity());
-    ids[seen_.texels[k]] = in_.materials.of_triangle[point.triangle];
+    ids[seen_.texels[k]] = in_.materials.ids.of_triangle[point.triangle];
   });
   // Ids spread from texel to texel, breadth first.
   std::vector<std::uint32_t> front = seen_.texels, next;
@@ -283,8 +331,9 @@ Image<Texel> stored(const SurfaceMap& map) {
   constexpr double largest = std::numeric_limits<Texel>::max();
   Image<Texel> image(map.values.width(), map.values.height(), map.values.channels());
   std::transform(map.values.values().begin(), map.values.values().end(), image.values().begin(), [&](float value) {
-    const double place = (static_cast<double>(value) - map.lowest) / (map.highest - map.lowest);
-    return static_cast<Texel>(std::lround(std::clamp(place, 0.0, 1.0) * largest));
+    double place = std::clamp((static_cast<double>(value) - map.lowest) / (map.highest - map.lowest), 0.0, 1.0);
+    if (map.kind == MapKind::emission) place = static_cast<double>(srgb_from_linear(static_cast<float>(place)));
+    return static_cast<Texel>(std::lround(place * largest));
   });
   return image;
 }
@@ -297,7 +346,7 @@ std::vector<SurfaceMap> make_maps(const MapInputs& inputs, const MapSettings& se
   if (settings.kinds.empty()) return maps;
   const bool wants_materials =
       std::find(settings.kinds.begin(), settings.kinds.end(), MapKind::material) != settings.kinds.end();
-  if (wants_materials && inputs.materials.of_triangle.size() != inputs.high.triangles.size())
+  if (wants_materials && inputs.materials.ids.of_triangle.size() != inputs.high.triangles.size())
     throw std::invalid_argument("make_maps: a map of materials needs one id per triangle");
   MapMaker maker(inputs, settings);
   for (const MapKind kind : settings.kinds) {
@@ -307,12 +356,19 @@ std::vector<SurfaceMap> make_maps(const MapInputs& inputs, const MapSettings& se
   return maps;
 }
 
+bool needs_means(const MapSettings& settings) {
+  return std::ranges::any_of(settings.kinds, [](MapKind kind) {
+    return kind == MapKind::roughness || kind == MapKind::metalness || kind == MapKind::emission ||
+           kind == MapKind::orm;
+  });
+}
+
 Json write_maps(OutputSet& outputs, const std::vector<SurfaceMap>& maps, const MapSettings& settings,
                 const MaterialIds& materials) {
   Json described = Json::object();
   std::vector<std::string> written;
   for (const SurfaceMap& map : maps) {
-    const MapFormat format = map.kind == MapKind::material ? MapFormat::png8 : settings.format;
+    const MapFormat format = is_picture(map.kind) ? MapFormat::png8 : settings.format;
     const std::string name = map_file(map.kind, format);
     if (name == layout::position_map) {  // which the stage writes anyway
       described[map_name(map.kind)] = {{"file", name}, {"unit", "length"}};
@@ -330,6 +386,7 @@ Json write_maps(OutputSet& outputs, const std::vector<SurfaceMap>& maps, const M
     if (format != MapFormat::exr)
       entry.update({{"bits", format == MapFormat::png8 ? 8 : 16}, {"min", map.lowest}, {"max", map.highest}});
     if (!map.unit.empty()) entry["unit"] = map.unit;
+    if (map.kind == MapKind::emission && format != MapFormat::exr) entry["encoding"] = "srgb";
     if (map.kind == MapKind::material)
       for (std::uint32_t id = 0; id < materials.names.size(); ++id) {
         const Eigen::Vector3f color = id_color(id);

@@ -14,8 +14,9 @@
 #include "maps/seams.h"
 #include "mesh/triangle_mesh.h"
 #include "mesh/uv_raster.h"
+#include "normals/high_materials.h"
 #include "normals/map_settings.h"
-#include "normals/material_ids.h"
+#include "normals/texel_means.h"
 #include "raycast/ray_scene.h"
 
 namespace kiln {
@@ -40,13 +41,18 @@ struct MapInputs {
   const Seams& seams;
   SeamChoice seam_choice = SeamChoice::equalise;
   NormalSpace space = NormalSpace::object;  ///< of the bent normals
-  const MaterialIds& materials;
+  const HighMaterials& materials;
+  const TriangleMesh& occluder;  ///< `high`, without what its opacity cuts away
+  const TexelMeans* means;       ///< for maps of shares and emission; null where there are none
 };
 
 /// Makes the maps that `settings` name, in their order. Texels whose point lies inside another part get the values of
 /// their neighbours. See README.md for what each holds.
 std::vector<SurfaceMap> make_maps(const MapInputs& inputs, const MapSettings& settings,
                                   const ProgressFunction& progress = no_progress);
+
+/// Tells whether `settings` name a map that needs means over texels.
+bool needs_means(const MapSettings& settings);
 
 /// Writes the maps, and removes those of an earlier run that are not among them. Returns for each its file, range, unit
 /// and, of materials, their colours.

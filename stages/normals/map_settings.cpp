@@ -12,8 +12,9 @@ namespace kiln {
 namespace {
 
 /// By MapKind.
-constexpr std::array<const char*, map_kinds> names = {"ao",     "bent-normal", "thickness", "curvature",
-                                                      "height", "position",    "material"};
+constexpr std::array<const char*, map_kinds> names = {"ao",        "bent-normal", "thickness", "curvature",
+                                                      "height",    "position",    "material",  "roughness",
+                                                      "metalness", "emission",    "orm"};
 
 std::string all_names() {
   std::string text;
@@ -28,8 +29,10 @@ std::string map_name(MapKind kind) { return names.at(static_cast<std::size_t>(ki
 std::string map_file(MapKind kind, MapFormat format) {
   std::string name = map_name(kind);
   std::replace(name.begin(), name.end(), '-', '_');
-  return name + (format == MapFormat::exr && kind != MapKind::material ? ".exr" : ".png");
+  return name + (format == MapFormat::exr && !is_picture(kind) ? ".exr" : ".png");
 }
+
+bool is_picture(MapKind kind) { return kind == MapKind::material || kind == MapKind::orm; }
 
 std::vector<MapKind> parse_map_kinds(const std::string& text) {
   std::array<bool, map_kinds> wanted{};

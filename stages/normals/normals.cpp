@@ -15,6 +15,7 @@
 #include "base/stopwatch.h"
 #include "image/gutter.h"
 #include "image/srgb.h"
+#include "material/cut_out.h"
 #include "mesh/uv_raster.h"
 #include "normals/normal_seams.h"
 #include "normals/texel_match.h"
@@ -183,6 +184,23 @@ void measure_maps(const MapVersions& map, const Seams& seams, const TriangleMesh
   result.seam_change_degrees_rms = angles_between(map.before, map.after, raster).rms;
 }
 
+/// Makes the normal map at a size of its own, from points of its own texels.
+Image<std::uint16_t> normal_of_own_size(const HighSurface& high, const TriangleMesh& atlas, const MatchLimits& limits,
+                                        const NormalsSettings& settings) {
+  const Extent& size = settings.normal_size;
+  const UvRaster raster = rasterise_uvs(atlas, size.width, size.height);
+  if (raster.covered_texels == 0)
+    throw WrongUsage("the atlas covers no texel at --normal-size " + size.text() + "; give a larger one");
+  const HighSurface without_albedo{high.mesh, high.scene, SurfaceAlbedo(), high.is_buried};
+  const TexelMatches matches =
+      match_texels(without_albedo, atlas, raster, limits, settings.samples, settings.fit, no_progress);
+  Image<float> map = normal_map(matches.normal_object, settings.space, atlas, matches.known);
+  const Seams seams(atlas, size.width, size.height);
+  if (settings.seams == SeamChoice::equalise && !seams.edges().empty())
+    equalise_normals(map, seams, coverage_of(raster), settings.space);
+  return quantise_normals(map);
+}
+
 /// Makes the map of the albedo at a size of its own, from points of its own texels.
 AlbedoMap albedo_of_own_size(const HighSurface& high, const TriangleMesh& atlas, const MatchLimits& limits,
                              const NormalsSettings& settings) {
@@ -195,12 +213,21 @@ AlbedoMap albedo_of_own_size(const HighSurface& high, const TriangleMesh& atlas,
                          Seams(atlas, size.width, size.height), settings.seams);
 }
 
+/// Makes the map of opacity, of the albedo's size: outlines of leaves need as many texels as their colours.
+OpacityMap opacity_of(const HighSurface& high, const TriangleMesh& atlas, const MatchLimits& limits,
+                      const NormalsSettings& settings, const Extent& map_size, const SurfaceOpacity& opacity) {
+  const Extent size = settings.albedo_size.width > 0 ? settings.albedo_size : map_size;
+  const TexelMeans means(high, atlas, size.width, size.height, limits);
+  return make_opacity_map(opacity, means, rasterise_uvs(atlas, size.width, size.height),
+                          Seams(atlas, size.width, size.height), settings.seams);
+}
+
 }  // namespace
 
 NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, const NormalsSettings& settings,
-                           const AssetHints& hints, const ProgressFunction& progress, const SurfaceAlbedo& albedo,
-                           const MaterialIds& materials) {
+                           const AssetHints& hints, const ProgressFunction& progress, const HighMaterials& materials) {
   const Stopwatch stopwatch;
+  const SurfaceAlbedo& albedo = materials.albedo;
   if (high.triangles.empty() || high.normals.size() != high.positions.size())
     throw std::invalid_argument("make_normals: a high mesh with normals is needed");
   if (atlas.normals.size() != atlas.positions.size() || atlas.uvs.size() != atlas.positions.size())
@@ -253,15 +280,26 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
                                                    seams, settings.seams);
   }
 
+  if (settings.normal_size.width > 0 && settings.normal_size != size)
+    result.own_normal = normal_of_own_size({high, scene, albedo, is_buried}, atlas, limits, settings);
+  if (!materials.opacity.is_opaque())
+    result.opacity_map = opacity_of({high, scene, albedo, is_buried}, atlas, limits, settings, size, materials.opacity);
+
   // Step 5: make further maps.
   if (!settings.maps.kinds.empty()) {
     const double seconds_before = stopwatch.seconds();
     std::vector<std::uint8_t> seen(covered);
     for (std::size_t texel = 0; texel < seen.size(); ++texel)
       if (ways.values()[texel] == static_cast<std::uint8_t>(TexelWay::buried)) seen[texel] = 0;
-    result.maps = make_maps({high, scene, atlas, raster, matches.position, matches.normal_object, seen, seams,
-                             settings.seams, settings.space, materials},
-                            settings.maps, part_of(progress, 0.4, 1));
+    std::optional<TexelMeans> means;
+    if (needs_means(settings.maps))
+      means.emplace(HighSurface{high, scene, albedo, is_buried}, atlas, size.width, size.height, limits);
+    TriangleMesh cut;
+    if (!materials.opacity.is_opaque()) cut = cut_out(high, materials.opacity, "the high mesh").mesh;
+    result.maps =
+        make_maps({high, scene, atlas, raster, matches.position, matches.normal_object, seen, seams, settings.seams,
+                   settings.space, materials, cut.triangles.empty() ? high : cut, means ? &*means : nullptr},
+                  settings.maps, part_of(progress, 0.4, 1));
     result.map_seconds = stopwatch.seconds() - seconds_before;
   }
   result.seconds = stopwatch.seconds();
@@ -273,7 +311,8 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   result.mean_distance = matches.mean_distance / diagonal;
   result.largest_distance = matches.largest_distance / diagonal;
   measure_maps({kept, map}, seams, atlas, raster, result);
-  result.map_error = measure_map_error(high, atlas, dequantise_normals(result.normal), settings.space);
+  result.map_error =
+      measure_map_error(high, atlas, dequantise_normals(result.own_normal.value_or(result.normal)), settings.space);
   if (result.albedo_map)
     result.albedo_map->error =
         measure_albedo_error(high, albedo, atlas, linear_from_srgb_bytes(result.albedo_map->picture));
@@ -288,34 +327,37 @@ Json NormalsResult::to_json() const {
     albedo_json.update(albedo_map->to_json());
   else
     albedo_json["constant"] = {constant.x(), constant.y(), constant.z()};
-  return {{"space", space == NormalSpace::object ? "object" : "tangent"},
-          {"width", normal.width()},
-          {"height", normal.height()},
-          {"covered_texels", covered_texels},
-          {"albedo", albedo_json},
-          {"found_by_ray_outwards", found_by_ray_outwards},
-          {"found_by_ray_inwards", found_by_ray_inwards},
-          {"found_by_nearest_point", found_by_nearest_point},
-          {"disagreeing", disagreeing},
-          {"buried_texels", buried_texels},
-          {"cage_distance", cage_distance},
-          {"cage_source", cage_source},
-          {"mean_distance", mean_distance},
-          {"largest_distance", largest_distance},
-          {"normal_deviation_degrees_mean", normal_deviation_degrees_mean},
-          {"normal_deviation_degrees_largest", normal_deviation_degrees_largest},
-          {"quantisation_degrees_largest", quantisation_degrees_largest},
-          {"map_error_degrees_mean", map_error.mean_degrees},
-          {"map_error_degrees_p95", map_error.percentile_95_degrees},
-          {"map_error_degrees_max", map_error.largest_degrees},
-          {"seam_edges", seam_edges},
-          {"seam_mismatch_degrees_mean_before", seam_before.mean},
-          {"seam_mismatch_degrees_max_before", seam_before.largest},
-          {"seam_mismatch_degrees_mean", seam_after.mean},
-          {"seam_mismatch_degrees_max", seam_after.largest},
-          {"seam_change_degrees_rms", seam_change_degrees_rms},
-          {"map_seconds", map_seconds},
-          {"measuring_seconds", measuring_seconds}};
+  Json result = {{"space", space == NormalSpace::object ? "object" : "tangent"},
+                 {"width", normal.width()},
+                 {"height", normal.height()},
+                 {"covered_texels", covered_texels},
+                 {"albedo", albedo_json},
+                 {"found_by_ray_outwards", found_by_ray_outwards},
+                 {"found_by_ray_inwards", found_by_ray_inwards},
+                 {"found_by_nearest_point", found_by_nearest_point},
+                 {"disagreeing", disagreeing},
+                 {"buried_texels", buried_texels},
+                 {"cage_distance", cage_distance},
+                 {"cage_source", cage_source},
+                 {"mean_distance", mean_distance},
+                 {"largest_distance", largest_distance},
+                 {"normal_deviation_degrees_mean", normal_deviation_degrees_mean},
+                 {"normal_deviation_degrees_largest", normal_deviation_degrees_largest},
+                 {"quantisation_degrees_largest", quantisation_degrees_largest},
+                 {"map_error_degrees_mean", map_error.mean_degrees},
+                 {"map_error_degrees_p95", map_error.percentile_95_degrees},
+                 {"map_error_degrees_max", map_error.largest_degrees},
+                 {"seam_edges", seam_edges},
+                 {"seam_mismatch_degrees_mean_before", seam_before.mean},
+                 {"seam_mismatch_degrees_max_before", seam_before.largest},
+                 {"seam_mismatch_degrees_mean", seam_after.mean},
+                 {"seam_mismatch_degrees_max", seam_after.largest},
+                 {"seam_change_degrees_rms", seam_change_degrees_rms},
+                 {"map_seconds", map_seconds},
+                 {"measuring_seconds", measuring_seconds}};
+  if (opacity_map) result["opacity"] = opacity_map->to_json();
+  if (own_normal) result["own_normal"] = {{"width", own_normal->width()}, {"height", own_normal->height()}};
+  return result;
 }
 
 }  // namespace kiln

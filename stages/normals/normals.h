@@ -15,20 +15,25 @@
 #include "material/surface_albedo.h"
 #include "mesh/triangle_mesh.h"
 #include "normals/albedo_map.h"
+#include "normals/high_materials.h"
 #include "normals/map_error.h"
 #include "normals/map_set.h"
 #include "normals/normals_settings.h"
+#include "normals/opacity_map.h"
 
 namespace kiln {
 
 struct NormalsResult {
-  Image<std::uint16_t> normal;   ///< content of normal.png: 3 channels, n * 0.5 + 0.5, gutters filled
-  Image<float> position;         ///< object-space point of the high mesh, 3 channels, gutters filled
-  Image<std::uint8_t> coverage;  ///< 255 where covered, else 0
-  Image<std::uint8_t> match;     ///< 3 channels: a colour of texel_way_colours for each texel
+  Image<std::uint16_t> normal;                     ///< content of normal.png: 3 channels, n * 0.5 + 0.5, gutters filled
+  std::optional<Image<std::uint16_t>> own_normal;  ///< the same at the size of its own that the settings ask for
+  Image<float> position;                           ///< object-space point of the high mesh, 3 channels, gutters filled
+  Image<std::uint8_t> coverage;                    ///< 255 where covered, else 0
+  Image<std::uint8_t> match;                       ///< 3 channels: a colour of texel_way_colours for each texel
 
   SurfaceAlbedo albedo;                 ///< albedo of the high mesh
   std::optional<AlbedoMap> albedo_map;  ///< only where the albedo is not constant
+
+  std::optional<OpacityMap> opacity_map;  ///< only where the high mesh is not opaque everywhere
 
   std::vector<SurfaceMap> maps;  ///< further maps that the settings name
   double map_seconds = 0;        ///< part of the time spent on these
@@ -61,11 +66,10 @@ struct NormalsResult {
 /// Finds, for every texel of the atlas, the point of the high mesh that it stands for (match_surface), and the high
 /// mesh's normal there. `high` has normals; `atlas` is atlas.drc decoded, with normals and uvs (throws
 /// std::invalid_argument otherwise). Progress reaches 1 when the maps are made, before they are measured. `hints`
-/// replace settings that are left automatic. `albedo` is that of `high`, and so are `materials`, which only a map of
-/// them needs. Throws WrongUsage where the texture is too
-/// small for the atlas to cover a texel.
+/// replace settings that are left automatic. `materials` are those of `high`. Throws WrongUsage where the texture is
+/// too small for the atlas to cover a texel, BadInput where opacity cuts all of `high` away.
 NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, const NormalsSettings& settings,
                            const AssetHints& hints = {}, const ProgressFunction& progress = no_progress,
-                           const SurfaceAlbedo& albedo = {}, const MaterialIds& materials = {});
+                           const HighMaterials& materials = {});
 
 }  // namespace kiln

@@ -14,6 +14,9 @@ OptionSet normals_options(NormalsSettings& settings) {
   options.extent(
       "albedo-size", settings.albedo_size, 0, 16384,
       "Width and height of albedo.png in texels, where colours vary more than light; 0 is the size of the maps");
+  options.extent("normal-size", settings.normal_size, 0, 16384,
+                 "Width and height of the normal map that ships, in texels; 0 is the size of the maps, which the bake "
+                 "takes its normals from");
   options.choice<int>("samples", settings.samples, {{"1", 1}, {"4", 4}, {"16", 16}, {"64", 64}},
                       "Points per texel that normals are averaged over");
   options.toggle(

@@ -15,6 +15,7 @@ struct NormalsSettings {
   NormalSpace space = NormalSpace::object;  ///< space of normal.png
   Extent size;                              ///< size of the maps, texels; 0: the atlas stage's, or 512
   Extent albedo_size = {};                  ///< size of albedo.png, texels; 0: that of the maps
+  Extent normal_size = {};                  ///< size of the normal map that ships, texels; 0: that of the maps
   int samples = 1;                          ///< per texel: 1, 4, 16 or 64
   bool fit = false;                         ///< with one sample: fit bilinear lookups between centres, too
   SeamChoice seams = SeamChoice::equalise;

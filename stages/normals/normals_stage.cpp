@@ -10,7 +10,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The last eight where the surface has an albedo that varies.
+/// Those of albedo where it varies, those of opacity where the surface is not opaque everywhere,
+/// those of own_normal where the normal map that ships has a size of its own.
 constexpr const char* metric_names =
     "width height covered_texels found_by_ray_outwards found_by_ray_inwards found_by_nearest_point disagreeing "
     "buried_texels cage_distance mean_distance largest_distance normal_deviation_degrees_mean "
@@ -20,7 +21,8 @@ constexpr const char* metric_names =
     "seam_mismatch_degrees_max seam_change_degrees_rms map_seconds measuring_seconds albedo.width albedo.height "
     "albedo.error_rms albedo.error_p95 "
     "albedo.seam_mismatch_mean_before albedo.seam_mismatch_max_before albedo.seam_mismatch_mean "
-    "albedo.seam_mismatch_max";
+    "albedo.seam_mismatch_max opacity.width opacity.height opacity.share_there "
+    "own_normal.width own_normal.height";
 
 StageOptions options() { return StageOptions::of(normals_options); }
 
@@ -44,7 +46,7 @@ StageRun run(const AssetPlan& plan) {
 const StageInfo& normals_stage() {
   static const StageInfo info = {.name = "normals",
                                  .options = options,
-                                 .rivals = {{"albedo", "albedo-texture"}},
+                                 .rivals = {{"albedo", "albedo-texture"}, {"opacity", "opacity-texture"}},
                                  .metrics = {{metric_names}},
                                  .run = run};
   return info;

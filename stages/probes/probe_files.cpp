@@ -6,6 +6,7 @@
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "import/import_mesh.h"
+#include "material/cut_out.h"
 #include "material/load_albedo.h"
 
 namespace kiln {
@@ -22,17 +23,24 @@ SceneMesh load_probe_scene(const std::vector<std::filesystem::path>& files, cons
       throw BadInput(file.string(),
                      "lies many times its size from the origin, or is a million times larger or smaller than one unit",
                      "a mesh whose probes can be told as floats", "move it, or give --scale");
+    const LoadedOpacity opacity = load_opacity(imported, settings.material);
+    command.warn(opacity.warnings);
+    command.also_read(opacity.files);
+    TriangleMesh mesh = imported.mesh;
     if (!settings.bounces.any()) {
-      scene.add(imported.mesh);
+      SurfaceAlbedo none;
+      cut_occluder(mesh, none, opacity.opacity, file.string());
+      scene.add(mesh);
       continue;
     }
-    const LoadedAlbedo loaded = load_albedo(imported, settings.material);
+    LoadedAlbedo loaded = load_albedo(imported, settings.material);
     if (loaded.albedo.source() == SurfaceAlbedo::Source::none)
       throw WrongUsage("bounces: found no albedo in " + file.string() +
                        "; expected materials, colours of vertices, --albedo or --albedo-texture");
     command.warn(loaded.warnings());
     command.also_read(loaded.files);
-    scene.add(imported.mesh, loaded.albedo);
+    cut_occluder(mesh, loaded.albedo, opacity.opacity, file.string());
+    scene.add(mesh, loaded.albedo);
   }
   return scene;
 }

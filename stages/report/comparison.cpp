@@ -13,6 +13,7 @@
 #include "base/stopwatch.h"
 #include "image/image_file.h"
 #include "import/import_mesh.h"
+#include "material/cut_out.h"
 #include "material/load_albedo.h"
 #include "material/surroundings.h"
 #include "mesh/camera_record.h"
@@ -81,7 +82,10 @@ SceneMesh scene_of(const AssetFolder& asset, const ImportedMesh& high, bool boun
     else
       scene.add(mesh);
   };
-  add(high.mesh, bounces ? load_albedo(high, material).albedo : SurfaceAlbedo());
+  TriangleMesh own = high.mesh;
+  SurfaceAlbedo albedo = bounces ? load_albedo(high, material).albedo : SurfaceAlbedo();
+  cut_occluder(own, albedo, load_opacity(high, material).opacity, high.file.string());
+  add(own, albedo);
   for (const PlacedMesh& placed :
        load_surroundings(surroundings, bounding_box(high.mesh), material, bounces, high.mesh.frame))
     add(placed.mesh, placed.material.albedo);
@@ -132,6 +136,18 @@ std::vector<double> prior_of(const ReportSettings& settings, int bands) {
   return mean;
 }
 
+/// Cuts away what the map of opacity of an asset does not show of its mesh.
+TriangleMesh cut_by_map(const TriangleMesh& low, const fs::path& opacity_map) {
+  constexpr auto edge = ChannelTexture::Wrap::clamp;
+  const auto texture = std::make_shared<const ChannelTexture>(SourcePicture{opacity_map, nullptr, opacity_map.string()},
+                                                              SourceShare::Channel::grey);
+  SurfaceShare::Materials materials;
+  materials.all.push_back({.texture = texture, .wrap_u = edge, .wrap_v = edge});
+  materials.of_triangle.assign(low.triangles.size(), 0);
+  for (const Triangle& t : low.triangles) materials.uvs.push_back({low.uvs[t[0]], low.uvs[t[1]], low.uvs[t[2]]});
+  return cut_out(low, {SurfaceShare(std::move(materials)), {0.5f}}, opacity_map.string()).mesh;
+}
+
 ErrorSplit split_error(const AssetFolder& asset, const TriangleMesh& low, const TriangleMesh& high,
                        const SceneMesh& scene, const ReportSettings& settings, const ComparisonRun& run) {
   const PrtAsset plain = load_prt_asset(asset.prt());
@@ -142,8 +158,9 @@ ErrorSplit split_error(const AssetFolder& asset, const TriangleMesh& low, const 
   sampling.pixels = static_cast<std::size_t>(settings.error_samples);
   if (settings.error_pixels > 0) sampling.pixel_size = bounding_box(high).sides().maxCoeff() / settings.error_pixels;
   sampling.seed = static_cast<std::uint64_t>(run.seed);
+  const TriangleMesh seen_low = plain.opacity_file.empty() ? low : cut_by_map(low, asset.prt() / plain.opacity_file);
   return error_causes({.high = high,
-                       .low = low,
+                       .low = seen_low,
                        .scene = scene,
                        .asset = plain,
                        .compressed = compressed ? &*compressed : nullptr,
@@ -290,7 +307,7 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   const TriangleMesh atlas = load_atlas(asset.prt() / layout::atlas_mesh);
   const ImportSettings how = import_settings_of(asset.record("simplify").value("settings", Json::object()));
   const ImportedMesh imported = import_mesh(high_file, how, atlas.frame);  // as in the stages before
-  const TriangleMesh& high = imported.mesh;
+  TriangleMesh high = imported.mesh;
   ReferenceView view;
   view.width = view.height = settings.picture_size;
   view.supersample = supersample;
@@ -302,6 +319,8 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   } else {
     view.surface_albedo = load_albedo(imported, material_of(asset.record("normals"))).albedo;
   }
+  cut_occluder(high, view.surface_albedo, load_opacity(imported, material_of(asset.record("normals"))).opacity,
+               high_file.string());
   view.bounces = static_cast<int>(bounces_taken(asset.record("bake")));
   view.scene = scene_of(asset, imported, view.bounces > 0 || error_bounces(asset, settings) > 0);
   view.bands = asset.baked.bands;

@@ -287,6 +287,11 @@ std::string textures_section(const AssetFolder& asset, const fs::path& scratch) 
         figure(image(thumbnail(albedo, 8, texture_pixels), "Albedo", scratch),
                fmt::format("<b>Albedo</b> · from {}; off the high mesh's by {} (root mean square, linear)",
                            html_escaped(normals["albedo"].value("source", "")), value(normals["albedo"], "error_rms")));
+  if (const fs::path opacity = layout::stage_folder(asset.folder, "normals") / layout::opacity_map;
+      normals.contains("opacity") && fs::exists(opacity))
+    html += figure(image(thumbnail(opacity, 8, texture_pixels), "Opacity", scratch),
+                   fmt::format("<b>Opacity</b> · nothing is there below a half; {} of the covered texels are",
+                               value(normals["opacity"], "share_there")));
   if (const fs::path match = layout::stage_folder(asset.folder, "normals") / layout::match_map; fs::exists(match))
     html += match_figure(match, scratch);
   html += map_figures(normals, layout::stage_folder(asset.folder, "normals"), scratch);

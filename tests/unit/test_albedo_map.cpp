@@ -42,7 +42,7 @@ SurfaceAlbedo painted(const TriangleMesh& mesh, const Color& color) {
 
 NormalsResult make(const TriangleMesh& high, const TriangleMesh& low, const NormalsSettings& settings,
                    const SurfaceAlbedo& albedo) {
-  return make_normals(high, low, settings, {}, no_progress, albedo);
+  return make_normals(high, low, settings, {}, no_progress, {.albedo = albedo});
 }
 
 /// Tolerance: half a step of 1/255 in sRGB, times the steepest slope of its decoding, 1.055^-2.4 * 2.4 * 1.055^1.4 =

@@ -537,6 +537,38 @@ assets:
   EXPECT_EQ(value_after(run_of(rules, "odd", "bake").command, "--albedo"), "0.6");
 }
 
+TEST(Material, OpacityGoesToTheStagesThatCutAndToNeighbours) {
+  const std::vector<MakeRule> rules = make_rules(pipeline_of(R"(
+assets:
+  fern: {mesh: a.obj, material: {opacity-texture: a.png, opacity-cutoff: 0.25}}
+  wall: {mesh: b.obj, material: {opacity: none}}
+scene: {fern: [0, 0, 0], wall: [1, 0, 0]}
+)"));
+  for (const char* stage : {"normals", "bake"}) {
+    EXPECT_EQ(value_after(run_of(rules, "fern", stage).command, "--opacity-texture"), "a.png");
+    EXPECT_EQ(value_after(run_of(rules, "fern", stage).command, "--opacity-cutoff"), "0.25");
+    EXPECT_EQ(value_after(run_of(rules, "wall", stage).command, "--opacity"), "none");
+  }
+  const std::string neighbour = value_after(run_of(rules, "wall", "bake").command, "--neighbour");
+  EXPECT_NE(neighbour.find("opacity-texture=a.png;opacity-cutoff=0.25"), std::string::npos) << neighbour;
+}
+
+TEST(Maps, HaveTheirSizesFromOneBlock) {
+  const std::vector<MakeRule> rules = make_rules(pipeline_of(R"(
+defaults:
+  maps: {planes: 256, albedo: 4096}
+assets:
+  plain: {mesh: a.obj}
+  own: {mesh: a.obj, maps: {normal: 2048}, normals: {albedo-size: 1024}}
+)"));
+  EXPECT_EQ(value_after(run_of(rules, "plain", "atlas").command, "--size"), "256");
+  EXPECT_EQ(value_after(run_of(rules, "plain", "normals").command, "--albedo-size"), "4096");
+  EXPECT_EQ(value_after(run_of(rules, "plain", "normals").command, "--normal-size"), "");
+  EXPECT_EQ(value_after(run_of(rules, "own", "normals").command, "--albedo-size"), "1024");
+  EXPECT_EQ(value_after(run_of(rules, "own", "normals").command, "--normal-size"), "2048");
+  EXPECT_NE(refusal("assets:\n  a: {mesh: x.obj, maps: {height: 1}}\n").find("'height'"), std::string::npos);
+}
+
 TEST(Scene, MistakesAreNamed) {
   const auto with = [](const std::string& end) { return "assets:\n  a: {mesh: x.obj}\n" + end; };
   EXPECT_NE(refusal(with("scene: {b: '0,0,0'}\n")).find("unknown key 'b'"), std::string::npos);

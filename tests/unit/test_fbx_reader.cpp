@@ -291,14 +291,14 @@ TEST_F(FbxReader, ReadsMaterials) {
   cube.links = "C: \"OP\",40,30, \"DiffuseColor\"\n";
   write(path("bark.png"), "picture");  // beside the mesh, not where the file says
   const SourceMesh beside = read(cube);
-  EXPECT_EQ(beside.materials[0].texture->file, path("bark.png"));
-  EXPECT_EQ(beside.materials[0].wrap_u, SourceMaterial::Wrap::clamp);
-  EXPECT_EQ(beside.materials[0].texture_transform(1, 1), 3);
+  EXPECT_EQ(beside.materials[0].texture->picture.file, path("bark.png"));
+  EXPECT_EQ(beside.materials[0].texture->wrap_u, SourceTexture::Wrap::clamp);
+  EXPECT_EQ(beside.materials[0].texture->transform(1, 1), 3);
 
   cube.objects += "Video: 50, \"Video::bark\", \"Clip\" {\nContent: ,\n\"" + base64("embedded picture") + "\"\n}\n";
   cube.links += "C: \"OO\",50,40\n";
   const SourceMesh within = read(cube);
-  const auto& bytes = *within.materials[0].texture->bytes;
+  const auto& bytes = *within.materials[0].texture->picture.bytes;
   EXPECT_EQ(std::string(bytes.begin(), bytes.end()), "embedded picture");
 }
 

@@ -182,15 +182,20 @@ TEST_F(GltfReader, ReadsMaterialsAndPictures) {
   EXPECT_EQ(material.name, "bark");
   EXPECT_EQ(material.diffuse, Eigen::Vector3f(0.5f, 0.25f, 1));
   EXPECT_TRUE(material.linear_diffuse && material.has_diffuse);
-  EXPECT_EQ(std::string(material.texture->bytes->begin(), material.texture->bytes->end()), picture);
-  EXPECT_EQ(material.wrap_u, SourceMaterial::Wrap::clamp);
-  EXPECT_EQ(material.wrap_v, SourceMaterial::Wrap::mirror);
-  EXPECT_TRUE(warns(mesh, "BLEND"));
+  EXPECT_EQ(std::string(material.texture->picture.bytes->begin(), material.texture->picture.bytes->end()), picture);
+  EXPECT_EQ(material.texture->wrap_u, SourceTexture::Wrap::clamp);
+  EXPECT_EQ(material.texture->wrap_v, SourceTexture::Wrap::mirror);
+  EXPECT_EQ(material.opacity.factor, 0.5f);
+  EXPECT_EQ(material.opacity.channel, SourceShare::Channel::alpha);
+  ASSERT_TRUE(material.opacity.texture);
+  EXPECT_EQ(material.opacity.texture->wrap_u, SourceTexture::Wrap::clamp);
+  EXPECT_EQ(material.roughness.factor, 1);
+  EXPECT_EQ(material.metalness.factor, 0);
   EXPECT_EQ(mesh.faces[0].material, 0);
   // glTF's (0, 0.25) is three quarters up. By the extension's words it is scaled to (0, 0.75), turned by 90 degrees
   // counter-clockwise as seen where v points down, to (0.75, 0), and moved to (1.25, 0.25): three quarters up again.
   EXPECT_EQ(mesh.uvs[mesh.corners[5].uv], Eigen::Vector2f(0, 0.75f));
-  const Eigen::Vector2f looked_up = material.texture_transform * Eigen::Vector3f(0, 0.75f, 1);
+  const Eigen::Vector2f looked_up = material.texture->transform * Eigen::Vector3f(0, 0.75f, 1);
   EXPECT_LT((looked_up - Eigen::Vector2f(1.25f, 0.75f)).norm(), 1e-6f);
 }
 
@@ -208,7 +213,7 @@ TEST_F(GltfReader, TakesTheSetOfCoordinatesThatThePictureNames) {
           {{"diffuseFactor", {0.5, 0.5, 0.5, 1}}, {"diffuseTexture", {{"index", 0}, {"texCoord", 1}}}}}}}}};
   const SourceMesh mesh = read(builder);
   EXPECT_EQ(mesh.uvs[mesh.corners[0].uv], Eigen::Vector2f(0.125f, 0.75f));
-  EXPECT_EQ(mesh.materials[0].texture->file, path("a b.png"));
+  EXPECT_EQ(mesh.materials[0].texture->picture.file, path("a b.png"));
   EXPECT_EQ(mesh.materials[0].diffuse, Eigen::Vector3f::Constant(0.5f));
 }
 

@@ -235,7 +235,7 @@ TEST_F(ImageFile, JpegsAreReadWholeOrNotAtAll) {
                                   OIIO::AutoStride, -row_bytes));
   output->close();
 
-  const ColorPicture read = read_color_picture(name);
+  const Picture read = colors_of(read_picture(name));
   const auto& pixels = std::get<Image<std::uint8_t>>(read.pixels);
   ASSERT_EQ(pixels.values().size(), picture.values().size());
   for (std::size_t k = 0; k < picture.values().size(); ++k)
@@ -244,10 +244,10 @@ TEST_F(ImageFile, JpegsAreReadWholeOrNotAtAll) {
   const std::string whole = read_text(name);
   for (const double part : {0.99, 0.6, 0.01}) {
     std::ofstream(name, std::ios::binary) << whole.substr(0, static_cast<std::size_t>(part * whole.size()));
-    EXPECT_THROW(read_color_picture(name), BadInput) << part;
+    EXPECT_THROW(read_picture(name), BadInput) << part;
   }
   std::ofstream(name, std::ios::binary) << "no picture";
-  EXPECT_THROW(read_color_picture(name), BadInput);
+  EXPECT_THROW(read_picture(name), BadInput);
 }
 
 TEST_F(ImageFile, UnwritablePlacesAreRefused) {

@@ -38,7 +38,7 @@ NormalsResult maps_of(const TriangleMesh& high, const TriangleMesh& low, const s
   settings.seams = seams;
   settings.maps.kinds = parse_map_kinds(kinds);
   settings.maps.directions = 4096;
-  return make_normals(high, low, settings, {}, no_progress, {}, materials);
+  return make_normals(high, low, settings, {}, no_progress, {.ids = materials});
 }
 
 /// Calls visit(i, j, point of the high mesh) for the covered texels.

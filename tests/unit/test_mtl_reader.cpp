@@ -40,8 +40,8 @@ class MtlFiles : public ObjFiles {
     const SourceMaterial m = material("newmtl m\nmap_Kd " + map + "\n");
     if (!m.texture) return "no picture";
     std::ostringstream text;
-    const auto& t = m.texture_transform;
-    text << m.texture->name << " " << t(0, 0) << " " << t(1, 1) << " " << t(0, 2) << " " << t(1, 2);
+    const auto& t = m.texture->transform;
+    text << m.texture->picture.name << " " << t(0, 0) << " " << t(1, 1) << " " << t(0, 2) << " " << t(1, 2);
     EXPECT_EQ(t(0, 1), 0);
     EXPECT_EQ(t(1, 0), 0);
     return text.str();
@@ -147,16 +147,42 @@ TEST_F(MtlFiles, NamesOfLibraries) {
 TEST_F(MtlFiles, WhatMaterialsHaveAndIsNotUsedIsSaidOnce) {
   EXPECT_TRUE(with("newmtl m\nKd 1 1 1\nd 1\nTr 0\nKe 0 0 0\nTf 1 1 1\nmap_aat on\n").warnings.empty());
   EXPECT_TRUE(with("newmtl m\nKd 1 1 1\nTr 1\n").warnings.empty()) << "opaque, as some exporters write it";
-  for (const char* text : {"d 0.5", "D 0.5", "d -halo 0.5", "Tr 0.25", "map_d a.png", "d 0.9 # glass"})
-    EXPECT_TRUE(warns_only(with("newmtl m\n" + std::string(text) + "\n"), {"1 material ", "transparency"})) << text;
-  EXPECT_TRUE(warns_only(with("newmtl m\nKe 0 0.5 0\n"), {"emission"}));
   EXPECT_TRUE(warns_only(with("newmtl m\nmap_Bump -bm 1 a.png\nnorm b.png\nMAP_KS c.png\nmap_Bump d.png\nKe 0\n"),
-                         {"maps other than map_Kd are not used: map_Bump, norm, MAP_KS"}));
-  write("a.mtl", "newmtl a\nd 0.5\nnewmtl b\nd 0.1\nKe 1 1 1\nnewmtl c\nd 0\nmap_Ks x\n");
+                         {"maps that are not used: map_Bump, norm, MAP_KS"}));
+  EXPECT_TRUE(warns_only(with("newmtl m\nmap_d none.png\n"), {"a.mtl:2", "none.png", "does not exist", "not used"}));
+  write("a.mtl", "newmtl a\nKd 2 0 0\nnewmtl b\nKd 0 -1 0\nmap_Ks y\nnewmtl c\nKd 3 0 0\nmap_Ns x\n");
   const SourceMesh mesh = read("mtllib a.mtl\n" + triangle + "usemtl a\n" + face + "usemtl b\n" + face);
   ASSERT_EQ(mesh.warnings.size(), 2u);
   EXPECT_TRUE(says(mesh.warnings[0], {"2 materials"})) << "the third is not used";
-  EXPECT_TRUE(says(mesh.warnings[1], {"1 material "}));
+  EXPECT_TRUE(says(mesh.warnings[1], {"map_Ks"}));
+}
+
+TEST_F(MtlFiles, OpacityIsReadInAllItsForms) {
+  const auto opacity = [this](const std::string& text) { return material("newmtl m\n" + text + "\n").opacity; };
+  EXPECT_FALSE(opacity("Kd 1 1 1").is_given());
+  EXPECT_FALSE(opacity("Tr 1").is_given()) << "opaque, as some exporters write it";
+  for (const char* text : {"d 0.75", "D 0.75", "d -halo 0.75", "Tr 0.25", "d 0.75 # glass", "d 0.75\nTr 0.9"})
+    EXPECT_EQ(opacity(text).factor, 0.75f) << text;
+  EXPECT_EQ(opacity("d 7").factor, 1);
+  write("t.png", "");
+  const SourceShare leaf = opacity("map_d -clamp on t.png");
+  EXPECT_FALSE(leaf.factor);
+  EXPECT_EQ(leaf.channel, SourceShare::Channel::coverage);
+  ASSERT_TRUE(leaf.texture);
+  EXPECT_EQ(leaf.texture->picture.file, path("t.png"));
+  EXPECT_EQ(leaf.texture->wrap_u, SourceTexture::Wrap::clamp);
+}
+
+TEST_F(MtlFiles, RoughnessMetalnessAndEmission) {
+  write("t.png", "");
+  const SourceMaterial m = material("newmtl m\nPr 0.25\nPm 2\nKe 0 4 1\nmap_Pr t.png\nmap_Ke t.png\n");
+  EXPECT_EQ(m.roughness.factor, 0.25f);
+  EXPECT_TRUE(m.roughness.texture);
+  EXPECT_EQ(m.metalness.factor, 1) << "clamped";
+  EXPECT_FALSE(m.metalness.texture);
+  ASSERT_TRUE(m.emission);
+  EXPECT_EQ(*m.emission, Eigen::Vector3f(0, 4, 1));
+  EXPECT_TRUE(m.emission_texture);
 }
 
 TEST_F(MtlFiles, OptionsOfMaps) {
@@ -182,23 +208,23 @@ TEST_F(MtlFiles, OptionsOfMaps) {
             "t.png 1 1 0 0");
 
   const SourceMaterial m = material("newmtl m\nMAP_KD -MM 0.25 2 -Clamp on t.png\n");
-  EXPECT_EQ(m.texture_base, 0.25f);
-  EXPECT_EQ(m.texture_gain, 2);
-  EXPECT_EQ(m.wrap_u, SourceMaterial::Wrap::clamp);
-  EXPECT_EQ(m.wrap_v, SourceMaterial::Wrap::clamp);
-  EXPECT_EQ(m.texture_place, path("a.mtl").string() + ":2");
-  EXPECT_EQ(m.texture->file, path("t.png"));
-  EXPECT_EQ(material("newmtl m\nmap_Kd t.png\n").wrap_u, SourceMaterial::Wrap::repeat);
+  EXPECT_EQ(m.texture->base, 0.25f);
+  EXPECT_EQ(m.texture->gain, 2);
+  EXPECT_EQ(m.texture->wrap_u, SourceTexture::Wrap::clamp);
+  EXPECT_EQ(m.texture->wrap_v, SourceTexture::Wrap::clamp);
+  EXPECT_EQ(m.texture->place, path("a.mtl").string() + ":2");
+  EXPECT_EQ(m.texture->picture.file, path("t.png"));
+  EXPECT_EQ(material("newmtl m\nmap_Kd t.png\n").texture->wrap_u, SourceTexture::Wrap::repeat);
 }
 
 TEST_F(MtlFiles, PicturesAreFoundAsOtherMachinesNameThem) {
   for (const char* name : {"maps/the red.png", "blue.png"}) write(name, "");
   for (const char* name : {"maps/the red.png", "maps\\the red.png", "./maps/the red.png", ".\\maps\\the red.png"})
-    EXPECT_EQ(material("newmtl m\nmap_Kd " + std::string(name) + "\n").texture->name, "the red.png") << name;
-  EXPECT_EQ(material("newmtl m\nmap_Kd " + path("blue.png").string() + "\n").texture->name, "blue.png");
+    EXPECT_EQ(material("newmtl m\nmap_Kd " + std::string(name) + "\n").texture->picture.name, "the red.png") << name;
+  EXPECT_EQ(material("newmtl m\nmap_Kd " + path("blue.png").string() + "\n").texture->picture.name, "blue.png");
   for (const char* name :
        {"C:\\textures\\blue.png", "/home/someone/blue.png", "\"D:/a b/blue.png\"", "Blue.PNG", "..\\..\\x\\BLUE.png"})
-    EXPECT_EQ(material("newmtl m\nmap_Kd " + std::string(name) + "\n").texture->file, path("blue.png")) << name;
+    EXPECT_EQ(material("newmtl m\nmap_Kd " + std::string(name) + "\n").texture->picture.file, path("blue.png")) << name;
 }
 
 TEST_F(MtlFiles, MapsThatCannotBeUsedAreFaults) {
@@ -230,7 +256,7 @@ TEST_F(MtlFiles, DamagedLibrariesAreReadOrFaults) {
     (mesh.materials_fault ? faults : read_count)++;
     for (const SourceMaterial& m : mesh.materials) {
       ASSERT_TRUE(m.diffuse.minCoeff() >= 0 && m.diffuse.maxCoeff() <= 1);
-      ASSERT_TRUE(!m.texture || m.texture->name == "t.png");
+      ASSERT_TRUE(!m.texture || m.texture->picture.name == "t.png");
     }
   }
   EXPECT_GT(faults, 300) << "Kd spectral";

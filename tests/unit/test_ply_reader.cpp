@@ -263,8 +263,8 @@ TEST(PlyReader, TexturesOfComments) {
   ASSERT_EQ(one.materials.size(), 1u);
   ASSERT_TRUE(one.materials[0].texture);
   const std::filesystem::path folder = files.write("").parent_path();
-  EXPECT_EQ(one.materials[0].texture->file, folder / "my picture.png");
-  EXPECT_NE(one.materials[0].texture_place.find("a.ply:3"), std::string::npos);
+  EXPECT_EQ(one.materials[0].texture->picture.file, folder / "my picture.png");
+  EXPECT_NE(one.materials[0].texture->place.find("a.ply:3"), std::string::npos);
   EXPECT_EQ(one.faces[1].material, 0);
   EXPECT_TRUE(one.warnings.empty());
 
@@ -273,7 +273,7 @@ TEST(PlyReader, TexturesOfComments) {
   const SourceMesh two = files.read(textured(names, wedges, 0) + "0 0 0\n1 0 0\n1 1 0\n0 1 0\n" +
                                     "3 0 1 2 6 0 0 0.5 0 0.5 0.5 1\n3 0 2 3 6 0 0 1 1 0 1 0\n");
   ASSERT_EQ(two.materials.size(), 2u);
-  EXPECT_EQ(two.materials[1].texture->file, folder / "tex/b.png");
+  EXPECT_EQ(two.materials[1].texture->picture.file, folder / "tex/b.png");
   EXPECT_EQ(two.faces[0].material, 1);
   EXPECT_EQ(two.faces[1].material, 0);
   EXPECT_EQ(two.uvs[two.corners[2].uv], Eigen::Vector2f(0.5f, 0.5f));

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <set>
 
+#include "base/json.h"
 #include "kiln/made_meshes.h"
 #include "kiln/stage_state.h"
 
@@ -79,7 +80,7 @@ void check_named_files(const Pipeline& pipeline, const Asset& asset, std::vector
     if (settings == asset.settings.end()) continue;
     const StageOptions options = stage->options();
     for (const auto& [name, file] : settings->second) {
-      const bool is_texture = name == "albedo-texture";
+      const bool is_texture = name == "albedo-texture" || name == "opacity-texture";
       if (!options.find(name)->names_file || (textures_alone && !is_texture) || !seen.insert(file).second) continue;
       const bool is_mesh = name == "low";
       const fs::path path = pipeline.folder / file;

@@ -98,17 +98,28 @@ Json material_schema() {
   const StageOptions options = stage_info("normals").options();
   Json properties = {{"albedo", option_schema(*options.find("albedo"))},
                      {"texture", option_schema(*options.find("albedo-texture"))},
-                     {"encoding", option_schema(*options.find("albedo-encoding"))}};
+                     {"encoding", option_schema(*options.find("albedo-encoding"))},
+                     {"opacity", option_schema(*options.find("opacity"))},
+                     {"opacity-texture", option_schema(*options.find("opacity-texture"))},
+                     {"opacity-cutoff", option_schema(*options.find("opacity-cutoff"))}};
   Json schema = object_of(properties);
   schema["not"] = {{"required", {"albedo", "texture"}}};
   return schema;
+}
+
+/// Makes the schema of `maps`, the sizes of what ships.
+Json map_sizes_schema() {
+  const StageOptions normals = stage_info("normals").options(), atlas = stage_info("atlas").options();
+  return object_of({{"planes", option_schema(*atlas.find("size"))},
+                    {"albedo", option_schema(*normals.find("albedo-size"))},
+                    {"normal", option_schema(*normals.find("normal-size"))}});
 }
 
 Json reference(const std::string& name) { return {{"$ref", "#/$defs/" + name}}; }
 
 /// Makes references to the blocks that `defaults` and assets have.
 Json block_references() {
-  Json blocks = {{"import", reference("import")}, {"material", reference("material")}};
+  Json blocks = {{"import", reference("import")}, {"material", reference("material")}, {"maps", reference("maps")}};
   for (const std::string& stage : stage_names()) blocks[stage] = reference(stage);
   return blocks;
 }
@@ -125,7 +136,7 @@ Json preset_schema() {
 
 Json definitions() {
   const Json number = {{"type", "number"}};
-  Json defs = {{"import", import_schema()}, {"material", material_schema()}};
+  Json defs = {{"import", import_schema()}, {"material", material_schema()}, {"maps", map_sizes_schema()}};
   for (const StageInfo* stage : all_stages()) defs[stage->name] = stage_schema(*stage);
   Json limits = object_of({{"min", number}, {"max", number}});
   limits["minProperties"] = 1;

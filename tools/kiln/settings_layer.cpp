@@ -35,6 +35,7 @@ class BlockReader {
       if (!is_switch && !block.IsNull()) entry.settings = stage_settings(*stage, block);
     }
     if (const YAML::Node material = map["material"]) add_material(material, layer);
+    if (const YAML::Node sizes = map["maps"]) add_map_sizes(sizes, layer);
     if (const YAML::Node block = map["import"]) add_import(block, layer);
   }
 
@@ -51,11 +52,12 @@ class BlockReader {
     if (block.size() > 0) layer.blocks["simplify"].settings.merge(stage_settings(stage_info("simplify"), block));
   }
 
-  /// Adds `material` to every stage that uses the surface's albedo.
+  /// Adds `material` to every stage that uses the surface's albedo and opacity.
   void add_material(const YAML::Node& block, SettingsLayer& layer) const {
     static const std::map<std::string, std::string> names = {
-        {"albedo", "albedo"}, {"texture", "albedo-texture"}, {"encoding", "albedo-encoding"}};
-    file_.check_keys(block, {"albedo", "texture", "encoding"});
+        {"albedo", "albedo"},   {"texture", "albedo-texture"},          {"encoding", "albedo-encoding"},
+        {"opacity", "opacity"}, {"opacity-texture", "opacity-texture"}, {"opacity-cutoff", "opacity-cutoff"}};
+    file_.check_keys(block, {"albedo", "texture", "encoding", "opacity", "opacity-texture", "opacity-cutoff"});
     if (block.size() == 0) return;
     file_.require(!block["albedo"].IsDefined() || !block["texture"].IsDefined(), block, "both albedo and texture",
                   "one of them");
@@ -66,6 +68,22 @@ class BlockReader {
       // Settings given for the stage itself take precedence.
       layer.blocks[stage->name].settings.merge(stage_settings(*stage, renamed));
     }
+  }
+
+  /// Adds `maps`, the sizes of what ships: the atlas is packed for the planes, whose size other maps have unless they
+  /// are named.
+  void add_map_sizes(const YAML::Node& block, SettingsLayer& layer) const {
+    file_.check_keys(block, {"planes", "albedo", "normal"});
+    const auto add = [&](const char* name, const char* stage, const char* setting) {
+      if (!block[name].IsDefined()) return;
+      YAML::Node renamed;
+      renamed[setting] = block[name];
+      // Settings given for the stage itself take precedence.
+      layer.blocks[stage].settings.merge(stage_settings(stage_info(stage), renamed));
+    };
+    add("planes", "atlas", "size");
+    add("albedo", "normals", "albedo-size");
+    add("normal", "normals", "normal-size");
   }
 
   std::map<std::string, WrittenSetting> stage_settings(const StageInfo& stage, const YAML::Node& block) const {
@@ -148,7 +166,9 @@ std::string stage_of_metric(const std::string& metric) { return metric.substr(0,
 std::vector<std::string> names_of_blocks() {
   std::vector<std::string> names = stage_names();
   names.emplace_back("material");
+  names.emplace_back("maps");
   names.emplace_back("import");
+  names.emplace_back("maps");
   return names;
 }
 

@@ -65,6 +65,12 @@ class KILN_RUNTIME_API Asset {
   bool knows_albedo() const;
   Color albedo(std::uint32_t point) const;
 
+  /// The map of opacity, of 0 to 255, row after row from the bottom, looked up with uvs(): nothing is there where a
+  /// bilinear lookup is below 127.5. Empty, of 0 x 0 texels, where the surface is opaque.
+  std::span<const std::uint8_t> opacity() const;
+  int opacity_width() const;
+  int opacity_height() const;
+
   /// Returns the library's own representation.
   const PrtAsset& implementation() const { return *asset_; }
 

@@ -35,6 +35,9 @@ class FileCheck {
     if (!asset_.mesh_file.empty()) asset_.vertices > 0 ? check_vertices() : check_atlas();
     if (asset_.width == 0 || asset_.height == 0) return;  // without the asset's sizes, pictures cannot be checked
     faults_.guard([&] { read_albedo_picture(folder_, asset_); });
+    faults_.guard([&] { read_opacity_picture(folder_, asset_); });
+    for (const PrtMap& map : asset_.maps)
+      if (!map.file.empty()) faults_.guard([&] { read_picture(folder_ / map.file); });
     if (!asset_.normals_file.empty()) check_normals();
     check_planes();
     if (asset_.pca) check_tables(*asset_.pca);
@@ -71,7 +74,11 @@ class FileCheck {
 
   void check_normals() {
     const fs::path file = folder_ / asset_.normals_file;
-    faults_.guard([&] { require_picture(read_png_as16(file), file, asset_.width, asset_.height, 3, remedy_); });
+    const bool has_own_size = asset_.normal_width > 0;
+    faults_.guard([&] {
+      require_picture(read_png_as16(file), file, has_own_size ? asset_.normal_width : asset_.width,
+                      has_own_size ? asset_.normal_height : asset_.height, 3, remedy_);
+    });
   }
 
   void check_planes() {

@@ -31,6 +31,7 @@ inline constexpr const char* atlas_mesh_name = "atlas.drc";
 inline constexpr const char* vertex_mesh_name = "vertices.drc";
 inline constexpr const char* normal_map_name = "normal.png";
 inline constexpr const char* albedo_map_name = "albedo.png";
+inline constexpr const char* opacity_map_name = "opacity.png";
 inline constexpr const char* vectors_name = "vectors.png";
 inline constexpr const char* cluster_ids_name = "clusters.png";
 inline constexpr const char* matrices_png_name = "matrices.png";
@@ -64,9 +65,14 @@ inline constexpr const char* basis = "basis";
 inline constexpr const char* mesh = "mesh";
 inline constexpr const char* normals = "normals";
 inline constexpr const char* normal_space = "normal_space";
+inline constexpr const char* normal_width = "normal_width";
+inline constexpr const char* normal_height = "normal_height";
 inline constexpr const char* albedo = "albedo";
 inline constexpr const char* albedo_width = "albedo_width";
 inline constexpr const char* albedo_height = "albedo_height";
+inline constexpr const char* opacity = "opacity";
+inline constexpr const char* maps = "maps";
+inline constexpr const char* unit = "unit";
 inline constexpr const char* origin = "origin";
 inline constexpr const char* planes = "planes";
 inline constexpr const char* file = "file";
@@ -93,11 +99,13 @@ inline constexpr const char* matrices_file = "matrices_file";
 inline constexpr const char* ranges = "ranges";
 }  // namespace key
 
-/// Entries of `requires`: features that a reader of the base form (textured planes, normals in object space, no albedo)
-/// would misread without knowing them.
+/// Entries of `requires`: features that a reader of the base form (textured planes, normals in object space, no albedo,
+/// an opaque surface) would misread without knowing them.
 namespace requirement {
 inline constexpr const char* albedo = "albedo";
 inline constexpr const char* albedo_size = "albedo_size";
+inline constexpr const char* normal_size = "normal_size";
+inline constexpr const char* opacity = "opacity";
 inline constexpr const char* tangent_normals = "tangent_normals";
 inline constexpr const char* vertices = "vertices";
 }  // namespace requirement

@@ -72,6 +72,7 @@ void load_pictures(const fs::path& folder, PrtAsset& asset) {
   if (asset.albedo.has_own_size())
     asset.albedo.at_planes =
         srgb_bytes(resized(linear_from_srgb_bytes(asset.albedo.picture), asset.width, asset.height));
+  asset.opacity = read_opacity_picture(folder, asset);
   asset.mesh = read_atlas_mesh(folder, asset);
   if (asset.pca) asset.clusters = read_clusters(folder, asset);
   if (asset.bits == 8) {

@@ -84,6 +84,14 @@ struct PcaTables {
   std::vector<PlaneRange> vector_ranges;   ///< range of the means, then of each basis vector
 };
 
+/// A further map for materials, which ships beside what transfer needs.
+struct PrtMap {
+  std::string name;  ///< what it holds: "ao", "roughness", ... (stages/normals/README.md)
+  std::string file;  ///< PNG, or EXR of floats; relative to the asset's folder, looked up with the mesh's uvs
+  /// Values that a PNG stores as 0 and as its largest number.
+  std::optional<PlaneRange> range;
+};
+
 /// Content of a baked folder's JSON, without the files that it names. Planes of coefficients are sorted by channel,
 /// then coefficient, each there once; of planes of weights, `coefficient` is the number of the basis vector.
 struct PrtDescription {
@@ -91,7 +99,10 @@ struct PrtDescription {
   std::string mesh_file = {};                      ///< relative to the JSON file's folder
   std::string normals_file = {};                   ///< relative to the same folder; empty if there is none
   NormalSpace normal_space = NormalSpace::object;  ///< space of that normal map
+  int normal_width = 0, normal_height = 0;         ///< texels of that map where they are not those of the planes
   PrtAlbedo albedo = {};                           ///< without its picture
+  std::string opacity_file = {};                   ///< relative to the folder; empty: the surface is opaque
+  std::vector<PrtMap> maps = {};                   ///< further maps
   /// origin of the mesh's positions, in the coordinates of the original file
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   int bands = 0;
@@ -113,6 +124,7 @@ struct PrtDescription {
 /// coefficient (for each weight if compressed). An asset baked per vertex has transfer vectors instead of pictures.
 struct PrtAsset : PrtDescription {
   TriangleMesh mesh;
+  Image<std::uint8_t> opacity;  ///< 1 channel, of any size; nothing is there below 128; empty: opaque
   /// one per plane, 8 or 16 bits as `bits` says
   std::variant<std::vector<Image<std::uint8_t>>, std::vector<Image<std::uint16_t>>> pictures;
   std::optional<PrtClusters> clusters;  ///< set for compressed assets only

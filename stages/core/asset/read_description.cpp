@@ -19,6 +19,10 @@ constexpr const char* compress_again = "compress the asset again with kiln-compr
 void read_normals(const Fields& fields, PrtDescription& asset) {
   if (!fields.has(key::normals)) return;
   asset.normals_file = fields.safe_path(key::normals);
+  if (fields.has(key::normal_width) || fields.has(key::normal_height)) {
+    asset.normal_width = fields.integer(key::normal_width, 1, largest_asset_side);
+    asset.normal_height = fields.integer(key::normal_height, 1, largest_asset_side);
+  }
   if (!fields.has(key::normal_space)) return;
   const std::string expected = "object or tangent", space = fields.text(key::normal_space, expected);
   if (space == "tangent") asset.normal_space = NormalSpace::tangent;
@@ -48,7 +52,23 @@ Eigen::Vector3d read_origin(const Fields& fields) {
   return origin.empty() ? Eigen::Vector3d(0, 0, 0) : Eigen::Vector3d(origin[0], origin[1], origin[2]);
 }
 
-/// Reads what both descriptions have: bands, channels, mesh, normals, albedo.
+std::vector<PrtMap> read_maps(const Fields& fields) {
+  if (!fields.has(key::maps)) return {};
+  const Json& object = *fields.find(key::maps, "");
+  if (!object.is_object()) {
+    fields.fail(key::maps, Fields::shown(object), "maps by their names");
+    return {};
+  }
+  std::vector<PrtMap> maps;
+  for (const auto& [name, entry] : object.items()) {
+    const Fields map = fields.child(key::maps, entry);
+    maps.push_back({name, map.safe_path(key::file), std::nullopt});
+    if (map.has(key::lowest)) maps.back().range = read_range(map);
+  }
+  return maps;
+}
+
+/// Reads what both descriptions have: bands, channels, mesh, normals, albedo, opacity.
 void read_shared(const Fields& fields, PrtDescription& asset) {
   if (asset.vertices == 0) {
     asset.width = fields.integer(key::width, 1, largest_asset_side);
@@ -61,6 +81,8 @@ void read_shared(const Fields& fields, PrtDescription& asset) {
     asset.albedo.width = fields.integer(key::albedo_width, 1, largest_asset_side);
     asset.albedo.height = fields.integer(key::albedo_height, 1, largest_asset_side);
   }
+  if (asset.vertices == 0 && fields.has(key::opacity)) asset.opacity_file = fields.safe_path(key::opacity);
+  asset.maps = read_maps(fields);
   asset.origin = read_origin(fields);
 }
 
@@ -167,7 +189,8 @@ std::pair<PrtDescription, FormatHead> read_description(const fs::path& file, Fau
   if (!faults.guard([&] { document = parse_json(file, is_pca ? "kiln-compress" : "kiln-bake", remedy); }))
     return {asset, {}};
   const Fields fields(file.string(), "", document, remedy, &faults);
-  std::vector<std::string> known = {requirement::albedo, requirement::albedo_size, requirement::tangent_normals};
+  std::vector<std::string> known = {requirement::albedo, requirement::albedo_size, requirement::normal_size,
+                                    requirement::opacity, requirement::tangent_normals};
   if (!is_pca) known.emplace_back(requirement::vertices);
   const FormatHead head = read_head(fields, is_pca ? pca_format : prt_format, known);
   asset.bands = fields.integer(key::bands, 1, most_asset_bands);
@@ -180,6 +203,8 @@ std::vector<std::string> requirements(const PrtDescription& asset) {
   std::vector<std::string> required;
   if (asset.albedo.known) required.emplace_back(requirement::albedo);
   if (asset.albedo.has_own_size()) required.emplace_back(requirement::albedo_size);
+  if (asset.normal_width > 0) required.emplace_back(requirement::normal_size);
+  if (!asset.opacity_file.empty()) required.emplace_back(requirement::opacity);
   if (!asset.normals_file.empty() && asset.normal_space == NormalSpace::tangent)
     required.emplace_back(requirement::tangent_normals);
   if (asset.vertices > 0) required.emplace_back(requirement::vertices);

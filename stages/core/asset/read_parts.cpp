@@ -140,6 +140,17 @@ Image<std::uint8_t> read_albedo_picture(const fs::path& folder, const PrtDescrip
   return picture;
 }
 
+Image<std::uint8_t> read_opacity_picture(const fs::path& folder, const PrtDescription& asset) {
+  if (asset.opacity_file.empty()) return {};
+  const fs::path file = folder / asset.opacity_file;
+  Image<std::uint8_t> picture = read_png8(file);
+  require_picture(picture, file, picture.width(), picture.height(), 1, remedy_for(asset));
+  if (std::max(picture.width(), picture.height()) > largest_asset_side)
+    throw BadInput(file.string(), "has more texels a side than " + std::to_string(largest_asset_side),
+                   "a picture that GPUs can hold", remedy_for(asset));
+  return picture;
+}
+
 std::vector<float> read_vectors(const fs::path& folder, const PrtDescription& asset) {
   const PcaTables& tables = *asset.pca;
   // Rows of the picture are counted from the top.

@@ -36,6 +36,9 @@ void require_picture(const Image<Texel>& picture, const std::filesystem::path& f
 /// Reads the picture of the albedo, if the asset has one.
 Image<std::uint8_t> read_albedo_picture(const std::filesystem::path& folder, const PrtDescription& asset);
 
+/// Reads the picture of the opacity, of any size, if the asset has one.
+Image<std::uint8_t> read_opacity_picture(const std::filesystem::path& folder, const PrtDescription& asset);
+
 /// Reads the means and basis vectors of a compressed asset, laid out as in PrtClusters.
 std::vector<float> read_vectors(const std::filesystem::path& folder, const PrtDescription& asset);
 

@@ -51,8 +51,17 @@ void add_shared(Json& head, const PrtDescription& asset) {
   head[key::basis] = basis_name;
   head[key::mesh] = asset.mesh_file;
   if (!asset.normals_file.empty()) head[key::normals] = asset.normals_file;
+  if (asset.normal_width > 0) {
+    head[key::normal_width] = asset.normal_width;
+    head[key::normal_height] = asset.normal_height;
+  }
   if (!asset.normals_file.empty() && asset.normal_space == NormalSpace::tangent) head[key::normal_space] = "tangent";
   add_albedo(head, asset.albedo);
+  if (!asset.opacity_file.empty()) head[key::opacity] = asset.opacity_file;
+  for (const PrtMap& map : asset.maps) {
+    Json& entry = head[key::maps][map.name] = {{key::file, map.file}};
+    if (map.range) entry.update(range_json(*map.range));
+  }
   if (!asset.origin.isZero(0)) head[key::origin] = {asset.origin.x(), asset.origin.y(), asset.origin.z()};
 }
 
@@ -104,6 +113,17 @@ IntegerAttribute new_attribute(const PrtDescription& asset, int channel, int coe
   return attribute;
 }
 
+/// Returns the files of further maps that a folder's description names; none where there is no whole one.
+std::vector<std::string> maps_of_earlier_run(const std::filesystem::path& folder) {
+  std::vector<std::string> files;
+  try {
+    for (const PrtMap& map : load_prt_description(folder).maps) files.push_back(map.file);
+  } catch (const BadInput&) {
+    files.clear();
+  }
+  return files;
+}
+
 }  // namespace
 
 std::string description_text(const PrtDescription& asset) {
@@ -123,6 +143,8 @@ void write_description(OutputSet& outputs, const PrtDescription& asset) {
 
 void remove_stale_planes(OutputSet& outputs) {
   const std::vector<std::string>& written = outputs.names();
+  for (const std::string& name : maps_of_earlier_run(outputs.folder()))
+    if (std::find(written.begin(), written.end(), name) == written.end()) outputs.remove_stale(name);
   const bool was_compressed = std::filesystem::exists(outputs.folder() / pca_name);
   for (const auto& entry : std::filesystem::directory_iterator(outputs.folder())) {
     const std::string name = entry.path().filename().string();

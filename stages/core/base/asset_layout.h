@@ -18,10 +18,12 @@ inline constexpr const char* report_page = "report.html";
 
 /// Maps in the folder of the normals.
 inline constexpr const char* normal_map = "normal.png";
+inline constexpr const char* own_normal_map = "normal_of_own_size.png";  ///< where that is not the size of the maps
 inline constexpr const char* position_map = "position.exr";
 inline constexpr const char* coverage_map = "coverage.png";
 inline constexpr const char* match_map = "match.png";
-inline constexpr const char* albedo_map = "albedo.png";  ///< where the albedo varies
+inline constexpr const char* albedo_map = "albedo.png";    ///< where the albedo varies
+inline constexpr const char* opacity_map = "opacity.png";  ///< where the high mesh is not opaque everywhere
 
 /// The record that a stage writes into `folder`, its outputs' own.
 inline std::filesystem::path record_in(const std::filesystem::path& folder, const std::string& stage) {

@@ -236,29 +236,34 @@ namespace {
 
 constexpr char expected_picture[] = "a PNG, JPEG, OpenEXR or other picture";
 
-ColorPicture color_picture_of(const std::string& name, const OpenPicture& open) {
-  ColorPicture picture;
+Picture picture_of(const std::string& name, const OpenPicture& open) {
+  Picture picture;
   picture.is_float = open.input->is_floating_point();
   if (open.input->is_uint8())
-    picture.pixels = three_channels(read_pixels<std::uint8_t>(name, *open.input, open.expected));
+    picture.pixels = read_pixels<std::uint8_t>(name, *open.input, open.expected);
   else
-    picture.pixels = three_channels(read_pixels<float>(name, *open.input, open.expected));
+    picture.pixels = read_pixels<float>(name, *open.input, open.expected);
   return picture;
 }
 
 }  // namespace
 
-ColorPicture read_color_picture(const std::filesystem::path& file) {
+Picture read_picture(const std::filesystem::path& file) {
   check_present(file, expected_picture);
   const std::string bytes = read_text(file);
-  return color_picture_of(file.string(), open_file(file.string(), bytes, expected_picture));
+  return picture_of(file.string(), open_file(file.string(), bytes, expected_picture));
 }
 
-ColorPicture read_color_picture(const std::vector<std::uint8_t>& bytes, const std::string& name) {
+Picture read_picture(const std::vector<std::uint8_t>& bytes, const std::string& name) {
   const std::string text(bytes.begin(), bytes.end());
   const OpenPicture open = open_bytes(text, name, expected_picture);
   if (!open.input) fail_reading(name, "a picture of an unknown format", "a PNG or JPEG");
-  return color_picture_of(name, open);
+  return picture_of(name, open);
+}
+
+Picture colors_of(Picture picture) {
+  std::visit([](auto& pixels) { pixels = three_channels(pixels); }, picture.pixels);
+  return picture;
 }
 
 }  // namespace kiln

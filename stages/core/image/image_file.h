@@ -31,17 +31,20 @@ Image<std::uint16_t> read_png_as16(const std::filesystem::path& file, int* bits 
 /// Reads EXR or HDR (Radiance) as floats. Throws BadInput.
 Image<float> read_float_image(const std::filesystem::path& file);
 
-/// Picture of three channels, red, green and blue.
-struct ColorPicture {
+/// Picture as its file has it.
+struct Picture {
   std::variant<Image<std::uint8_t>, Image<float>> pixels;  ///< bytes of 0 to 255; floats as in the file
   bool is_float = false;  ///< the file has floating-point values; 16-bit integers become floats of 0 to 1
 };
 
-/// Reads a PNG, JPEG, EXR, HDR or any other format that OpenImageIO reads, without converting values. Grey becomes
-/// three equal channels; alpha is dropped. The format is told by the first bytes, not by the name. Throws BadInput.
-ColorPicture read_color_picture(const std::filesystem::path& file);
+/// Reads a PNG, JPEG, EXR, HDR or any other format that OpenImageIO reads, without converting values: grey, grey and
+/// alpha, RGB, RGBA, or more channels. The format is told by the first bytes, not by the name. Throws BadInput.
+Picture read_picture(const std::filesystem::path& file);
 
 /// Reads such a picture from memory; `name` appears in messages.
-ColorPicture read_color_picture(const std::vector<std::uint8_t>& bytes, const std::string& name);
+Picture read_picture(const std::vector<std::uint8_t>& bytes, const std::string& name);
+
+/// Returns red, green and blue of a picture: grey becomes three equal channels, alpha is dropped.
+Picture colors_of(Picture picture);
 
 }  // namespace kiln

@@ -24,6 +24,16 @@ constexpr std::array picture_properties = {"DiffuseColor",
                                            "Maya|TEX_color_map",
                                            "Maya|baseColor",
                                            "Maya|base_color"};
+/// Properties that exporters connect a picture of opacity to.
+constexpr std::array opacity_properties = {
+    "TransparentColor",       "TransparencyFactor",          "Opacity", "Maya|TEX_opacity_map", "Maya|opacity",
+    "3dsMax|main|cutout_map", "3dsMax|Parameters|cutout_map"};
+constexpr std::array emission_properties = {"EmissiveColor", "Maya|TEX_emissive_map", "Maya|emissionColor",
+                                            "3dsMax|main|emit_color_map", "3dsMax|Parameters|emission_map"};
+constexpr std::array roughness_properties = {"Maya|TEX_roughness_map", "Maya|specularRoughness",
+                                             "3dsMax|main|roughness_map", "3dsMax|Parameters|roughness_map"};
+constexpr std::array metalness_properties = {"Maya|TEX_metallic_map", "Maya|metalness", "3dsMax|main|metalness_map",
+                                             "3dsMax|Parameters|metalness_map"};
 
 /// Finds the file of a path that may come from another machine: as given, from `folder`, or by its bare name there. If
 /// none exists, returns the path from `folder`, or the bare name there where the path has a drive.
@@ -77,8 +87,9 @@ std::int32_t FbxMaterials::number_of(const FbxObjects::Object& material) {
   return numbers_[material.id] = static_cast<std::int32_t>(materials_.size() - 1);
 }
 
-const FbxObjects::Object* FbxMaterials::diffuse_texture(const FbxObjects::Object& material) {
-  for (const char* property : picture_properties)
+const FbxObjects::Object* FbxMaterials::texture_of(const FbxObjects::Object& material,
+                                                   std::span<const char* const> properties) {
+  for (const char* property : properties)
     for (const FbxObjects::Link& link : objects_.children(material.id)) {
       if (link.property != property) continue;
       const FbxObjects::Object* texture = objects_.find(link.other);
@@ -94,9 +105,9 @@ SourceMaterial FbxMaterials::read(const FbxObjects::Object& object) {
   material.place = document_.file().string() + ", " + document_.place_of(*object.record);
   const FbxProperties properties = objects_.properties(object);
   const double factor = std::clamp(properties.number("DiffuseFactor").value_or(1), 0.0, 1.0);
-  if (const FbxObjects::Object* texture = diffuse_texture(object)) {
+  if (const FbxObjects::Object* texture = texture_of(object, picture_properties)) {
     // A picture replaces the colour; the factor, which is proportional to light, remains.
-    read_texture(*texture, material);
+    material.texture = read_texture(*texture);
     material.has_diffuse = factor != 1;
     material.linear_diffuse = true;
     material.diffuse.setConstant(static_cast<float>(factor));
@@ -111,26 +122,42 @@ SourceMaterial FbxMaterials::read(const FbxObjects::Object& object) {
       break;
     }
   }
-  const double emissive = properties.vector("EmissiveColor").value_or(Eigen::Vector3d::Zero()).maxCoeff();
-  glowing_ += emissive > 0 && properties.number("EmissiveFactor").value_or(1) > 0;
-  see_through_ += properties.number("Opacity").value_or(1) < 1;
+  if (const FbxObjects::Object* texture = texture_of(object, emission_properties))
+    material.emission_texture = read_texture(*texture);
+  const double emission_factor = properties.number("EmissiveFactor").value_or(1);
+  if (material.emission_texture)
+    material.emission = Eigen::Vector3f::Constant(static_cast<float>(emission_factor));
+  else if (const auto color = properties.vector("EmissiveColor"))
+    material.emission = (emission_factor * *color).cwiseMax(0).cast<float>();
+  // "Opacity" is the SDK's product of TransparentColor and TransparencyFactor, from 1.
+  if (const auto opacity = properties.number("Opacity"))
+    material.opacity.factor = std::clamp(static_cast<float>(*opacity), 0.f, 1.f);
+  const auto share = [&](std::span<const char* const> names, SourceShare& into) {
+    if (const FbxObjects::Object* texture = texture_of(object, names)) into.texture = read_texture(*texture);
+  };
+  share(opacity_properties, material.opacity);
+  material.opacity.channel = SourceShare::Channel::coverage;
+  if (material.opacity.texture) material.opacity.factor.reset();
+  share(roughness_properties, material.roughness);
+  share(metalness_properties, material.metalness);
   return material;
 }
 
-void FbxMaterials::read_texture(const FbxObjects::Object& texture, SourceMaterial& material) {
-  material.texture = picture(texture);
-  material.texture_place = document_.file().string() + ", " + document_.place_of(*texture.record);
-  const FbxProperties properties = objects_.properties(texture);
+SourceTexture FbxMaterials::read_texture(const FbxObjects::Object& object) {
+  SourceTexture texture{.picture = picture(object),
+                        .place = document_.file().string() + ", " + document_.place_of(*object.record)};
+  const FbxProperties properties = objects_.properties(object);
   const Eigen::Vector3d move = properties.vector("Translation").value_or(Eigen::Vector3d::Zero());
   const Eigen::Vector3d scale = properties.vector("Scaling").value_or(Eigen::Vector3d::Ones());
-  material.texture_transform << static_cast<float>(scale.x()), 0, static_cast<float>(move.x()),  //
+  texture.transform << static_cast<float>(scale.x()), 0, static_cast<float>(move.x()),  //
       0, static_cast<float>(scale.y()), static_cast<float>(move.y());
   turned_ += !properties.vector("Rotation").value_or(Eigen::Vector3d::Zero()).isZero(0);
   const auto wrap = [&](const char* name) {
-    return properties.number(name).value_or(0) == 1 ? SourceMaterial::Wrap::clamp : SourceMaterial::Wrap::repeat;
+    return properties.number(name).value_or(0) == 1 ? SourceTexture::Wrap::clamp : SourceTexture::Wrap::repeat;
   };
-  material.wrap_u = wrap("WrapModeU");
-  material.wrap_v = wrap("WrapModeV");
+  texture.wrap_u = wrap("WrapModeU");
+  texture.wrap_v = wrap("WrapModeV");
+  return texture;
 }
 
 SourcePicture FbxMaterials::picture(const FbxObjects::Object& texture) const {
@@ -153,8 +180,6 @@ void FbxMaterials::add_warnings(std::vector<std::string>& warnings) const {
   };
   add(layered_, "material", "with layers of pictures, which are not used");
   add(turned_, "texture", "turned within its coordinates, which is not used");
-  add(glowing_, "material", "with light of its own (emissive), which is not used");
-  add(see_through_, "material", "that can be seen through, taken for opaque");
 }
 
 }  // namespace kiln

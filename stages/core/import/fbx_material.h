@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,15 +26,16 @@ class FbxMaterials {
 
  private:
   SourceMaterial read(const FbxObjects::Object& object);
-  void read_texture(const FbxObjects::Object& texture, SourceMaterial& material);
+  SourceTexture read_texture(const FbxObjects::Object& object);
   SourcePicture picture(const FbxObjects::Object& texture) const;
-  const FbxObjects::Object* diffuse_texture(const FbxObjects::Object& material);
+  /// Finds the picture connected to the first of these properties that has one; null where none has.
+  const FbxObjects::Object* texture_of(const FbxObjects::Object& material, std::span<const char* const> properties);
 
   const FbxDocument& document_;
   const FbxObjects& objects_;
   std::map<std::int64_t, std::int32_t> numbers_;
   std::vector<SourceMaterial> materials_;
-  std::size_t layered_ = 0, turned_ = 0, glowing_ = 0, see_through_ = 0;
+  std::size_t layered_ = 0, turned_ = 0;
 };
 
 }  // namespace kiln

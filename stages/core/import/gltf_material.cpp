@@ -15,7 +15,8 @@ namespace kiln {
 
 namespace {
 
-using Wrap = SourceMaterial::Wrap;
+using Wrap = SourceTexture::Wrap;
+using Channel = SourceShare::Channel;
 
 /// Extensions that give a texture's picture in another format as well.
 constexpr std::array<std::pair<const char*, const char*>, 3> other_formats = {
@@ -29,15 +30,18 @@ class MaterialReader {
     const GltfJson& object = document_.element("materials", index, "the file");
     GltfMaterial result;
     place_ = "material " + std::to_string(index);
+    uv_set_.reset();
     result.material.name = document_.text(object, "name", place_);
     result.material.place = document_.file().string() + ", " + place_;
     result.material.has_diffuse = true;
     result.material.linear_diffuse = true;
     if (const GltfJson* glossy = document_.extension(object, "KHR_materials_pbrSpecularGlossiness", place_))
-      read_color(*glossy, "diffuseFactor", "diffuseTexture", result);
+      read_color(*glossy, "diffuseFactor", "diffuseTexture", result.material);
     else if (const GltfJson* metallic = document_.object(object, "pbrMetallicRoughness", place_))
-      read_metallic(*metallic, result);
-    count_what_is_passed_by(object);
+      read_metallic(*metallic, result.material);
+    read_emission(object, result.material);
+    read_alpha_mode(object, result.material);
+    result.uv_set = uv_set_.value_or(0);
     return result;
   }
 
@@ -45,8 +49,7 @@ class MaterialReader {
     const auto add = [&](std::size_t count, const std::string& what) {
       if (count > 0) warnings.push_back(std::to_string(count) + (count == 1 ? " material " : " materials ") + what);
     };
-    add(see_through_, "of alpha mode BLEND or MASK taken for opaque");
-    add(glowing_, "with light of their own (emissive), which is not used");
+    add(other_uvs_, "with a picture looked up by another set of texture coordinates than the colour's, not used");
     add(metallic_, "in part or wholly metal: the base colour is taken for what a dull surface reflects");
     if (fallbacks_ > 0)
       warnings.push_back(std::to_string(fallbacks_) + (fallbacks_ == 1 ? " texture" : " textures") +
@@ -57,32 +60,79 @@ class MaterialReader {
   }
 
  private:
-  void read_metallic(const GltfJson& metallic, GltfMaterial& result) {
-    read_color(metallic, "baseColorFactor", "baseColorTexture", result);
-    metallic_ += document_.number(metallic, "metallicFactor", 1, place_) > 0;
+  void read_metallic(const GltfJson& metallic, SourceMaterial& material) {
+    read_color(metallic, "baseColorFactor", "baseColorTexture", material);
+    const auto share = [&](const char* key) {
+      return std::clamp(static_cast<float>(document_.number(metallic, key, 1, place_)), 0.f, 1.f);
+    };
+    material.metalness = {.factor = share("metallicFactor"), .channel = Channel::blue};
+    material.roughness = {.factor = share("roughnessFactor"), .channel = Channel::green};
+    metallic_ += *material.metalness.factor > 0;
+    if (const GltfJson* info = document_.object(metallic, "metallicRoughnessTexture", place_))
+      material.metalness.texture = material.roughness.texture = read_further_texture(*info);
   }
 
-  void read_color(const GltfJson& holder, const char* factor_key, const char* texture_key, GltfMaterial& result) {
-    if (const std::vector<double> factor = document_.numbers(holder, factor_key, 4, place_); !factor.empty())
-      result.material.diffuse = Eigen::Vector3d(factor[0], factor[1], factor[2]).cast<float>().cwiseMax(0).cwiseMin(1);
-    if (const GltfJson* info = document_.object(holder, texture_key, place_)) read_texture(*info, result);
+  void read_emission(const GltfJson& object, SourceMaterial& material) {
+    if (const std::vector<double> factor = document_.numbers(object, "emissiveFactor", 3, place_); !factor.empty())
+      material.emission = Eigen::Vector3d(factor[0], factor[1], factor[2]).cwiseMax(0).cast<float>();
+    if (!material.emission) return;  // the factor is black where the file has none
+    if (const GltfJson* strength = document_.extension(object, "KHR_materials_emissive_strength", place_))
+      *material.emission *= static_cast<float>(document_.number(*strength, "emissiveStrength", 1, place_));
+    if (const GltfJson* info = document_.object(object, "emissiveTexture", place_))
+      material.emission_texture = read_further_texture(*info);
   }
 
-  void read_texture(const GltfJson& info, GltfMaterial& result) {
-    const std::size_t index = document_.required_index(info, "index", place_);
-    const GltfJson& texture = document_.element("textures", index, place_);
-    const std::string place = "texture " + std::to_string(index);
-    result.material.texture = picture(texture, place);
-    result.material.texture_place = document_.file().string() + ", " + place;
-    result.uv_set = document_.index(info, "texCoord", place_).value_or(0);
-    if (const auto sampler = document_.index(texture, "sampler", place)) read_sampler(*sampler, place, result.material);
-    if (const GltfJson* transform = document_.extension(info, "KHR_texture_transform", place_)) {
-      result.uv_set = document_.index(*transform, "texCoord", place_).value_or(result.uv_set);
-      result.material.texture_transform = read_transform(*transform);
+  /// Takes the base colour's alpha for opacity where the material is not opaque.
+  void read_alpha_mode(const GltfJson& object, SourceMaterial& material) const {
+    const std::string mode = document_.text(object, "alphaMode", place_);
+    if (mode != "MASK" && mode != "BLEND") {
+      material.opacity = {};
+      return;
+    }
+    material.opacity.texture = material.texture;
+    material.opacity.channel = Channel::alpha;
+    if (mode == "MASK")
+      material.opacity_cutoff =
+          std::clamp(static_cast<float>(document_.number(object, "alphaCutoff", 0.5, place_)), 1e-3f, 1 - 1e-3f);
+  }
+
+  void read_color(const GltfJson& holder, const char* factor_key, const char* texture_key, SourceMaterial& material) {
+    if (const std::vector<double> factor = document_.numbers(holder, factor_key, 4, place_); !factor.empty()) {
+      material.diffuse = Eigen::Vector3d(factor[0], factor[1], factor[2]).cast<float>().cwiseMax(0).cwiseMin(1);
+      material.opacity.factor = std::clamp(static_cast<float>(factor[3]), 0.f, 1.f);
+    }
+    if (const GltfJson* info = document_.object(holder, texture_key, place_)) {
+      auto [texture, uv_set] = read_texture(*info);
+      material.texture = std::move(texture);
+      uv_set_ = uv_set;
     }
   }
 
-  std::optional<SourcePicture> picture(const GltfJson& texture, const std::string& place) {
+  /// Reads a texture other than the colour's; nothing where it has other texture coordinates than that.
+  std::optional<SourceTexture> read_further_texture(const GltfJson& info) {
+    auto [texture, uv_set] = read_texture(info);
+    if (!uv_set_) uv_set_ = uv_set;
+    if (uv_set == *uv_set_) return std::move(texture);
+    ++other_uvs_;
+    return std::nullopt;
+  }
+
+  /// Reads a texture and the set of texture coordinates that it is looked up with.
+  std::pair<SourceTexture, std::size_t> read_texture(const GltfJson& info) {
+    const std::size_t index = document_.required_index(info, "index", place_);
+    const GltfJson& object = document_.element("textures", index, place_);
+    const std::string place = "texture " + std::to_string(index);
+    SourceTexture texture{.picture = picture(object, place), .place = document_.file().string() + ", " + place};
+    std::size_t uv_set = document_.index(info, "texCoord", place_).value_or(0);
+    if (const auto sampler = document_.index(object, "sampler", place)) read_sampler(*sampler, place, texture);
+    if (const GltfJson* transform = document_.extension(info, "KHR_texture_transform", place_)) {
+      uv_set = document_.index(*transform, "texCoord", place_).value_or(uv_set);
+      texture.transform = read_transform(*transform);
+    }
+    return {std::move(texture), uv_set};
+  }
+
+  SourcePicture picture(const GltfJson& texture, const std::string& place) {
     const auto plain = document_.index(texture, "source", place);
     for (const auto& [extension, format] : other_formats) {
       const GltfJson* other = document_.extension(texture, extension, place);
@@ -129,7 +179,7 @@ class MaterialReader {
     return picture;
   }
 
-  void read_sampler(std::size_t index, const std::string& user, SourceMaterial& material) const {
+  void read_sampler(std::size_t index, const std::string& user, SourceTexture& texture) const {
     const std::string place = "sampler " + std::to_string(index);
     const GltfJson& object = document_.element("samplers", index, user);
     const auto wrap = [&](const char* key) {
@@ -144,8 +194,8 @@ class MaterialReader {
           document_.fail(place + " has the wrap mode " + std::to_string(mode), "10497, 33071 or 33648");
       }
     };
-    material.wrap_u = wrap("wrapS");
-    material.wrap_v = wrap("wrapT");
+    texture.wrap_u = wrap("wrapS");
+    texture.wrap_v = wrap("wrapT");
   }
 
   /// Converts a transform of glTF's coordinates, whose v points down, to one of coordinates whose v points up.
@@ -163,18 +213,12 @@ class MaterialReader {
     return (flip * down * flip).topRows<2>().cast<float>();
   }
 
-  void count_what_is_passed_by(const GltfJson& object) {
-    const std::string alpha = document_.text(object, "alphaMode", place_);
-    see_through_ += alpha == "BLEND" || alpha == "MASK";
-    const std::vector<double> emissive = document_.numbers(object, "emissiveFactor", 3, place_);
-    glowing_ += std::any_of(emissive.begin(), emissive.end(), [](double value) { return value > 0; });
-  }
-
   const GltfDocument& document_;
   GltfBuffers& buffers_;
   std::string place_;
+  std::optional<std::size_t> uv_set_;  ///< set of texture coordinates of the material being read
   std::map<std::size_t, std::shared_ptr<const std::vector<std::uint8_t>>> embedded_;
-  std::size_t see_through_ = 0, glowing_ = 0, metallic_ = 0, fallbacks_ = 0, unread_ = 0;
+  std::size_t metallic_ = 0, fallbacks_ = 0, unread_ = 0, other_uvs_ = 0;
 };
 
 }  // namespace

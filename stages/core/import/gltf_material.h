@@ -14,7 +14,7 @@ struct GltfMaterial {
   std::size_t uv_set = 0;  ///< set of texture coordinates for the picture: TEXCOORD_<uv_set>
 };
 
-/// Reads all materials of a file, in its order: the base colour of metal-roughness materials, or the diffuse one of
+/// Reads all materials of a file, in its order: metal-roughness, emission and alpha, or the diffuse colour of
 /// KHR_materials_pbrSpecularGlossiness. Adds what is ignored to `warnings`. Throws BadInput.
 std::vector<GltfMaterial> read_gltf_materials(const GltfDocument& document, GltfBuffers& buffers,
                                               std::vector<std::string>& warnings);

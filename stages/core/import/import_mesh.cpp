@@ -81,6 +81,22 @@ void warn_of_repairs(const MeshRepairs& repairs, std::vector<std::string>& warni
   add(repairs.unorientable_edges, "edge", "cut, as the surface has one side alone, like a Moebius strip");
 }
 
+void warn_of_emission(const SourceMesh& source, std::vector<std::string>& warnings) {
+  std::vector<bool> is_used(source.materials.size(), false);
+  for (const SourceMesh::Face& face : source.faces)
+    if (face.material >= 0) is_used[static_cast<std::size_t>(face.material)] = true;
+  std::size_t glowing = 0;
+  for (std::size_t m = 0; m < is_used.size(); ++m) {
+    const SourceMaterial& material = source.materials[m];
+    const bool glows = material.emission ? !material.emission->isZero(0) : material.emission_texture.has_value();
+    glowing += is_used[m] && glows;
+  }
+  if (glowing > 0)
+    warnings.push_back(
+        std::to_string(glowing) + (glowing == 1 ? " material" : " materials") +
+        " with light of their own (emission), which no bake has; kiln-normals --maps emission writes it");
+}
+
 /// Clamps colours to 0 .. 1; returns how many lay outside.
 int clamp_colors(const std::string& name, std::vector<Eigen::Vector3f>& colors) {
   int clamped = 0;
@@ -156,6 +172,7 @@ ImportedMesh import_mesh(const std::filesystem::path& file, const ImportSettings
   const CornerAttributes attributes(source, triangles, mesh, origins);
   result.surface = attributes.surface();
   set_normals(mesh, attributes, settings.normals, name, result.warnings);
+  warn_of_emission(source, result.warnings);
   return result;
 }
 

@@ -118,11 +118,12 @@ class OptionReader {
     const std::string_view text = state_.rest;
     if (!read_numbers(turbulence)) return false;
     if (turbulence[0] != 0)
-      for (State& ending : endings_) ending.map.fault = MapFault{"map_Kd with -t, turbulence", "-t 0 0 0, or none"};
+      for (State& ending : endings_)
+        ending.map.fault = MapFault{ending.map.keyword + " with -t, turbulence", "-t 0 0 0, or none"};
     if (turbulence[0] != 0 || turbulence[1] != 0)
-      state_.map.fault =
-          MapFault{"map_Kd with -t" + std::string(text.substr(0, text.size() - state_.rest.size())) + ", turbulence",
-                   "-t 0 0 0, or none"};
+      state_.map.fault = MapFault{state_.map.keyword + " with -t" +
+                                      std::string(text.substr(0, text.size() - state_.rest.size())) + ", turbulence",
+                                  "-t 0 0 0, or none"};
     return true;
   }
 
@@ -156,8 +157,8 @@ MapStatement read_quoted(State state, std::size_t closing, const fs::path& folde
   const std::string_view text = trimmed(state.rest);
   state.rest = text.substr(closing + 1);
   if (!read_all_as_options(state) && !state.map.fault)
-    state.map.fault =
-        MapFault{"map_Kd with " + shown(trimmed(state.rest)), "options of a map behind its name, or nothing"};
+    state.map.fault = MapFault{state.map.keyword + " with " + shown(trimmed(state.rest)),
+                               "options of a map behind its name, or nothing"};
   find_file(state.map, text.substr(1, closing - 1), folder);
   return state.map;
 }
@@ -187,29 +188,29 @@ MapStatement read_name(const State& state, const fs::path& folder) {
 
 }  // namespace
 
-void MapStatement::apply_to(SourceMaterial& material) const {
-  SourcePicture picture;
-  picture.file = *file;
-  picture.name = file->filename().string();
-  material.texture = picture;
-  material.texture_transform << static_cast<float>(scale[0]), 0, static_cast<float>(offset[0]), 0,
-      static_cast<float>(scale[1]), static_cast<float>(offset[1]);
-  material.wrap_u = material.wrap_v = clamp ? SourceMaterial::Wrap::clamp : SourceMaterial::Wrap::repeat;
-  material.texture_base = static_cast<float>(base);
-  material.texture_gain = static_cast<float>(gain);
+SourceTexture MapStatement::texture(const std::string& place) const {
+  SourceTexture texture{.picture = {*file, nullptr, file->filename().string()}, .place = place};
+  texture.transform << static_cast<float>(scale[0]), 0, static_cast<float>(offset[0]), 0, static_cast<float>(scale[1]),
+      static_cast<float>(offset[1]);
+  texture.wrap_u = texture.wrap_v = clamp ? SourceTexture::Wrap::clamp : SourceTexture::Wrap::repeat;
+  texture.base = static_cast<float>(base);
+  texture.gain = static_cast<float>(gain);
+  return texture;
 }
 
-MapStatement read_map_statement(std::string_view text, const fs::path& folder) {
+MapStatement read_map_statement(const std::string& keyword, std::string_view text, const fs::path& folder) {
   text = trimmed(text);
   if (text.size() > most_characters) {
     MapStatement too_long;
-    too_long.fault = MapFault{"map_Kd of " + std::to_string(text.size()) + " characters",
+    too_long.fault = MapFault{keyword + " of " + std::to_string(text.size()) + " characters",
                               "at most " + std::to_string(most_characters)};
     return too_long;
   }
   std::string tabs_as_blanks(text);
   std::replace(tabs_as_blanks.begin(), tabs_as_blanks.end(), '\t', ' ');
-  const std::vector<State> endings = OptionReader({{}, tabs_as_blanks}).read();
+  State start{{}, tabs_as_blanks};
+  start.map.keyword = keyword;
+  const std::vector<State> endings = OptionReader(start).read();
   std::optional<MapStatement> first;
   for (const State& ending : endings) {
     const MapStatement map = read_name(ending, folder);
@@ -217,11 +218,11 @@ MapStatement read_map_statement(std::string_view text, const fs::path& folder) {
     if (!first) first = map;
   }
   MapStatement map = std::move(*first);
-  if (map.name.empty() && !map.fault) map.fault = MapFault{"map_Kd without a file", "the name of a picture"};
+  if (map.name.empty() && !map.fault) map.fault = MapFault{keyword + " without a file", "the name of a picture"};
   // If the name is no file, it may begin with an unknown option: say so.
   if (std::string_view rest = map.name; !map.fault && rest.starts_with('-'))
     map.fault =
-        MapFault{"map_Kd with " + shown(map.name),
+        MapFault{keyword + " with " + shown(map.name),
                  "options of the format and what they take, such as -s 1 1 1, -mm 0 1 and -clamp on, and a name"};
   return map;
 }

@@ -15,8 +15,9 @@ struct MapFault {
   std::string found, expected;
 };
 
-/// Statement `map_Kd` of an MTL file: the name of a picture, and how it is looked up.
+/// Statement such as `map_Kd` of an MTL file: the name of a picture, and how it is looked up.
 struct MapStatement {
+  std::string keyword;                        ///< of the statement, for messages
   std::string name;                           ///< as written, without quotes
   std::optional<std::filesystem::path> file;  ///< nothing where there is no such file
   double scale[2] = {1, 1}, offset[2] = {0, 0};
@@ -24,11 +25,13 @@ struct MapStatement {
   bool clamp = false;
   std::optional<MapFault> fault;
 
-  void apply_to(SourceMaterial& material) const;
+  /// Returns the picture; `file` is there. `place` is that of the statement.
+  SourceTexture texture(const std::string& place) const;
 };
 
-/// Reads the text after `map_Kd`: options, a name that may hold blanks or stand in quotes, more options. Where the
-/// numbers of an option might also begin the name, the reading that names a file in `folder` is taken.
-MapStatement read_map_statement(std::string_view text, const std::filesystem::path& folder);
+/// Reads the text after a keyword such as `map_Kd`, which messages name: options, a name that may hold blanks or stand
+/// in quotes, more options. Where the numbers of an option might also begin the name, the reading that names a file in
+/// `folder` is taken.
+MapStatement read_map_statement(const std::string& keyword, std::string_view text, const std::filesystem::path& folder);
 
 }  // namespace kiln

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The format: Alias|Wavefront, "Advanced Visualizer Manual", appendix B2, "Object material files (.MTL)", version 4.2.
-// Ke and norm are of Clara.io's "extension to MTL for physically based rendering".
+// Ke, norm, Pr, Pm and their maps are of Clara.io's "extension to MTL for physically based rendering".
 #include "import/mtl_reader.h"
 
 #include <algorithm>
@@ -42,25 +42,29 @@ class LibraryReader {
   }
 
   void read_statement(std::string_view keyword, std::string_view rest) {
-    LibraryMaterial& material = materials_.back();
+    SourceMaterial& material = materials_.back().material;
     if (same_word(keyword, "kd")) return read_diffuse(rest);
-    if (same_word(keyword, "map_kd")) return read_map(rest);
+    if (same_word(keyword, "map_kd")) return read_diffuse_map(rest);
     if (same_word(keyword, "d")) return read_dissolve(rest);
     if (same_word(keyword, "tr")) return read_transparency(rest);
     if (same_word(keyword, "ke")) return read_emission(rest);
+    if (same_word(keyword, "pr")) return read_share(rest, material.roughness);
+    if (same_word(keyword, "pm")) return read_share(rest, material.metalness);
     if (same_word(keyword, "map_d")) {
-      material.is_transparent = true;
-    } else if (same_word(keyword, "map_ke")) {
-      material.is_emissive = true;
-    } else if (is_other_map(keyword)) {
-      std::vector<std::string>& maps = material.other_maps;
-      if (std::find(maps.begin(), maps.end(), keyword) == maps.end()) maps.emplace_back(keyword);
+      material.opacity.channel = SourceShare::Channel::coverage;
+      return read_map("map_d", rest, material.opacity.texture);
     }
+    if (same_word(keyword, "map_ke")) return read_map("map_Ke", rest, material.emission_texture);
+    if (same_word(keyword, "map_pr")) return read_map("map_Pr", rest, material.roughness.texture);
+    if (same_word(keyword, "map_pm")) return read_map("map_Pm", rest, material.metalness.texture);
+    if (!is_other_map(keyword)) return;
+    std::vector<std::string>& maps = materials_.back().other_maps;
+    if (std::find(maps.begin(), maps.end(), keyword) == maps.end()) maps.emplace_back(keyword);
   }
 
   static bool is_other_map(std::string_view keyword) {
-    for (const char* name : {"map_ka", "map_ks", "map_ns", "map_bump", "map_pr", "map_pm", "map_ps", "map_refl",
-                             "map_tr", "map_disp", "map_norm", "map_orm", "bump", "disp", "decal", "refl", "norm"})
+    for (const char* name : {"map_ka", "map_ks", "map_ns", "map_bump", "map_ps", "map_refl", "map_tr", "map_disp",
+                             "map_norm", "map_orm", "bump", "disp", "decal", "refl", "norm"})
       if (same_word(keyword, name)) return true;
     return false;
   }
@@ -102,15 +106,32 @@ class LibraryReader {
     return values;
   }
 
-  void read_map(std::string_view rest) {
-    const MapStatement map = read_map_statement(rest, folder_of(file_));
-    SourceMaterial& material = materials_.back().material;
-    material.texture_place = place();
+  void read_diffuse_map(std::string_view rest) {
+    const MapStatement map = read_map_statement("map_Kd", rest, folder_of(file_));
     if (map.fault) return fault(map.fault->found, map.fault->expected);
     if (!map.file)
       return fault("names the picture " + (file_.parent_path() / map.name).string() + ", which does not exist",
                    "a file", "put it there, or give --albedo a number");
-    map.apply_to(material);
+    materials_.back().material.texture = map.texture(place());
+  }
+
+  /// Reads a map that a mesh can do without: one that is not understood, or not there, is said by a warning.
+  void read_map(const char* keyword, std::string_view rest, std::optional<SourceTexture>& texture) {
+    const MapStatement map = read_map_statement(keyword, rest, folder_of(file_));
+    if (map.file && !map.fault) {
+      texture = map.texture(place());
+      return;
+    }
+    const std::string found = map.fault ? map.fault->found + "; expected " + map.fault->expected
+                                        : std::string(keyword) + " names the picture " +
+                                              (file_.parent_path() / map.name).string() + ", which does not exist";
+    materials_.back().unread_maps.push_back(place() + ": " + found + "; the map is not used");
+  }
+
+  /// Reads a share of 0 to 1; others are clamped.
+  static void read_share(std::string_view rest, SourceShare& share) {
+    const auto values = numbers(without_comment(rest));
+    if (values && values->size() == 1) share.factor = std::clamp(static_cast<float>(values->front()), 0.f, 1.f);
   }
 
   /// Reads `d`, opacity: 1 is fully opaque. -halo makes the middle of a shape more opaque than its rim.
@@ -118,21 +139,24 @@ class LibraryReader {
     std::string_view word = next_word(rest);
     if (same_word(word, "-halo")) word = next_word(rest);
     const std::optional<double> value = parse_number(word);
-    if (!value) return;
-    materials_.back().is_transparent = *value < 1;
+    if (!value || !std::isfinite(*value)) return;
+    materials_.back().material.opacity.factor = std::clamp(static_cast<float>(*value), 0.f, 1.f);
     has_dissolve_ = true;
   }
 
-  /// Reads `Tr`, which exporters write as 1 - d or as d: only values other than 0 and 1 mean transparency.
+  /// Reads `Tr`, which exporters write as 1 - d or as d: only values other than 0 and 1 mean transparency, and these
+  /// are taken for 1 - d.
   void read_transparency(std::string_view rest) {
     const std::optional<double> value = parse_number(next_word(rest));
-    if (value && !has_dissolve_ && *value > 0 && *value < 1) materials_.back().is_transparent = true;
+    if (value && !has_dissolve_ && *value > 0 && *value < 1)
+      materials_.back().material.opacity.factor = static_cast<float>(1 - *value);
   }
 
   void read_emission(std::string_view rest) {
     const auto values = numbers(without_comment(rest));
-    if (values && std::any_of(values->begin(), values->end(), [](double value) { return value > 0; }))
-      materials_.back().is_emissive = true;
+    if (!values || (values->size() != 1 && values->size() != 3)) return;
+    const Eigen::Vector3d light(values->front(), (*values)[values->size() / 2], values->back());
+    materials_.back().material.emission = light.cwiseMax(0).cast<float>();
   }
 
   fs::path file_;

@@ -93,28 +93,24 @@ class Libraries {
 class MaterialWarnings {
  public:
   void add(const LibraryMaterial& material) {
-    transparent_ += material.is_transparent;
-    emissive_ += material.is_emissive;
     clamped_ += material.is_clamped;
+    unread_.insert(unread_.end(), material.unread_maps.begin(), material.unread_maps.end());
     for (const std::string& map : material.other_maps)
       if (std::find(maps_.begin(), maps_.end(), map) == maps_.end()) maps_.push_back(map);
   }
 
   void give(std::vector<std::string>& warnings) const {
-    if (transparent_ > 0)
-      warnings.push_back(counted(transparent_, "material") + " not opaque (d, Tr or map_d); transparency is not used");
-    if (emissive_ > 0)
-      warnings.push_back(counted(emissive_, "material") + " with emission (Ke or map_Ke), which is not used");
+    warnings.insert(warnings.end(), unread_.begin(), unread_.end());
     if (clamped_ > 0) warnings.push_back(counted(clamped_, "material") + " with a Kd outside 0 to 1, clamped to that");
     if (maps_.empty()) return;
     std::string list;
     for (const std::string& map : maps_) list += (list.empty() ? "" : ", ") + map;
-    warnings.push_back("maps other than map_Kd are not used: " + list);
+    warnings.push_back("maps that are not used: " + list);
   }
 
  private:
-  std::size_t transparent_ = 0, emissive_ = 0, clamped_ = 0;
-  std::vector<std::string> maps_;
+  std::size_t clamped_ = 0;
+  std::vector<std::string> unread_, maps_;
 };
 
 }  // namespace

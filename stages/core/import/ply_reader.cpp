@@ -320,8 +320,8 @@ class PlyReader {
     }
     SourceMaterial material;
     material.name = texture.name;
-    material.place = material.texture_place = file_ + ":" + std::to_string(texture.line);
-    material.texture = SourcePicture{.file = picture, .bytes = nullptr, .name = texture.name};
+    material.place = file_ + ":" + std::to_string(texture.line);
+    material.texture = SourceTexture{.picture = {picture, nullptr, texture.name}, .place = material.place};
     return material;
   }
 

@@ -21,22 +21,47 @@ struct SourcePicture {
   std::string name;                                        ///< for messages: the file's name, or "image 3 of scene.glb"
 };
 
-/// Diffuse reflectance of one material of a file.
-struct SourceMaterial {
+/// Picture of a material, and how it is looked up.
+struct SourceTexture {
   enum class Wrap { repeat, clamp, mirror };
+
+  SourcePicture picture;
+  std::string place;  ///< place where the mesh file names it, for messages
+  /// Transform of the lookup: transform * (u, v, 1), where (0, 0) is the picture's lower left corner.
+  Eigen::Matrix<float, 2, 3> transform = Eigen::Matrix<float, 2, 3>::Identity();
+  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+  float base = 0, gain = 1;  ///< stored values become base + gain * value (-mm)
+};
+
+/// Share of 0 to 1 that a material has of something: a number, times one channel of a picture.
+struct SourceShare {
+  /// Channel of the picture. `coverage` is alpha where the picture has any that is not 1, else its grey.
+  enum class Channel { red, green, blue, alpha, coverage, grey };
+
+  std::optional<float> factor = {};  ///< 0 to 1; nothing: the file does not say, and 1 beside a picture
+  std::optional<SourceTexture> texture = {};
+  Channel channel = Channel::grey;
+
+  bool is_given() const { return factor.has_value() || texture.has_value(); }
+};
+
+/// Material of a file.
+struct SourceMaterial {
+  using Wrap = SourceTexture::Wrap;
 
   std::string name;
   std::string place;                                  ///< place in the file, for messages: "scan.mtl:3"
-  Eigen::Vector3f diffuse = Eigen::Vector3f::Ones();  ///< 0 to 1
+  Eigen::Vector3f diffuse = Eigen::Vector3f::Ones();  ///< diffuse reflectance, 0 to 1
   bool has_diffuse = false;                           ///< the file gives `diffuse`
-  bool linear_diffuse = false;  ///< `diffuse` is proportional to light whatever the settings say (glTF)
+  bool linear_diffuse = false;           ///< `diffuse` is proportional to light whatever the settings say (glTF)
+  std::optional<SourceTexture> texture;  ///< of the diffuse reflectance
 
-  std::optional<SourcePicture> texture;
-  std::string texture_place;  ///< place where the file names it, for messages
-  /// Transform of the lookup: texture_transform * (u, v, 1), where (0, 0) is the picture's lower left corner.
-  Eigen::Matrix<float, 2, 3> texture_transform = Eigen::Matrix<float, 2, 3>::Identity();
-  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
-  float texture_base = 0, texture_gain = 1;  ///< stored values become base + gain * value (-mm)
+  SourceShare opacity;         ///< not given: opaque
+  float opacity_cutoff = .5f;  ///< opacity below which nothing is there, above 0 and below 1
+  SourceShare roughness, metalness;
+  /// Light of its own: factors, not below 0, proportional to light; times a picture of colours.
+  std::optional<Eigen::Vector3f> emission;
+  std::optional<SourceTexture> emission_texture;
 };
 
 /// Mesh file as it is, with nothing joined, turned or dropped: the output of every reader and the input of every stage.

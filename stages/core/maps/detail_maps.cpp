@@ -81,7 +81,6 @@ std::string size_text(const Image<T>& image) {
 
 /// Reads the albedo map, or the constant in the record: three linear values. Records of older versions of kiln-normals
 /// have neither; the surface is white then.
-/// neither, and then the surface is white.
 void read_albedo(const std::filesystem::path& folder, const Json& record, DetailMaps& maps) {
   const Json albedo = record.value("albedo", Json::object());
   if (!albedo.is_object() || (!albedo.empty() && !albedo.contains("source")))
@@ -186,6 +185,11 @@ DetailMaps load_detail_maps(const std::filesystem::path& folder, const TriangleM
 
   maps.normal_space = space;
   read_albedo(folder, record, maps);
+  maps.has_opacity = record.contains("opacity");
+  if (const Json own = record.value("own_normal", Json::object()); own.is_object() && !own.empty()) {
+    maps.own_normal_width = own.value("width", 0);
+    maps.own_normal_height = own.value("height", 0);
+  }
 
   // Check that the maps were made from this very atlas.
   if (atlas.normals.size() != atlas.positions.size() || atlas.uvs.size() != atlas.positions.size())

@@ -17,14 +17,16 @@ namespace kiln {
 struct DetailMaps {
   int width = 0;
   int height = 0;
-  std::vector<std::uint8_t> covered;               ///< 1 or 0 per texel, rows from the bottom
-  Image<float> position;                           ///< 3 channels, in the atlas's frame; gutters filled
-  Image<float> normal_object;                      ///< 3 channels, unit vectors in object space; gutters filled
-  NormalSpace normal_space = NormalSpace::object;  ///< space of the map in the file
-  Image<float> albedo;                             ///< 3 channels, linear, gutters filled; empty where it is constant
+  std::vector<std::uint8_t> covered;                ///< 1 or 0 per texel, rows from the bottom
+  Image<float> position;                            ///< 3 channels, in the atlas's frame; gutters filled
+  Image<float> normal_object;                       ///< 3 channels, unit vectors in object space; gutters filled
+  NormalSpace normal_space = NormalSpace::object;   ///< space of the map in the file
+  int own_normal_width = 0, own_normal_height = 0;  ///< texels of the normal map that ships; 0: this one does
+  Image<float> albedo;                              ///< 3 channels, linear, gutters filled; empty where it is constant
   int albedo_width = 0, albedo_height = 0;  ///< texels of its file, from which `albedo` is resized where they differ
   Eigen::Vector3f constant_albedo = Eigen::Vector3f::Ones();  ///< linear; used where `albedo` is empty
   bool albedo_known = false;                                  ///< the normals stage found an albedo or was given one
+  bool has_opacity = false;  ///< the surface is not opaque everywhere: the folder has a map of its opacity
 
   /// Returns the linear albedo of a texel.
   Eigen::Vector3f albedo_at(int i, int j) const;

@@ -7,6 +7,7 @@
 #include "base/errors.h"
 #include "image/image_file.h"
 #include "image/srgb.h"
+#include "material/texture_lookup.h"
 
 namespace kiln {
 
@@ -23,22 +24,14 @@ struct Decoding {
   }
 };
 
-/// Maps a texel outside the picture to one inside.
-int wrapped(int i, int texels, SourceMaterial::Wrap wrap) {
-  if (wrap == SourceMaterial::Wrap::clamp) return std::clamp(i, 0, texels - 1);
-  const int period = wrap == SourceMaterial::Wrap::mirror ? 2 * texels : texels;
-  const int within = (i % period + period) % period;
-  return within < texels ? within : period - 1 - within;
-}
-
 }  // namespace
 
 ColorTexture::ColorTexture(const std::filesystem::path& file, ColorEncoding encoding)
     : ColorTexture(SourcePicture{file, nullptr, file.string()}, encoding) {}
 
 ColorTexture::ColorTexture(const SourcePicture& source, ColorEncoding encoding, float base, float gain) {
-  ColorPicture picture =
-      source.bytes != nullptr ? read_color_picture(*source.bytes, source.name) : read_color_picture(source.file);
+  Picture picture =
+      colors_of(source.bytes != nullptr ? read_picture(*source.bytes, source.name) : read_picture(source.file));
   const Decoding decode{encoding, base, gain};
   for (int byte = 0; byte < 256; ++byte)
     linear_of_byte_[static_cast<std::size_t>(byte)] = std::clamp(decode(static_cast<float>(byte) / 255), 0.f, 1.f);
@@ -78,24 +71,7 @@ Eigen::Vector3f ColorTexture::texel(int i, int j) const {
 }
 
 Eigen::Vector3f ColorTexture::at(const Eigen::Vector2f& uv, Wrap wrap_u, Wrap wrap_v) const {
-  // Per axis, the two texels between whose centres the point lies, and the second one's weight. In double precision:
-  // uvs far outside the unit square would lose the fraction of a texel.
-  struct Between {
-    int first, second;
-    float weight;
-  };
-  const auto between = [](double coordinate, int texels, Wrap wrap) {
-    const double within = wrap == Wrap::clamp ? std::clamp(coordinate, 0.0, 1.0)
-                                              : coordinate - 2 * std::floor(coordinate / 2);  // two periods
-    const double place = within * texels - 0.5;
-    const double below = std::floor(place);
-    const int first = static_cast<int>(below);
-    return Between{wrapped(first, texels, wrap), wrapped(first + 1, texels, wrap), static_cast<float>(place - below)};
-  };
-  const Between x = between(uv.x(), width_, wrap_u), y = between(uv.y(), height_, wrap_v);
-  const Eigen::Vector3f lower = (1 - x.weight) * texel(x.first, y.first) + x.weight * texel(x.second, y.first);
-  const Eigen::Vector3f upper = (1 - x.weight) * texel(x.first, y.second) + x.weight * texel(x.second, y.second);
-  return (1 - y.weight) * lower + y.weight * upper;
+  return BilinearTexels(uv, width_, height_, wrap_u, wrap_v).interpolate([this](int i, int j) { return texel(i, j); });
 }
 
 }  // namespace kiln

@@ -23,7 +23,7 @@ class ColorTexture {
   /// Reads a picture that a mesh names or holds; stored values v become base + gain * v before they are decoded.
   ColorTexture(const SourcePicture& picture, ColorEncoding encoding, float base = 0, float gain = 1);
 
-  using Wrap = SourceMaterial::Wrap;
+  using Wrap = SourceTexture::Wrap;
 
   /// Interpolates bilinearly between linear values. Outside the unit square the picture repeats, mirrors, or continues
   /// its edge. uv (0, 0) is the picture's lower left corner.

@@ -2,11 +2,13 @@
 #include "material/load_albedo.h"
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <memory>
 
 #include "base/errors.h"
 #include "image/srgb.h"
+#include "material/require_texture.h"
 
 namespace kiln {
 
@@ -17,16 +19,6 @@ namespace fs = std::filesystem;
 Eigen::Vector3f decoded(const Eigen::Vector3f& color, bool is_linear) {
   return is_linear ? Eigen::Vector3f(color.cwiseMax(0).cwiseMin(1))
                    : Eigen::Vector3f(color.unaryExpr(&linear_from_srgb));
-}
-
-/// Refuses a textured face that has no texture coordinates; `owner` names whose texture it is.
-void require_uvs(const ImportedMesh& mesh, const ImportedSurface::FaceWithoutUvs& missing, const std::string& owner,
-                 const std::string& remedy) {
-  if (!missing.found) return;
-  const std::string place = missing.line > 0 ? ":" + std::to_string(missing.line) : "";
-  const std::string face = missing.line > 0 ? "a face" : "face " + std::to_string(missing.face);
-  throw BadInput(mesh.file.string() + place, face + " without texture coordinates" + owner,
-                 "texture coordinates at every corner of it", remedy);
 }
 
 /// Materials of a mesh's triangles.
@@ -43,29 +35,46 @@ class MeshMaterials {
   }
 
   LoadedAlbedo load() {
-    const ImportedSurface& surface = mesh_.surface;
     result_.files = mesh_.further_files;
+    result_.ignores_colors = !mesh_.mesh.colors.empty();
+    return finish([this](const SourceMaterial& source) { return diffuse(source); }, {});
+  }
+
+  LoadedAlbedo load_emission() {
+    const SurfaceAlbedo::Material dark{.color = Eigen::Vector3f::Zero(), .texture = nullptr};
+    return finish(
+        [&](const SourceMaterial& source) {
+          SurfaceAlbedo::Material material = dark;
+          if (source.emission) material.color = *source.emission;
+          if (!source.emission_texture) return material;
+          if (!source.emission) material.color.setOnes();
+          look_up(*source.emission_texture, "take emission out of --maps", material);
+          return material;
+        },
+        dark);
+  }
+
+ private:
+  /// Makes the albedo of all triangles; those without a material have `plain`.
+  LoadedAlbedo finish(const std::function<SurfaceAlbedo::Material(const SourceMaterial&)>& material_of,
+                      const SurfaceAlbedo::Material& plain_material) {
+    const ImportedSurface& surface = mesh_.surface;
     SurfaceAlbedo::Textured textured;
     for (std::size_t m = 0; m < surface.materials.size(); ++m) {
-      textured.materials.push_back(material(surface.materials[m]));
-      if (textured.materials.back().texture != nullptr)
-        require_uvs(mesh_, surface.without_uvs[m],
-                    ", of material '" + surface.materials[m].name + "', which has a texture",
-                    "export the mesh again with them");
+      textured.materials.push_back(material_of(surface.materials[m]));
+      if (textured.materials.back().texture != nullptr) require_uvs(mesh_, m);
     }
     const auto plain = static_cast<std::uint32_t>(textured.materials.size());
-    textured.materials.emplace_back();  // for faces without a material
+    textured.materials.push_back(plain_material);
     textured.material_of.reserve(surface.material_of.size());
     for (const std::int32_t material : surface.material_of)
       textured.material_of.push_back(material < 0 ? plain : static_cast<std::uint32_t>(material));
     textured.uvs = surface.uvs;
-    result_.ignores_colors = !mesh_.mesh.colors.empty();
     result_.albedo = SurfaceAlbedo::of_materials(std::move(textured), SurfaceAlbedo::Source::materials);
     return std::move(result_);
   }
 
- private:
-  SurfaceAlbedo::Material material(const SourceMaterial& source) {
+  SurfaceAlbedo::Material diffuse(const SourceMaterial& source) {
     SurfaceAlbedo::Material material;
     // Exporters write a black Kd beside a map, although by the format its product with the map is black.
     const bool no_color = !source.has_diffuse || (source.texture && source.diffuse.isZero(0));
@@ -73,24 +82,23 @@ class MeshMaterials {
       result_.clamped += (source.diffuse.array() < 0 || source.diffuse.array() > 1).any();
       material.color = decoded(source.diffuse, source.linear_diffuse || encoding_ == ColorEncoding::linear);
     }
-    if (source.texture) material.texture = texture(source);
-    material.texture_transform = source.texture_transform;
-    material.wrap_u = source.wrap_u;
-    material.wrap_v = source.wrap_v;
+    if (source.texture) look_up(*source.texture, "give --albedo a number", material);
     return material;
   }
 
-  std::shared_ptr<const ColorTexture> texture(const SourceMaterial& source) {
-    const SourcePicture& picture = *source.texture;
-    const std::string name = picture.bytes != nullptr ? picture.name : picture.file.string();
-    std::error_code error;
-    if (picture.bytes == nullptr && !fs::is_regular_file(picture.file, error))
-      throw BadInput(source.texture_place.empty() ? mesh_.file.string() : source.texture_place,
-                     "names the picture " + name + ", which does not exist", "a file",
-                     "put it there, or give --albedo a number");
-    std::shared_ptr<const ColorTexture>& known = textures_[{name, source.texture_base, source.texture_gain}];
+  void look_up(const SourceTexture& source, const std::string& option, SurfaceAlbedo::Material& material) {
+    material.texture = texture(source, option);
+    material.texture_transform = source.transform;
+    material.wrap_u = source.wrap_u;
+    material.wrap_v = source.wrap_v;
+  }
+
+  std::shared_ptr<const ColorTexture> texture(const SourceTexture& source, const std::string& option) {
+    require_picture(source, mesh_.file, option);
+    const SourcePicture& picture = source.picture;
+    std::shared_ptr<const ColorTexture>& known = textures_[{picture_name(picture), source.base, source.gain}];
     if (known != nullptr) return known;
-    known = std::make_shared<const ColorTexture>(picture, encoding_, source.texture_base, source.texture_gain);
+    known = std::make_shared<const ColorTexture>(picture, encoding_, source.base, source.gain);
     if (picture.bytes == nullptr &&
         std::find(result_.files.begin(), result_.files.end(), picture.file) == result_.files.end())
       result_.files.push_back(picture.file);
@@ -108,12 +116,7 @@ LoadedAlbedo load_texture(const ImportedMesh& mesh, const MaterialSettings& sett
   std::error_code error;
   if (!fs::is_regular_file(settings.texture, error))
     throw BadInput(settings.texture, "does not exist", "a picture for --albedo-texture", "check the path");
-  const std::string remedy = "export the mesh with them, or leave --albedo-texture out";
-  if (mesh.surface.uvs.empty())
-    throw BadInput(mesh.file.string(), "has no texture coordinates",
-                   "a mesh with texture coordinates, to look up the texture with", remedy);
-  for (const ImportedSurface::FaceWithoutUvs& missing : mesh.surface.without_uvs)
-    require_uvs(mesh, missing, "", remedy);
+  require_uvs_everywhere(mesh, "--albedo-texture");
   const auto texture = std::make_shared<const ColorTexture>(settings.texture, settings.encoding);
   SurfaceAlbedo::Textured textured;
   textured.materials.emplace_back().texture = texture;
@@ -135,6 +138,16 @@ std::vector<std::string> LoadedAlbedo::warnings() const {
                   " pixels or materials have a reflectance outside 0 to 1, and were clamped to that");
   if (ignores_colors) all.emplace_back("the mesh has colours of vertices besides its materials; they are not used");
   return all;
+}
+
+LoadedAlbedo load_emission(const ImportedMesh& mesh) {
+  const auto& materials = mesh.surface.materials;
+  const bool glows = std::ranges::any_of(materials, [](const SourceMaterial& material) {
+    return material.emission_texture || (material.emission && !material.emission->isZero(0));
+  });
+  LoadedAlbedo dark;
+  dark.albedo = SurfaceAlbedo::constant(Eigen::Vector3f::Zero());
+  return glows && !mesh.surface.material_of.empty() ? MeshMaterials(mesh, ColorEncoding::srgb).load_emission() : dark;
 }
 
 LoadedAlbedo load_albedo(const ImportedMesh& mesh, const MaterialSettings& settings) {

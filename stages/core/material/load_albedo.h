@@ -27,4 +27,8 @@ struct LoadedAlbedo {
 /// understood, and for textured faces without texture coordinates; WrongUsage for a number and a texture at once.
 LoadedAlbedo load_albedo(const ImportedMesh& mesh, const MaterialSettings& settings);
 
+/// Loads the light that a mesh's materials give off themselves, in place of the reflectance: linear, 0 or more, black
+/// where the file has none. Throws BadInput as load_albedo does.
+LoadedAlbedo load_emission(const ImportedMesh& mesh);
+
 }  // namespace kiln

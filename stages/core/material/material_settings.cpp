@@ -36,6 +36,15 @@ void add_material_options(OptionSet& options, MaterialSettings& settings) {
                                 {{"srgb", ColorEncoding::srgb}, {"linear", ColorEncoding::linear}},
                                 "How colours of vertices, of materials and of pictures of integers are stored; those "
                                 "of floating-point pictures are linear");
+  options.choice<OpacitySource>("opacity", settings.opacity,
+                                {{"auto", OpacitySource::file}, {"none", OpacitySource::none}},
+                                "Where the high mesh's surface is cut away, as leaves and fences are; auto: where "
+                                "pictures of opacity that its file names say so, none: nowhere");
+  options.file("opacity-texture", settings.opacity_texture,
+               "A picture of opacity, its alpha if it has any, else its grey, looked up with the high mesh's texture "
+               "coordinates, in place of its file's");
+  options.number_or_auto("opacity-cutoff", settings.opacity_cutoff, 0.001, 0.999,
+                         "Opacity below which nothing is there; auto: the file's, or 0.5");
 }
 
 }  // namespace kiln

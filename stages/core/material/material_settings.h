@@ -12,14 +12,20 @@ namespace kiln {
 /// Encoding of a file's colours: sRGB, or proportional to light.
 enum class ColorEncoding { srgb, linear };
 
-/// Source of the reflectance of a mesh's surface.
+/// Source of the opacity of a mesh's surface: its file, or nothing, as if it were opaque.
+enum class OpacitySource { file, none };
+
+/// Source of the reflectance and the opacity of a mesh's surface.
 struct MaterialSettings {
   std::optional<std::array<float, 3>> albedo = {};  ///< linear, 0 to 1; nothing: what the mesh file says
   std::string texture = {};  ///< a picture looked up with the mesh's uvs, in place of its own materials
   ColorEncoding encoding = ColorEncoding::srgb;  ///< of vertex colours, Kd and pictures of integers
+  OpacitySource opacity = OpacitySource::file;
+  std::string opacity_texture = {};           ///< a picture looked up with the mesh's uvs, in place of its file's
+  std::optional<double> opacity_cutoff = {};  ///< opacity below which nothing is there; nothing: the file's, or 0.5
 };
 
-/// Adds `albedo`, `albedo-texture` and `albedo-encoding` to a stage's options.
+/// Adds the options of albedo and opacity to a stage's options.
 void add_material_options(OptionSet& options, MaterialSettings& settings);
 
 }  // namespace kiln

@@ -44,6 +44,35 @@ SurfaceAlbedo SurfaceAlbedo::of_materials(Textured textured, Source source) {
   return albedo;
 }
 
+SurfaceAlbedo SurfaceAlbedo::of_pieces(const std::vector<std::uint32_t>& origins,
+                                       const std::vector<std::array<std::array<float, 3>, 3>>& weights) const {
+  SurfaceAlbedo pieces = *this;
+  if (vertices_ != nullptr) {
+    Vertices vertices;
+    for (std::size_t t = 0; t < origins.size(); ++t) {
+      const auto first = static_cast<std::uint32_t>(vertices.linear.size());
+      for (const std::array<float, 3>& weight : weights[t])
+        vertices.linear.push_back(at(origins[t], weight[1], weight[2]));
+      vertices.triangles.push_back({first, first + 1, first + 2});
+    }
+    pieces.vertices_ = std::make_shared<const Vertices>(std::move(vertices));
+  }
+  if (textured_ != nullptr) {
+    Textured textured;
+    textured.materials = textured_->materials;
+    for (std::size_t t = 0; t < origins.size(); ++t) {
+      textured.material_of.push_back(textured_->material_of[origins[t]]);
+      if (textured_->uvs.empty()) continue;
+      const auto& uvs = textured_->uvs[origins[t]];
+      auto& corners = textured.uvs.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k)
+        corners[k] = weights[t][k][0] * uvs[0] + weights[t][k][1] * uvs[1] + weights[t][k][2] * uvs[2];
+    }
+    pieces.textured_ = std::make_shared<const Textured>(std::move(textured));
+  }
+  return pieces;
+}
+
 Eigen::Vector3f SurfaceAlbedo::at(std::uint32_t triangle, float u, float v) const {
   if (vertices_ != nullptr) {
     const Triangle& t = vertices_->triangles[triangle];

@@ -46,6 +46,11 @@ class SurfaceAlbedo {
 
   static SurfaceAlbedo of_materials(Textured textured, Source source);
 
+  /// Returns the albedo of a mesh whose triangles are pieces of this one's: each lies in its entry of `origins`, whose
+  /// corners have `weights` in its own.
+  SurfaceAlbedo of_pieces(const std::vector<std::uint32_t>& origins,
+                          const std::vector<std::array<std::array<float, 3>, 3>>& weights) const;
+
   /// Returns the albedo at a point of a triangle: u is the weight of the second corner, v that of the third (as in
   /// SurfacePoint).
   Eigen::Vector3f at(std::uint32_t triangle, float u, float v) const;

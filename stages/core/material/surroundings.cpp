@@ -6,6 +6,7 @@
 #include "base/errors.h"
 #include "base/numbers.h"
 #include "import/import_mesh.h"
+#include "material/cut_out.h"
 
 namespace kiln {
 
@@ -73,7 +74,8 @@ Neighbour parse_neighbour(const std::string& text) {
   const auto refuse = [&](const std::string& found) {
     throw WrongUsage("neighbour: found " + found + " in '" + text +
                      "'; expected FILE[;place=X,Y,Z[,AZIMUTH[,SCALE]]][;albedo=...][;albedo-texture=...]"
-                     "[;albedo-encoding=...][;up=...][;unit=...][;scale=...][;normals=...][;fill-holes=...]");
+                     "[;albedo-encoding=...][;opacity=...][;opacity-texture=...][;opacity-cutoff=...][;up=...][;unit=.."
+                     ".][;scale=...][;normals=...][;fill-holes=...]");
   };
   if (neighbour.file.empty()) refuse("no file");
   for (std::size_t k = 1; k < parts.size(); ++k) {
@@ -101,8 +103,12 @@ std::vector<PlacedMesh> load_surroundings(const Surroundings& surroundings, cons
     mesh.name = neighbour.file.string();
     ImportedMesh imported = import_mesh(neighbour.file, neighbour.import);
     if (with_albedo) mesh.material = load_albedo(imported, neighbour.material);
+    const LoadedOpacity opacity = load_opacity(imported, neighbour.material);
     mesh.warnings = std::move(imported.warnings);
+    mesh.warnings.insert(mesh.warnings.end(), opacity.warnings.begin(), opacity.warnings.end());
+    mesh.opacity_files = opacity.files;
     mesh.mesh = std::move(imported.mesh);
+    cut_occluder(mesh.mesh, mesh.material.albedo, opacity.opacity, mesh.name);
     move_to_asset(mesh.mesh, neighbour.placement, asset, frame);
   }
   if (!surroundings.ground) return placed;

@@ -33,6 +33,7 @@ struct PlacedMesh {
   TriangleMesh mesh;  ///< with corner normals, which are turned like the mesh
   std::vector<std::string> warnings;
   LoadedAlbedo material;
+  std::vector<std::filesystem::path> opacity_files;  ///< pictures of opacity that were read
 };
 
 /// Loads the meshes around an asset whose box in its own frame is `own`: the neighbours, in their order, then the

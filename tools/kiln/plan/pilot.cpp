@@ -73,7 +73,8 @@ PilotBuild read_build(const fs::path& asset, const std::string& last) {
       result.cpu_seconds[stage] = record_of(asset, stage).at("cpu_seconds").get<double>();
   const fs::path shipped = layout::stage_folder(asset, last);
   result.mesh_bytes = bytes_of(shipped / layout::atlas_mesh);
-  result.map_bytes = bytes_of(shipped / layout::normal_map) + bytes_of(shipped / layout::albedo_map);
+  result.map_bytes = bytes_of(shipped / layout::normal_map) + bytes_of(shipped / layout::albedo_map) +
+                     bytes_of(shipped / layout::opacity_map);
   result.plane_bytes = static_cast<double>(shipped_bytes(shipped)) - result.mesh_bytes - result.map_bytes;
   return result;
 }
