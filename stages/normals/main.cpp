@@ -15,13 +15,15 @@ int main(int argc, char** argv) {
   return run_program("kiln-normals", [&] {
     // Parse.
     CommandLine command("kiln-normals", "Finds the point and normal of the high mesh for every texel of an atlas.");
-    std::filesystem::path high_file, atlas_file, folder;
+    std::filesystem::path high_file, atlas_file, low_file, folder;
     NormalsSettings settings;
     command.input("HIGH", high_file, "The high mesh: OBJ, PLY, STL, OFF, glTF, GLB, FBX or DRC");
     command.input("ATLAS", atlas_file, "The low mesh with its atlas, a Draco file of kiln-atlas");
     command.output(folder,
                    "The folder for normal.png, position.exr, coverage.png, match.png, albedo.png, further --maps, and "
                    "normals.json");
+    command.input_option("low", low_file,
+                         "Your low mesh that the atlas was made of; without it, that of simplify.json");
     command.options("Normals", normals_options(settings));
     command.parse(argc, argv);
 
@@ -34,11 +36,13 @@ int main(int argc, char** argv) {
     command.warn(material.warnings());
     command.also_read(material.files);
     const MaterialIds materials = settings.maps.kinds.empty() ? MaterialIds{} : find_material_ids(high);
+    const MatchPlan plan = load_match_plan(settings, low_file, hints, atlas, high);
+    command.also_read(plan.files);
     OutputSet outputs(folder);
 
     // Run.
     const NormalsResult result =
-        make_normals(high.mesh, atlas, settings, hints, command.progress("normals"), material.albedo, materials);
+        make_normals(high.mesh, atlas, settings, hints, command.progress("normals"), material.albedo, materials, plan);
 
     // Save.
     write_png(outputs.add(layout::normal_map), result.normal);

@@ -88,6 +88,12 @@ class MapMaker {
   /// Returns the length of 1 in the frame, in the units of the file.
   double unit() const { return in_.high.frame.unit(); }
 
+  /// Returns the point of the high mesh that a seen texel stands for.
+  SurfacePoint point_of_high(std::size_t k) const {
+    const std::uint32_t part = in_.plan.part_of_low(in_.raster.texels[seen_.texels[k]].triangle);
+    return in_.parts.scene(part).closest_point(seen_.positions[k], std::numeric_limits<float>::infinity());
+  }
+
   Image<float> picture(int channels) const { return {in_.raster.width, in_.raster.height, channels}; }
 
   bool equalises() const { return in_.seam_choice == SeamChoice::equalise && !in_.seams.edges().empty(); }
@@ -181,8 +187,8 @@ class MapMaker {
 
   SurfaceMap thickness() {
     // A mean over distances varies less than one over what is hidden: a quarter of the directions will do.
-    std::vector<float> lengths = surface_thickness(in_.scene, seen_.points(), std::max(1, settings_.directions / 4),
-                                                   rounding_offset(in_.high.positions));
+    std::vector<float> lengths = surface_thickness(
+        RayScene(in_.high), seen_.points(), std::max(1, settings_.directions / 4), rounding_offset(in_.high.positions));
     for (float& length : lengths) length = static_cast<float>(unit() * length);
     const double largest = magnitude(lengths, 1);
     return scalar(MapKind::thickness, lengths, 0, largest > 0 ? largest : 1, "length");
@@ -198,7 +204,7 @@ class MapMaker {
     const std::vector<float> at_vertices = mean_curvature(in_.high, texel_side());
     std::vector<float> values(seen_.texels.size());
     parallel_for(std::size_t{0}, values.size(), 256, [&](std::size_t k) {
-      const SurfacePoint point = in_.scene.closest_point(seen_.positions[k], std::numeric_limits<float>::infinity());
+      const SurfacePoint point = point_of_high(k);
       values[k] = static_cast<float>(interpolate(in_.high, at_vertices, point) / unit());
     });
     constexpr double most = 0.98;  // hard edges may turn by far more than all else
@@ -254,7 +260,7 @@ SurfaceMap MapMaker::material() {
   const int width = in_.raster.width, height = in_.raster.height;
   std::vector<std::uint32_t> ids(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), none);
   parallel_for(std::size_t{0}, seen_.texels.size(), 256, [&](std::size_t k) {
-    const SurfacePoint point = in_.scene.closest_point(seen_.positions[k], std::numeric_limits<float>::infinity());
+    const SurfacePoint point = point_of_high(k);
     ids[seen_.texels[k]] = in_.materials.of_triangle[point.triangle];
   });
   // Ids spread from texel to texel, breadth first.

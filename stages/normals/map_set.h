@@ -14,9 +14,10 @@
 #include "maps/seams.h"
 #include "mesh/triangle_mesh.h"
 #include "mesh/uv_raster.h"
+#include "normals/high_parts.h"
 #include "normals/map_settings.h"
+#include "normals/match_plan.h"
 #include "normals/material_ids.h"
-#include "raycast/ray_scene.h"
 
 namespace kiln {
 
@@ -31,7 +32,8 @@ struct SurfaceMap {
 /// What maps are made of. Positions are in the frame of both meshes.
 struct MapInputs {
   const TriangleMesh& high;
-  const RayScene& scene;  ///< of `high`
+  const HighParts& parts;  ///< of `high`
+  const MatchPlan& plan;
   const TriangleMesh& atlas;
   const UvRaster& raster;                 ///< of `atlas`
   const Image<float>& position;           ///< points of `high`, at covered texels
