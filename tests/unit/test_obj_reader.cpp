@@ -274,7 +274,7 @@ TEST_F(ObjFiles, ObjectsNamePartsElseGroupsDo) {
   mesh = read(square + "o\n" + a);
   EXPECT_TRUE(mesh.parts.empty());
   mesh = read(square + "o b\xe9\n" + a);  // not UTF-8
-  EXPECT_EQ(mesh.parts, (Names{"b\\xE9"}));
+  EXPECT_EQ(mesh.parts, (Names{"b\\xe9"}));
 }
 
 TEST_F(ObjFiles, PrecisionIsThatOfTheLastDigit) {
