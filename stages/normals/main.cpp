@@ -19,9 +19,8 @@ int main(int argc, char** argv) {
     NormalsSettings settings;
     command.input("HIGH", high_file, "The high mesh: OBJ, PLY, STL, OFF, glTF, GLB, FBX or DRC");
     command.input("ATLAS", atlas_file, "The low mesh with its atlas, a Draco file of kiln-atlas");
-    command.output(folder,
-                   "The folder for normal.png, position.exr, coverage.png, match.png, albedo.png, further --maps, and "
-                   "normals.json");
+    command.output(
+        folder, "The folder for normal.png, position.exr, coverage.png, match.png, albedo.png, --maps, normals.json");
     command.input_option("low", low_file,
                          "Your low mesh that the atlas was made of; without it, that of simplify.json");
     command.options("Normals", normals_options(settings));
@@ -38,6 +37,7 @@ int main(int argc, char** argv) {
     const MaterialIds materials = settings.maps.kinds.empty() ? MaterialIds{} : find_material_ids(high);
     const MatchPlan plan = load_match_plan(settings, low_file, hints, atlas, high);
     command.also_read(plan.files);
+    command.warn(plan.warnings);
     OutputSet outputs(folder);
 
     // Run.

@@ -2,6 +2,7 @@
 #include "normals/match_plan.h"
 
 #include <cctype>
+#include <fmt/format.h>
 #include <utility>
 
 #include "base/errors.h"
@@ -22,8 +23,9 @@ std::vector<std::array<Eigen::Vector3f, 3>> offsets_of(const std::vector<LowTria
   return offsets;
 }
 
-/// Refuses a cage that is no further out than the low mesh: rays from it would miss the surface.
-void check_outside(const MatchPlan& plan, const TriangleMesh& atlas, const std::string& cage) {
+/// Refuses a cage that is no further out than the low mesh, since rays from it would miss the surface; warns of one
+/// that is so in places.
+void check_outside(MatchPlan& plan, const TriangleMesh& atlas, const std::string& cage) {
   std::size_t outwards = 0, inwards = 0;
   for (std::size_t t = 0; t < plan.cage.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -31,13 +33,15 @@ void check_outside(const MatchPlan& plan, const TriangleMesh& atlas, const std::
       outwards += height > 0;
       inwards += height < 0;
     }
-  if (inwards < outwards) return;
-  const bool is_same = inwards == 0;
-  throw BadInput(cage,
-                 is_same ? "does not differ from the low mesh"
-                         : "lies inside the low mesh at " + std::to_string(100 * inwards / (inwards + outwards)) +
-                               " % of its corners",
-                 "the low mesh, its vertices moved outwards", "push it the other way, or leave out --cage-mesh");
+  if (outwards == 0 && inwards == 0)
+    throw BadInput(cage, "does not differ from the low mesh", "the low mesh, its vertices moved outwards",
+                   "push it, or leave out --cage-mesh");
+  const auto share = fmt::format("lies inside the low mesh at {:.2g} % of its corners",
+                                 100.0 * static_cast<double>(inwards) / static_cast<double>(inwards + outwards));
+  if (inwards >= outwards)
+    throw BadInput(cage, share, "the low mesh, its vertices moved outwards",
+                   "push it the other way, or leave out --cage-mesh");
+  if (inwards > 0) plan.warnings.push_back(cage + ": " + share + ", where rays from it go outwards and miss fronts");
 }
 
 /// Returns the number of the part that an option calls `name`, with its suffix or without it, in any case of letters.

@@ -27,6 +27,7 @@ struct MatchPlan {
   std::vector<std::array<Eigen::Vector3f, 3>> cage;
 
   std::vector<std::filesystem::path> files;  ///< that were read
+  std::vector<std::string> warnings;
 
   std::size_t count() const { return std::max<std::size_t>(1, parts.size()); }
   std::uint32_t part_of_low(std::uint32_t triangle) const { return low_part.empty() ? 0 : low_part[triangle]; }

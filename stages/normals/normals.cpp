@@ -142,6 +142,21 @@ std::size_t mark_buried(const TwoSurfaces& of, const TexelMatches& matches, Imag
   return static_cast<std::size_t>(std::count(buried.begin(), buried.end(), 1));
 }
 
+/// Returns 1 for the covered texels that further maps have values of their own for. `ways` has those that are buried in
+/// their own part; where the whole mesh shadows, those in another are none, either.
+std::vector<std::uint8_t> seen_texels(const TwoSurfaces& of, const TexelMatches& matches, Image<std::uint8_t> ways,
+                                      MapOccluders occluders) {
+  if (occluders == MapOccluders::all && !of.plan.parts.empty()) {
+    const MatchPlan as_one;
+    const HighParts whole(of.high, as_one);
+    mark_buried({of.high, whole, of.atlas, of.raster, as_one}, matches, ways);
+  }
+  std::vector<std::uint8_t> seen = coverage_of(of.raster);
+  for (std::size_t texel = 0; texel < seen.size(); ++texel)
+    if (ways.values()[texel] == static_cast<std::uint8_t>(TexelWay::buried)) seen[texel] = 0;
+  return seen;
+}
+
 Image<std::uint8_t> picture_of(const Image<std::uint8_t>& ways) {
   Image<std::uint8_t> picture(ways.width(), ways.height(), 3);
   for (int j = 0; j < ways.height(); ++j)
@@ -289,9 +304,7 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   // Step 5: make further maps.
   if (!settings.maps.kinds.empty()) {
     const double seconds_before = stopwatch.seconds();
-    std::vector<std::uint8_t> seen(covered);
-    for (std::size_t texel = 0; texel < seen.size(); ++texel)
-      if (ways.values()[texel] == static_cast<std::uint8_t>(TexelWay::buried)) seen[texel] = 0;
+    const std::vector<std::uint8_t> seen = seen_texels(both, matches, ways, settings.maps.occluders);
     result.maps = make_maps({high, parts, plan, atlas, raster, matches.position, matches.normal_object, seen, seams,
                              settings.seams, settings.space, materials},
                             settings.maps, part_of(progress, 0.4, 1));

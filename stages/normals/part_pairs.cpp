@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rule is that of Substance's bakers ("Matching by name": what comes before the suffix is compared, what comes
-// after it is not) and of Marmoset Toolbag's bake groups, but that letters count alike in either case.
+// The rule is that of Substance's bakers ("Matching by Name": what comes before the suffix is compared, what comes
+// after it is not), but that letters count alike in either case.
 #include "normals/part_pairs.h"
 
 #include <algorithm>

@@ -254,6 +254,32 @@ TEST_F(MatchNames, PartsHaveCagesOfTheirOwn) {
       EXPECT_EQ(parse_part_cages(text).size(), 1u);
 }
 
+TEST_F(MatchNames, OccludersAreAllPartsOrTheOwnOne) {
+  // A cube a tenth of its side above a square: the middle of the square sees little of the sky, and all of it alone.
+  const TriangleMesh square = shapes::plane(2), cube = shapes::cube(1);
+  const Eigen::Vector3f above(0, 0.6f, 0);
+  const fs::path low = write("low.obj", {{"square_low", square}, {"cube_low", cube, above}});
+  const fs::path high = write("high.obj", {{"square_high", square}, {"cube_high", cube, above}});
+  NormalsSettings settings = by_names(64);
+  settings.maps.kinds = {MapKind::ambient_occlusion};
+  settings.maps.directions = 256;
+  const auto open_at_middle = [&](MapOccluders occluders) {
+    settings.maps.occluders = occluders;
+    const NormalsResult result = run(low, high, settings);
+    std::vector<float> open;
+    for (int j = 0; j < 64; ++j)
+      for (int i = 0; i < 64; ++i) {
+        const Eigen::Vector3f point = Eigen::Map<const Eigen::Vector3f>(result.position.pixel(i, j).data());
+        if (result.coverage.at(i, j) != 0 && std::abs(point.y()) < 1e-3f && point.norm() < 0.15f)
+          open.push_back(result.maps.at(0).values.at(i, j));
+      }
+    EXPECT_FALSE(open.empty());
+    return open;
+  };
+  for (const float open : open_at_middle(MapOccluders::all)) EXPECT_LT(open, 0.15f);
+  for (const float open : open_at_middle(MapOccluders::part)) EXPECT_GT(open, 0.97f);
+}
+
 /// A square of side 1 at height `height`, in front of which an artist's cage stands.
 class Cage : public MatchNames {
  protected:
