@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/asset_layout.h"
 #include "base/command_line.h"
 #include "base/files.h"
 #include "base/json.h"
 #include "base/outputs.h"
-#include "image/image_file.h"
 #include "import/import_mesh.h"
 #include "mesh/draco_file.h"
-#include "normals/normals.h"
+#include "normals/normals_files.h"
 
 int main(int argc, char** argv) {
   using namespace kiln;
   return run_program("kiln-normals", [&] {
     // Parse.
     CommandLine command("kiln-normals", "Finds the point and normal of the high mesh for every texel of an atlas.");
-    std::filesystem::path high_file, atlas_file, folder;
+    std::filesystem::path high_file, atlas_file, low_file, folder;
     NormalsSettings settings;
     command.input("HIGH", high_file, "The high mesh: OBJ, PLY, STL, OFF, glTF, GLB, FBX or DRC");
     command.input("ATLAS", atlas_file, "The low mesh with its atlas, a Draco file of kiln-atlas");
     command.output(folder,
                    "The folder for normal.png, position.exr, coverage.png, match.png, albedo.png, opacity.png, further "
                    "--maps, and normals.json");
+    command.input_option("low", low_file,
+                         "Your low mesh that the atlas was made of; without it, that of simplify.json");
     command.options("Normals", normals_options(settings));
     command.parse(argc, argv);
 
@@ -32,31 +32,18 @@ int main(int argc, char** argv) {
     command.warn(high.warnings, hints.warnings);
     command.warn(materials.warnings);
     command.also_read(materials.files);
+    const MatchPlan plan = load_match_plan(settings, low_file, hints, atlas, high);
+    command.also_read(plan.files);
+    command.warn(plan.warnings);
     OutputSet outputs(folder);
 
     // Run.
     const NormalsResult result =
-        make_normals(high.mesh, atlas, settings, hints, command.progress("normals"), materials);
+        make_normals(high.mesh, atlas, settings, hints, command.progress("normals"), materials, plan);
 
     // Save.
-    write_png(outputs.add(layout::normal_map), result.normal);
-    if (result.own_normal)
-      write_png(outputs.add(layout::own_normal_map), *result.own_normal);
-    else
-      outputs.remove_stale(layout::own_normal_map);
-    write_exr(outputs.add(layout::position_map), result.position);
-    write_png(outputs.add(layout::coverage_map), result.coverage);
-    write_png(outputs.add(layout::match_map), result.match);
-    if (result.albedo_map)
-      write_png(outputs.add(layout::albedo_map), result.albedo_map->picture);
-    else
-      outputs.remove_stale(layout::albedo_map);
-    if (result.opacity_map)
-      write_png(outputs.add(layout::opacity_map), result.opacity_map->picture);
-    else
-      outputs.remove_stale(layout::opacity_map);
     Json metrics = result.to_json();
-    metrics["map_files"] = write_maps(outputs, result.maps, settings.maps, materials.ids);
+    metrics["map_files"] = write_all_maps(outputs, result, settings.maps, materials.ids);
     command.finish(outputs, command.result(result.seconds, metrics));
   });
 }

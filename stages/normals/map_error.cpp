@@ -10,8 +10,7 @@
 #include "base/parallel.h"
 #include "maps/footprint.h"
 #include "mesh/tangent_space.h"
-#include "normals/surface_match.h"
-#include "raycast/ray_scene.h"
+#include "normals/part_scene.h"
 
 namespace kiln {
 
@@ -33,7 +32,8 @@ SurfacePoint sample_at(const std::vector<double>& areas_up_to, int k, int count)
 
 /// Calls visit(k, point of the high mesh, point of the atlas mesh) for points spread over the high mesh, in parallel.
 template <class Visit>
-void for_each_sample(const TriangleMesh& high, const TriangleMesh& atlas, int samples, const Visit& visit) {
+void for_each_sample(const MatchedMeshes& meshes, int samples, const Visit& visit) {
+  const TriangleMesh& high = meshes.high;
   std::vector<double> areas_up_to(high.triangles.size());
   double area = 0;
   for (std::size_t t = 0; t < high.triangles.size(); ++t) {
@@ -44,11 +44,12 @@ void for_each_sample(const TriangleMesh& high, const TriangleMesh& atlas, int sa
   }
   if (!(area > 0)) return;
 
-  const RayScene low(atlas);
+  const std::vector<PartScene> lows = scenes_of_parts(meshes.atlas, meshes.plan.low_part, meshes.plan.count());
   constexpr float anywhere = std::numeric_limits<float>::infinity();
   parallel_for(0, samples, 512, [&](int k) {
     const SurfacePoint at_high = sample_at(areas_up_to, k, samples);
     const Eigen::Vector3f point = position_at(high, at_high);
+    const PartScene& low = lows[meshes.plan.part_of_high(at_high.triangle)];
     SurfacePoint at_low = low.closest_facing_point(point, normal_at(high, at_high), anywhere);
     if (!at_low.found()) at_low = low.closest_point(point, anywhere);
     visit(static_cast<std::size_t>(k), at_high, TexelSource{at_low.triangle, at_low.u, at_low.v});
@@ -70,12 +71,12 @@ double percentile_95(std::vector<double>& values) {
 
 }  // namespace
 
-MapError measure_map_error(const TriangleMesh& high, const TriangleMesh& atlas, const Image<float>& map,
-                           NormalSpace space, int samples) {
+MapError measure_map_error(const MatchedMeshes& meshes, const Image<float>& map, NormalSpace space, int samples) {
+  const TriangleMesh &high = meshes.high, &atlas = meshes.atlas;
   const std::vector<TangentFrame> frames =
       space == NormalSpace::tangent ? tangent_frames(atlas) : std::vector<TangentFrame>{};
   std::vector<double> degrees(static_cast<std::size_t>(samples), 0);
-  for_each_sample(high, atlas, samples, [&](std::size_t k, const SurfacePoint& at_high, const TexelSource& source) {
+  for_each_sample(meshes, samples, [&](std::size_t k, const SurfacePoint& at_high, const TexelSource& source) {
     Eigen::Vector3f shown = lookup(map, atlas, source);
     if (space == NormalSpace::tangent)
       shown = to_object_space(shown, interpolate(atlas, atlas.normals, source), interpolate(atlas, frames, source));
@@ -92,11 +93,12 @@ MapError measure_map_error(const TriangleMesh& high, const TriangleMesh& atlas, 
   return error;
 }
 
-AlbedoError measure_albedo_error(const TriangleMesh& high, const SurfaceAlbedo& albedo, const TriangleMesh& atlas,
-                                 const Image<float>& map, int samples) {
+AlbedoError measure_albedo_error(const MatchedMeshes& meshes, const SurfaceAlbedo& albedo, const Image<float>& map,
+                                 int samples) {
   std::vector<Eigen::Vector3d> differences(static_cast<std::size_t>(samples), Eigen::Vector3d::Zero());
-  for_each_sample(high, atlas, samples, [&](std::size_t k, const SurfacePoint& at_high, const TexelSource& source) {
-    differences[k] = (lookup(map, atlas, source) - albedo.at(at_high.triangle, at_high.u, at_high.v)).cast<double>();
+  for_each_sample(meshes, samples, [&](std::size_t k, const SurfacePoint& at_high, const TexelSource& source) {
+    differences[k] =
+        (lookup(map, meshes.atlas, source) - albedo.at(at_high.triangle, at_high.u, at_high.v)).cast<double>();
   });
   AlbedoError error;
   std::vector<double> largest;

@@ -7,6 +7,7 @@
 #include "maps/normal_space.h"
 #include "material/surface_albedo.h"
 #include "mesh/triangle_mesh.h"
+#include "normals/match_plan.h"
 
 namespace kiln {
 
@@ -17,11 +18,18 @@ struct MapError {
   double largest_degrees = 0;
 };
 
+/// The two meshes, and which parts of them stand for each other.
+struct MatchedMeshes {
+  const TriangleMesh& high;
+  const TriangleMesh& atlas;
+  const MatchPlan& plan;
+};
+
 /// Measures the map at `samples` points spread evenly over the area of the high mesh (with normals): at the nearest
-/// point of the atlas mesh that faces the same side, the map is looked up bilinearly, normalised and compared with the
-/// high normal. `map` holds unit vectors in `space`, gutters filled; `atlas` has normals and uvs.
-MapError measure_map_error(const TriangleMesh& high, const TriangleMesh& atlas, const Image<float>& map,
-                           NormalSpace space, int samples = 200'000);
+/// point of the atlas mesh's part that faces the same side, the map is looked up bilinearly, normalised and compared
+/// with the high normal. `map` holds unit vectors in `space`, gutters filled; `atlas` has normals and uvs.
+MapError measure_map_error(const MatchedMeshes& meshes, const Image<float>& map, NormalSpace space,
+                           int samples = 200'000);
 
 /// Differences between the high mesh's albedo and that which the low mesh shows with its map, linear.
 struct AlbedoError {
@@ -30,7 +38,7 @@ struct AlbedoError {
 };
 
 /// Measures the albedo at the points of measure_map_error; `map` has three linear channels, gutters filled.
-AlbedoError measure_albedo_error(const TriangleMesh& high, const SurfaceAlbedo& albedo, const TriangleMesh& atlas,
-                                 const Image<float>& map, int samples = 200'000);
+AlbedoError measure_albedo_error(const MatchedMeshes& meshes, const SurfaceAlbedo& albedo, const Image<float>& map,
+                                 int samples = 200'000);
 
 }  // namespace kiln

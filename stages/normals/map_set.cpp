@@ -21,6 +21,7 @@
 #include "mesh/curvature.h"
 #include "mesh/surface_point.h"
 #include "normals/normal_seams.h"
+#include "normals/part_scene.h"
 #include "raycast/surface_thickness.h"
 #include "raycast/surface_transfer.h"
 #include "sh/ray_offset.h"
@@ -96,6 +97,12 @@ class MapMaker {
   /// Returns the length of 1 in the frame, in the units of the file.
   double unit() const { return in_.high.frame.unit(); }
 
+  /// Returns the point of the high mesh that a seen texel stands for.
+  SurfacePoint point_of_high(std::size_t k) const {
+    const std::uint32_t part = in_.plan.part_of_low(in_.raster.texels[seen_.texels[k]].triangle);
+    return in_.parts.scene(part).closest_point(seen_.positions[k], std::numeric_limits<float>::infinity());
+  }
+
   Image<float> picture(int channels) const { return {in_.raster.width, in_.raster.height, channels}; }
 
   bool equalises() const { return in_.seam_choice == SeamChoice::equalise && !in_.seams.edges().empty(); }
@@ -157,18 +164,47 @@ class MapMaker {
     return static_cast<double>(values[static_cast<std::size_t>(place)]);
   }
 
-  /// Transfer of a first band, the open share of the sky, and where it is asked for of a second, its mean direction.
-  const TransferVectors& transfer() {
+  /// Calls visit(occluder, points, their numbers among the seen texels) for each mesh that shadows points alone.
+  template <class Visit>
+  void for_each_occluder(const Visit& visit) const {
+    const bool is_apart = settings_.occluders == MapOccluders::part && !in_.plan.parts.empty();
+    std::vector<std::uint32_t> part_of(seen_.texels.size(), 0);
+    if (!is_apart) return visit(in_.occluder, seen_.points(), listed_by_part(part_of, 1)[0]);
+    for (std::size_t k = 0; k < part_of.size(); ++k)
+      part_of[k] = in_.plan.part_of_low(in_.raster.texels[seen_.texels[k]].triangle);
+    const auto points_of = listed_by_part(part_of, in_.plan.count());
+    const auto triangles_of = listed_by_part(in_.occluder_part, in_.plan.count());
+    for (std::size_t part = 0; part < points_of.size(); ++part) {
+      std::vector<Eigen::Vector3f> positions, normals;
+      for (const std::uint32_t k : points_of[part]) {
+        positions.push_back(seen_.positions[k]);
+        normals.push_back(seen_.normals[k]);
+      }
+      if (positions.empty()) continue;
+      const TriangleMesh occluder{in_.occluder.positions, chosen(in_.occluder.triangles, triangles_of[part]), {}, {}};
+      visit(occluder, Receivers{positions, normals}, points_of[part]);
+    }
+  }
+
+  /// Returns the transfer of the seen texels by coefficient: of a first band, the open share of the sky, and where it
+  /// is asked for of a second, its mean direction.
+  const std::vector<std::vector<float>>& transfer() {
+    if (!transfer_.empty()) return transfer_;
     const auto& kinds = settings_.kinds;
     const int bands = std::find(kinds.begin(), kinds.end(), MapKind::bent_normal) != kinds.end() ? 2 : 1;
-    if (!transfer_)
-      transfer_ = surface_transfer(in_.occluder, seen_.points(), {.bands = bands, .directions = settings_.directions});
-    return *transfer_;
+    transfer_.resize(static_cast<std::size_t>(bands * bands), std::vector<float>(seen_.texels.size()));
+    for_each_occluder([&](const TriangleMesh& occluder, const Receivers& points, const auto& numbers) {
+      const TransferVectors found =
+          surface_transfer(occluder, points, {.bands = bands, .directions = settings_.directions});
+      for (std::size_t c = 0; c < transfer_.size(); ++c)
+        for (std::size_t k = 0; k < numbers.size(); ++k) transfer_[c][numbers[k]] = found.plane(static_cast<int>(c))[k];
+    });
+    return transfer_;
   }
 
   std::vector<float> openness() {
     std::vector<float> open(seen_.texels.size());
-    for (std::size_t k = 0; k < open.size(); ++k) open[k] = std::min(1.f, transfer().plane(0)[k] / unoccluded);
+    for (std::size_t k = 0; k < open.size(); ++k) open[k] = std::min(1.f, transfer()[0][k] / unoccluded);
     return open;
   }
 
@@ -176,7 +212,7 @@ class MapMaker {
     Image<float> bent = picture(3);
     for (std::size_t k = 0; k < seen_.texels.size(); ++k) {
       // Band 1 is y, z, x times one factor.
-      const Eigen::Vector3f mean(transfer().plane(3)[k], transfer().plane(1)[k], transfer().plane(2)[k]);
+      const Eigen::Vector3f mean(transfer()[3][k], transfer()[1][k], transfer()[2][k]);
       Pixel(&bent.values()[3 * std::size_t{seen_.texels[k]}]) =
           mean.norm() > 1e-6f * unoccluded ? Eigen::Vector3f(mean.normalized()) : seen_.normals[k];
     }
@@ -189,12 +225,13 @@ class MapMaker {
 
   SurfaceMap thickness() {
     // A mean over distances varies less than one over what is hidden: a quarter of the directions will do.
-    std::optional<RayScene> cut;
-    if (&in_.occluder != &in_.high) cut.emplace(in_.occluder);
-    std::vector<float> lengths =
-        surface_thickness(cut ? *cut : in_.scene, seen_.points(), std::max(1, settings_.directions / 4),
-                          rounding_offset(in_.high.positions));
-    for (float& length : lengths) length = static_cast<float>(unit() * length);
+    const int directions = std::max(1, settings_.directions / 4);
+    std::vector<float> lengths(seen_.texels.size());
+    for_each_occluder([&](const TriangleMesh& occluder, const Receivers& points, const auto& numbers) {
+      const std::vector<float> found =
+          surface_thickness(RayScene(occluder), points, directions, rounding_offset(occluder.positions));
+      for (std::size_t k = 0; k < numbers.size(); ++k) lengths[numbers[k]] = static_cast<float>(unit() * found[k]);
+    });
     const double largest = magnitude(lengths, 1);
     return scalar(MapKind::thickness, lengths, 0, largest > 0 ? largest : 1, "length");
   }
@@ -209,7 +246,7 @@ class MapMaker {
     const std::vector<float> at_vertices = mean_curvature(in_.high, texel_side());
     std::vector<float> values(seen_.texels.size());
     parallel_for(std::size_t{0}, values.size(), 256, [&](std::size_t k) {
-      const SurfacePoint point = in_.scene.closest_point(seen_.positions[k], std::numeric_limits<float>::infinity());
+      const SurfacePoint point = point_of_high(k);
       values[k] = static_cast<float>(interpolate(in_.high, at_vertices, point) / unit());
     });
     constexpr double most = 0.98;  // hard edges may turn by far more than all else
@@ -283,7 +320,7 @@ class MapMaker {
   SeenTexels seen_;
   std::vector<std::uint8_t> covered_;
   std::optional<SeamSolver> solver_;
-  std::optional<TransferVectors> transfer_;
+  std::vector<std::vector<float>> transfer_;
 };
 
 /// Returns a colour for an id that differs from those of other ids: hues a golden angle apart.
@@ -302,7 +339,7 @@ SurfaceMap MapMaker::material() {
   const int width = in_.raster.width, height = in_.raster.height;
   std::vector<std::uint32_t> ids(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), none);
   parallel_for(std::size_t{0}, seen_.texels.size(), 256, [&](std::size_t k) {
-    const SurfacePoint point = in_.scene.closest_point(seen_.positions[k], std::numeric_limits<float>::infinity());
+    const SurfacePoint point = point_of_high(k);
     ids[seen_.texels[k]] = in_.materials.ids.of_triangle[point.triangle];
   });
   // Ids spread from texel to texel, breadth first.

@@ -15,9 +15,10 @@
 #include "mesh/triangle_mesh.h"
 #include "mesh/uv_raster.h"
 #include "normals/high_materials.h"
+#include "normals/high_parts.h"
 #include "normals/map_settings.h"
+#include "normals/match_plan.h"
 #include "normals/texel_means.h"
-#include "raycast/ray_scene.h"
 
 namespace kiln {
 
@@ -32,7 +33,8 @@ struct SurfaceMap {
 /// What maps are made of. Positions are in the frame of both meshes.
 struct MapInputs {
   const TriangleMesh& high;
-  const RayScene& scene;  ///< of `high`
+  const HighParts& parts;  ///< of `high`
+  const MatchPlan& plan;
   const TriangleMesh& atlas;
   const UvRaster& raster;                 ///< of `atlas`
   const Image<float>& position;           ///< points of `high`, at covered texels
@@ -42,8 +44,9 @@ struct MapInputs {
   SeamChoice seam_choice = SeamChoice::equalise;
   NormalSpace space = NormalSpace::object;  ///< of the bent normals
   const HighMaterials& materials;
-  const TriangleMesh& occluder;  ///< `high`, without what its opacity cuts away
-  const TexelMeans* means;       ///< for maps of shares and emission; null where there are none
+  const TriangleMesh& occluder;                     ///< `high`, without what its opacity cuts away
+  const std::vector<std::uint32_t>& occluder_part;  ///< part of each of its triangles; empty where the plan has none
+  const TexelMeans* means;                          ///< for maps of shares and emission; null where there are none
 };
 
 /// Makes the maps that `settings` name, in their order. Texels whose point lies inside another part get the values of

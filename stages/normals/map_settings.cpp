@@ -67,7 +67,11 @@ void add_map_options(OptionSet& options, MapSettings& settings) {
                          "Files of these maps; PNG holds values as shares of a range that normals.json has, EXR the "
                          "values themselves")
       .integer("map-directions", settings.directions, 16, 1'000'000,
-               "Directions of rays over the sphere, for ao and bent-normal; thickness takes a quarter of them");
+               "Directions of rays over the sphere, for ao and bent-normal; thickness takes a quarter of them")
+      .choice<MapOccluders>("map-occluders", settings.occluders,
+                            {{"all", MapOccluders::all}, {"part", MapOccluders::part}},
+                            "With --match names: what shadows a texel in ao, bent-normal and thickness, the whole high "
+                            "mesh or its own part alone");
 }
 
 }  // namespace kiln

@@ -26,10 +26,17 @@ inline constexpr int map_kinds = 11;
 
 enum class MapFormat { png8, png16, exr };
 
+/// What shadows a texel in maps of rays.
+enum class MapOccluders {
+  all,  ///< the whole high mesh
+  part  ///< the part that the texel is matched to by name, as if parts were apart
+};
+
 struct MapSettings {
   std::vector<MapKind> kinds;           ///< in the order of MapKind, each once
   MapFormat format = MapFormat::png16;  ///< except of those that are PNG of 8 bits always (is_picture)
   int directions = 1024;                ///< spread over the sphere, of rays
+  MapOccluders occluders = MapOccluders::all;
 };
 
 /// Returns the name of a kind, as --maps and the record have it; with `_` for `-` it is the name of its file.

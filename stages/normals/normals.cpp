@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "base/errors.h"
 #include "base/extent.h"
@@ -17,11 +18,11 @@
 #include "image/srgb.h"
 #include "material/cut_out.h"
 #include "mesh/uv_raster.h"
+#include "normals/high_parts.h"
 #include "normals/normal_seams.h"
+#include "normals/part_scene.h"
+#include "normals/point_matcher.h"
 #include "normals/texel_match.h"
-#include "raycast/buried_test.h"
-#include "raycast/ray_scene.h"
-#include "sh/ray_offset.h"
 
 namespace kiln {
 
@@ -46,25 +47,44 @@ double degrees_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / 3.14159265358979323846;
 }
 
-/// Measures the largest distance between points of the two surfaces: texels of the low one, vertices of the high one.
-double measure_distance(const TriangleMesh& high, const RayScene& high_scene, const TriangleMesh& atlas,
-                        const UvRaster& raster) {
-  const auto largest = [](std::size_t count, const auto& distance_of) {
+/// The two surfaces, the texels of the low one, and what of the high one they may stand for.
+struct TwoSurfaces {
+  const TriangleMesh& high;
+  const HighParts& parts;
+  const TriangleMesh& atlas;
+  const UvRaster& raster;
+  const MatchPlan& plan;
+};
+
+/// Measures the largest distance between points of the two surfaces, part by part: texels of the low one, vertices of
+/// the high one.
+std::vector<double> measure_distances(const TwoSurfaces& of) {
+  std::vector<double> largest(of.plan.count(), 0);
+  const auto take = [&](std::size_t count, const auto& part_of, const auto& distance_of) {
     std::vector<float> distances(count, 0);
     parallel_for(std::size_t{0}, count, 1024, [&](std::size_t k) { distances[k] = distance_of(k); });
-    return *std::max_element(distances.begin(), distances.end());
+    for (std::size_t k = 0; k < count; ++k) largest[part_of(k)] = std::max<double>(largest[part_of(k)], distances[k]);
   };
   constexpr float anywhere = std::numeric_limits<float>::infinity();
-  const float from_low = largest(raster.texels.size(), [&](std::size_t k) {
-    const TexelSource& source = raster.texels[k];
-    return source.covered() ? high_scene.closest_point(interpolate(atlas, atlas.positions, source), anywhere).distance
-                            : 0;
+  const auto part_of_texel = [&](std::size_t k) {
+    return of.raster.texels[k].covered() ? of.plan.part_of_low(of.raster.texels[k].triangle) : 0;
+  };
+  take(of.raster.texels.size(), part_of_texel, [&](std::size_t k) {
+    const TexelSource& source = of.raster.texels[k];
+    if (!source.covered()) return 0.f;
+    const Eigen::Vector3f low_point = interpolate(of.atlas, of.atlas.positions, source);
+    return of.parts.scene(part_of_texel(k)).closest_point(low_point, anywhere).distance;
   });
-  const RayScene low_scene(atlas);
-  const float from_high = largest(high.positions.size(), [&](std::size_t k) {
-    return low_scene.closest_point(high.positions[k], anywhere).distance;
-  });
-  return std::max(from_low, from_high);
+  const std::vector<PartScene> low_scenes = scenes_of_parts(of.atlas, of.plan.low_part, of.plan.count());
+  std::vector<std::uint32_t> part_of_vertex(of.high.positions.size(), 0);
+  for (std::uint32_t t = 0; t < of.plan.high_part.size(); ++t)
+    for (const std::uint32_t vertex : of.high.triangles[t]) part_of_vertex[vertex] = of.plan.high_part[t];
+  take(
+      of.high.positions.size(), [&](std::size_t k) { return part_of_vertex[k]; },
+      [&](std::size_t k) {
+        return low_scenes[part_of_vertex[k]].closest_point(of.high.positions[k], anywhere).distance;
+      });
+  return largest;
 }
 
 /// Largest and root mean square angle between two maps over the covered texels that differ.
@@ -106,20 +126,36 @@ void measure_deviation(const Image<float>& shown_object, const TriangleMesh& atl
 }
 
 /// Marks the covered texels whose points are buried, and counts them.
-std::size_t mark_buried(const BuriedTest& is_buried, const UvRaster& raster, const TexelMatches& matches,
-                        Image<std::uint8_t>& ways) {
-  std::vector<std::uint32_t> texels;
+std::size_t mark_buried(const TwoSurfaces& of, const TexelMatches& matches, Image<std::uint8_t>& ways) {
+  const UvRaster& raster = of.raster;
+  std::vector<std::uint32_t> texels, parts;
   std::vector<Eigen::Vector3f> positions, normals;
   for (std::uint32_t texel = 0; texel < raster.texels.size(); ++texel) {
     if (!raster.texels[texel].covered()) continue;
     texels.push_back(texel);
+    parts.push_back(of.plan.part_of_low(raster.texels[texel].triangle));
     positions.emplace_back(ConstPixel(matches.position.values().data() + 3 * std::size_t{texel}));
     normals.emplace_back(ConstPixel(matches.normal_object.values().data() + 3 * std::size_t{texel}).normalized());
   }
-  const std::vector<std::uint8_t> buried = is_buried({positions, normals});
+  const std::vector<std::uint8_t> buried = of.parts.buried({positions, normals}, parts);
   for (std::size_t k = 0; k < texels.size(); ++k)
     if (buried[k] != 0) ways.values()[texels[k]] = static_cast<std::uint8_t>(TexelWay::buried);
   return static_cast<std::size_t>(std::count(buried.begin(), buried.end(), 1));
+}
+
+/// Returns 1 for the covered texels that further maps have values of their own for. `ways` has those that are buried in
+/// their own part; where the whole mesh shadows, those in another are none, either.
+std::vector<std::uint8_t> seen_texels(const TwoSurfaces& of, const TexelMatches& matches, Image<std::uint8_t> ways,
+                                      MapOccluders occluders) {
+  if (occluders == MapOccluders::all && !of.plan.parts.empty()) {
+    const MatchPlan as_one;
+    const HighParts whole(of.high, as_one);
+    mark_buried({of.high, whole, of.atlas, of.raster, as_one}, matches, ways);
+  }
+  std::vector<std::uint8_t> seen = coverage_of(of.raster);
+  for (std::size_t texel = 0; texel < seen.size(); ++texel)
+    if (ways.values()[texel] == static_cast<std::uint8_t>(TexelWay::buried)) seen[texel] = 0;
+  return seen;
 }
 
 Image<std::uint8_t> picture_of(const Image<std::uint8_t>& ways) {
@@ -130,26 +166,32 @@ Image<std::uint8_t> picture_of(const Image<std::uint8_t>& ways) {
   return picture;
 }
 
-/// The two surfaces, and the texels of the low one.
-struct TwoSurfaces {
-  const TriangleMesh& high;
-  const RayScene& high_scene;
-  const TriangleMesh& atlas;
-  const UvRaster& raster;
-};
-
-/// Returns how far rays look for the high surface: `cage` diagonals, or what the surfaces' distance asks for where that
-/// is 0. Names where the distance comes from in `source`.
-double choose_cage(double cage, const AssetHints& hints, const TwoSurfaces& surfaces, std::string& source) {
-  const TriangleMesh& high = surfaces.high;
-  const double diagonal = bounding_box(high).diagonal();
+/// Returns, for each part, how far rays look for the high surface, object units: as the settings say, or what the
+/// surfaces' distance asks for. Names where the distances come from in `source`.
+std::vector<double> choose_cages(const NormalsSettings& settings, const AssetHints& hints, const TwoSurfaces& of,
+                                 std::string& source) {
+  const double diagonal = bounding_box(of.high).diagonal();
+  std::vector<double> cages(of.plan.count(), settings.cage * diagonal);
+  if (!of.plan.cage.empty()) {
+    source = "cage mesh";
+    for (std::uint32_t t = 0; t < of.plan.cage.size(); ++t)
+      for (const Eigen::Vector3f& offset : of.plan.cage[t]) {
+        double& cage = cages[of.plan.part_of_low(t)];
+        cage = std::max<double>(cage, offset.norm());
+      }
+    return cages;
+  }
   source = "option";
-  if (cage != 0) return cage * diagonal;
-  source = hints.hausdorff_distance > 0 ? "simplify.json" : "measured";
-  const double between = hints.hausdorff_distance > 0
-                             ? hints.hausdorff_distance / high.frame.unit()
-                             : measure_distance(high, surfaces.high_scene, surfaces.atlas, surfaces.raster);
-  return std::max(cage_per_hausdorff_distance * between, smallest_cage * diagonal);
+  if (settings.cage == 0) {
+    // What simplification measured is the distance between whole meshes, which may be less than that of parts.
+    const bool is_known = hints.hausdorff_distance > 0 && of.plan.parts.empty();
+    source = is_known ? "simplify.json" : "measured";
+    cages = is_known ? std::vector<double>{hints.hausdorff_distance / of.high.frame.unit()} : measure_distances(of);
+    for (double& cage : cages) cage = std::max(cage_per_hausdorff_distance * cage, smallest_cage * diagonal);
+  }
+  for (std::size_t part = 0; part < of.plan.part_cage.size(); ++part)
+    if (of.plan.part_cage[part] > 0) cages[part] = of.plan.part_cage[part] * diagonal;
+  return cages;
 }
 
 /// Counts, as shares of the covered texels, in which ways their high points were found.
@@ -185,15 +227,16 @@ void measure_maps(const MapVersions& map, const Seams& seams, const TriangleMesh
 }
 
 /// Makes the normal map at a size of its own, from points of its own texels.
-Image<std::uint16_t> normal_of_own_size(const HighSurface& high, const TriangleMesh& atlas, const MatchLimits& limits,
+Image<std::uint16_t> normal_of_own_size(const HighSurface& high, const PointMatcher& matcher,
                                         const NormalsSettings& settings) {
+  const TriangleMesh& atlas = matcher.atlas();
   const Extent& size = settings.normal_size;
   const UvRaster raster = rasterise_uvs(atlas, size.width, size.height);
   if (raster.covered_texels == 0)
     throw WrongUsage("the atlas covers no texel at --normal-size " + size.text() + "; give a larger one");
-  const HighSurface without_albedo{high.mesh, high.scene, SurfaceAlbedo(), high.is_buried};
+  const SurfaceAlbedo none;
   const TexelMatches matches =
-      match_texels(without_albedo, atlas, raster, limits, settings.samples, settings.fit, no_progress);
+      match_texels({high.mesh, high.parts, none}, matcher, raster, settings.samples, settings.fit, no_progress);
   Image<float> map = normal_map(matches.normal_object, settings.space, atlas, matches.known);
   const Seams seams(atlas, size.width, size.height);
   if (settings.seams == SeamChoice::equalise && !seams.edges().empty())
@@ -202,30 +245,48 @@ Image<std::uint16_t> normal_of_own_size(const HighSurface& high, const TriangleM
 }
 
 /// Makes the map of the albedo at a size of its own, from points of its own texels.
-AlbedoMap albedo_of_own_size(const HighSurface& high, const TriangleMesh& atlas, const MatchLimits& limits,
-                             const NormalsSettings& settings) {
+AlbedoMap albedo_of_own_size(const HighSurface& high, const PointMatcher& matcher, const NormalsSettings& settings) {
+  const TriangleMesh& atlas = matcher.atlas();
   const Extent& size = settings.albedo_size;
   const UvRaster raster = rasterise_uvs(atlas, size.width, size.height);
   if (raster.covered_texels == 0)
     throw WrongUsage("the atlas covers no texel at --albedo-size " + size.text() + "; give a larger one");
-  TexelMatches matches = match_texels(high, atlas, raster, limits, settings.samples, settings.fit, no_progress);
+  TexelMatches matches = match_texels(high, matcher, raster, settings.samples, settings.fit, no_progress);
   return make_albedo_map(std::move(matches.albedo), coverage_of(matches.known), coverage_of(raster),
                          Seams(atlas, size.width, size.height), settings.seams);
 }
 
 /// Makes the map of opacity, of the albedo's size: outlines of leaves need as many texels as their colours.
-OpacityMap opacity_of(const HighSurface& high, const TriangleMesh& atlas, const MatchLimits& limits,
-                      const NormalsSettings& settings, const Extent& map_size, const SurfaceOpacity& opacity) {
-  const Extent size = settings.albedo_size.width > 0 ? settings.albedo_size : map_size;
-  const TexelMeans means(high, atlas, size.width, size.height, limits);
-  return make_opacity_map(opacity, means, rasterise_uvs(atlas, size.width, size.height),
-                          Seams(atlas, size.width, size.height), settings.seams);
+OpacityMap opacity_of(const HighSurface& high, const PointMatcher& matcher, const Extent& size,
+                      const SurfaceOpacity& opacity, SeamChoice seams) {
+  const TexelMeans means(high, matcher, size.width, size.height);
+  return make_opacity_map(opacity, means, rasterise_uvs(matcher.atlas(), size.width, size.height),
+                          Seams(matcher.atlas(), size.width, size.height), seams);
+}
+
+/// What shadows the high mesh: the mesh itself, or what its opacity leaves of it.
+struct Occluder {
+  std::optional<TriangleMesh> cut;
+  std::vector<std::uint32_t> part;  ///< part of each triangle; empty where the plan has none
+};
+
+Occluder occluder_of(const TriangleMesh& high, const SurfaceOpacity& opacity, const MatchPlan& plan) {
+  Occluder occluder{std::nullopt, plan.high_part};
+  if (opacity.is_opaque()) return occluder;
+  CutOut cut = cut_out(high, opacity, "the high mesh");
+  for (std::size_t t = 0; t < cut.origins.size() && !plan.high_part.empty(); ++t) {
+    occluder.part.resize(cut.origins.size());
+    occluder.part[t] = plan.high_part[cut.origins[t]];
+  }
+  occluder.cut = std::move(cut.mesh);
+  return occluder;
 }
 
 }  // namespace
 
 NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, const NormalsSettings& settings,
-                           const AssetHints& hints, const ProgressFunction& progress, const HighMaterials& materials) {
+                           const AssetHints& hints, const ProgressFunction& progress, const HighMaterials& materials,
+                           const MatchPlan& plan) {
   const Stopwatch stopwatch;
   const SurfaceAlbedo& albedo = materials.albedo;
   if (high.triangles.empty() || high.normals.size() != high.positions.size())
@@ -243,19 +304,25 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
 
   // Step 2: choose how far to look.
   NormalsResult result;
-  const RayScene scene(high);
-  const BuriedTest is_buried(high.positions, high.triangles, rounding_offset(high.positions));
+  const HighParts parts(high, plan);
+  const TwoSurfaces both{high, parts, atlas, raster, plan};
   const double diagonal = bounding_box(high).diagonal();
-  const double distance = choose_cage(settings.cage, hints, {high, scene, atlas, raster}, result.cage_source);
-  const MatchLimits limits{static_cast<float>(distance), static_cast<float>(surface_tolerance * diagonal)};
+  std::vector<MatchLimits> limits;
+  double distance = 0;
+  for (const double cage : choose_cages(settings, hints, both, result.cage_source)) {
+    limits.push_back({static_cast<float>(cage), static_cast<float>(surface_tolerance * diagonal)});
+    distance = std::max(distance, cage);
+  }
 
   // Step 3: find a high point and normal for each texel.
-  TexelMatches matches = match_texels({high, scene, albedo, is_buried}, atlas, raster, limits, settings.samples,
-                                      settings.fit, part_of(progress, 0, settings.maps.kinds.empty() ? 0.9 : 0.3));
+  const PointMatcher matcher(high, parts, atlas, plan, std::move(limits));
+  const HighSurface surface{high, parts, albedo};
+  TexelMatches matches = match_texels(surface, matcher, raster, settings.samples, settings.fit,
+                                      part_of(progress, 0, settings.maps.kinds.empty() ? 0.9 : 0.3));
   const std::vector<std::uint8_t> covered = coverage_of(raster);
   result.position = matches.position;
   Image<std::uint8_t> ways = matches.way;
-  result.buried_texels = mark_buried(is_buried, raster, matches, ways);
+  result.buried_texels = mark_buried(both, matches, ways);
   fill_gutters(result.position, covered);
   if (high.frame.exponent != 0)
     for (float& value : result.position.values()) value = static_cast<float>(value * high.frame.unit());
@@ -275,31 +342,28 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
   result.albedo = albedo;
   if (!albedo.is_constant()) {
     const bool own_size = settings.albedo_size.width > 0 && settings.albedo_size != size;
-    result.albedo_map = own_size ? albedo_of_own_size({high, scene, albedo, is_buried}, atlas, limits, settings)
+    result.albedo_map = own_size ? albedo_of_own_size(surface, matcher, settings)
                                  : make_albedo_map(std::move(matches.albedo), coverage_of(matches.known), covered,
                                                    seams, settings.seams);
   }
 
   if (settings.normal_size.width > 0 && settings.normal_size != size)
-    result.own_normal = normal_of_own_size({high, scene, albedo, is_buried}, atlas, limits, settings);
+    result.own_normal = normal_of_own_size(surface, matcher, settings);
   if (!materials.opacity.is_opaque())
-    result.opacity_map = opacity_of({high, scene, albedo, is_buried}, atlas, limits, settings, size, materials.opacity);
+    result.opacity_map = opacity_of(surface, matcher, settings.albedo_size.width > 0 ? settings.albedo_size : size,
+                                    materials.opacity, settings.seams);
 
   // Step 5: make further maps.
   if (!settings.maps.kinds.empty()) {
     const double seconds_before = stopwatch.seconds();
-    std::vector<std::uint8_t> seen(covered);
-    for (std::size_t texel = 0; texel < seen.size(); ++texel)
-      if (ways.values()[texel] == static_cast<std::uint8_t>(TexelWay::buried)) seen[texel] = 0;
+    const std::vector<std::uint8_t> seen = seen_texels(both, matches, ways, settings.maps.occluders);
     std::optional<TexelMeans> means;
-    if (needs_means(settings.maps))
-      means.emplace(HighSurface{high, scene, albedo, is_buried}, atlas, size.width, size.height, limits);
-    TriangleMesh cut;
-    if (!materials.opacity.is_opaque()) cut = cut_out(high, materials.opacity, "the high mesh").mesh;
-    result.maps =
-        make_maps({high, scene, atlas, raster, matches.position, matches.normal_object, seen, seams, settings.seams,
-                   settings.space, materials, cut.triangles.empty() ? high : cut, means ? &*means : nullptr},
-                  settings.maps, part_of(progress, 0.4, 1));
+    if (needs_means(settings.maps)) means.emplace(surface, matcher, size.width, size.height);
+    const Occluder occluder = occluder_of(high, materials.opacity, plan);
+    result.maps = make_maps(
+        {high, parts, plan, atlas, raster, matches.position, matches.normal_object, seen, seams, settings.seams,
+         settings.space, materials, occluder.cut ? *occluder.cut : high, occluder.part, means ? &*means : nullptr},
+        settings.maps, part_of(progress, 0.4, 1));
     result.map_seconds = stopwatch.seconds() - seconds_before;
   }
   result.seconds = stopwatch.seconds();
@@ -307,15 +371,16 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
 
   // Step 6: measure what is written.
   count_ways(matches, raster, result);
+  result.matched_parts = plan.parts;
   result.cage_distance = distance * high.frame.unit();
   result.mean_distance = matches.mean_distance / diagonal;
   result.largest_distance = matches.largest_distance / diagonal;
   measure_maps({kept, map}, seams, atlas, raster, result);
-  result.map_error =
-      measure_map_error(high, atlas, dequantise_normals(result.own_normal.value_or(result.normal)), settings.space);
+  result.map_error = measure_map_error({high, atlas, plan},
+                                       dequantise_normals(result.own_normal.value_or(result.normal)), settings.space);
   if (result.albedo_map)
     result.albedo_map->error =
-        measure_albedo_error(high, albedo, atlas, linear_from_srgb_bytes(result.albedo_map->picture));
+        measure_albedo_error({high, atlas, plan}, albedo, linear_from_srgb_bytes(result.albedo_map->picture));
   result.measuring_seconds = stopwatch.seconds() - result.seconds;
   return result;
 }
@@ -339,6 +404,8 @@ Json NormalsResult::to_json() const {
                  {"buried_texels", buried_texels},
                  {"cage_distance", cage_distance},
                  {"cage_source", cage_source},
+                 {"matched_parts", matched_parts.size()},
+                 {"part_names", matched_parts},
                  {"mean_distance", mean_distance},
                  {"largest_distance", largest_distance},
                  {"normal_deviation_degrees_mean", normal_deviation_degrees_mean},

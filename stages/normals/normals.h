@@ -18,6 +18,7 @@
 #include "normals/high_materials.h"
 #include "normals/map_error.h"
 #include "normals/map_set.h"
+#include "normals/match_plan.h"
 #include "normals/normals_settings.h"
 #include "normals/opacity_map.h"
 
@@ -44,10 +45,11 @@ struct NormalsResult {
   double found_by_ray_inwards = 0;
   double found_by_nearest_point = 0;
   double disagreeing = 0;    ///< share of texels whose high point faces the other side; part of found_by_nearest_point
-  double cage_distance = 0;  ///< object units
-  std::string cage_source;   ///< "option", "simplify.json" or "measured"
-  std::size_t buried_texels = 0;  ///< covered texels whose point lies inside another part of the high mesh
-  double mean_distance = 0;       ///< mean distance from low to high points, as a fraction of the high mesh's diagonal
+  double cage_distance = 0;  ///< object units; the largest, where parts or places differ
+  std::string cage_source;   ///< "option", "simplify.json", "measured" or "cage mesh"
+  std::vector<std::string> matched_parts;  ///< names of the parts that were matched by name
+  std::size_t buried_texels = 0;           ///< covered texels whose point lies inside another part of the high mesh
+  double mean_distance = 0;  ///< mean distance from low to high points, as a fraction of the high mesh's diagonal
   double largest_distance = 0;
   double normal_deviation_degrees_mean = 0;  ///< between the low mesh's normal and the map's
   double normal_deviation_degrees_largest = 0;
@@ -66,10 +68,11 @@ struct NormalsResult {
 /// Finds, for every texel of the atlas, the point of the high mesh that it stands for (match_surface), and the high
 /// mesh's normal there. `high` has normals; `atlas` is atlas.drc decoded, with normals and uvs (throws
 /// std::invalid_argument otherwise). Progress reaches 1 when the maps are made, before they are measured. `hints`
-/// replace settings that are left automatic. `materials` are those of `high`. Throws WrongUsage where the texture is
-/// too small for the atlas to cover a texel, BadInput where opacity cuts all of `high` away.
+/// replace settings that are left automatic. `materials` are those of `high`; `plan` is that of load_match_plan. Throws
+/// WrongUsage where the texture is too small for the atlas to cover a texel, BadInput where opacity cuts all of `high`
+/// away.
 NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, const NormalsSettings& settings,
                            const AssetHints& hints = {}, const ProgressFunction& progress = no_progress,
-                           const HighMaterials& materials = {});
+                           const HighMaterials& materials = {}, const MatchPlan& plan = {});
 
 }  // namespace kiln

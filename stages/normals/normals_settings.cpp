@@ -1,7 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "normals/normals_settings.h"
 
+#include <algorithm>
+#include <charconv>
+#include <system_error>
+
+#include "base/errors.h"
+
 namespace kiln {
+
+std::vector<std::pair<std::string, double>> parse_part_cages(const std::string& text) {
+  std::vector<std::pair<std::string, double>> cages;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string entry = text.substr(begin, end - begin);
+    const std::size_t equals = entry.rfind('=');
+    double cage = 0;
+    const char* const last = entry.data() + entry.size();
+    if (equals != std::string::npos && equals > 0) {
+      const auto [stop, error] = std::from_chars(entry.data() + equals + 1, last, cage);
+      if (error != std::errc() || stop != last) cage = 0;
+    }
+    if (!(cage > 0 && cage <= 1))
+      throw WrongUsage("part-cage: found '" + entry +
+                       "'; expected NAME=CAGE, a cage above 0 to 1, and a comma between");
+    cages.emplace_back(entry.substr(0, equals), cage);
+    begin = end + 1;
+  }
+  return cages;
+}
 
 OptionSet normals_options(NormalsSettings& settings) {
   OptionSet options;
@@ -29,6 +56,16 @@ OptionSet normals_options(NormalsSettings& settings) {
       "cage", settings.cage, 0, 1,
       "How far rays look for the high mesh, outwards and inwards, as a fraction of its bounding box's diagonal; "
       "0 is twice the Hausdorff distance in simplify.json beside the atlas, or twice a measured one without it");
+  options.file(
+      "cage-mesh", settings.cage_mesh,
+      "A cage of your own instead: the low mesh of kiln-simplify --low again, the same faces in the same order, "
+      "its vertices moved outwards; rays go from it to the low mesh and as far again behind that");
+  options.choice<MatchChoice>("match", settings.match,
+                              {{"nearest", MatchChoice::nearest}, {"names", MatchChoice::names}},
+                              "What texels may stand for: any surface, or, for parts that must not meet, with a low "
+                              "mesh of your own: part NAME_low stands for NAME_high alone");
+  options.checked_text("part-cage", settings.part_cage, "NAME=CAGE,NAME=CAGE, cages above 0 to 1",
+                       "With --match names: cages of single parts, in place of --cage", parse_part_cages);
   add_map_options(options, settings.maps);
   add_material_options(options, settings.material);
   add_import_options(options, settings.import);

@@ -14,7 +14,7 @@ namespace {
 /// those of own_normal where the normal map that ships has a size of its own.
 constexpr const char* metric_names =
     "width height covered_texels found_by_ray_outwards found_by_ray_inwards found_by_nearest_point disagreeing "
-    "buried_texels cage_distance mean_distance largest_distance normal_deviation_degrees_mean "
+    "buried_texels cage_distance matched_parts mean_distance largest_distance normal_deviation_degrees_mean "
     "normal_deviation_degrees_largest "
     "quantisation_degrees_largest map_error_degrees_mean map_error_degrees_p95 map_error_degrees_max seam_edges "
     "seam_mismatch_degrees_mean_before seam_mismatch_degrees_max_before seam_mismatch_degrees_mean "
@@ -33,10 +33,18 @@ StageRun run(const AssetPlan& plan) {
   run.outputs = {layout::record(plan.folder, "normals")};
   for (const char* name : {layout::normal_map, layout::position_map, layout::coverage_map, layout::match_map})
     run.outputs.push_back(folder / name);
-  const MapSettings maps = settings_from(plan.settings_of("normals"), normals_options).maps;
-  for (const MapKind kind : maps.kinds)
-    if (const fs::path file = folder / map_file(kind, maps.format); file.filename() != layout::position_map)
+  const NormalsSettings settings = settings_from(plan.settings_of("normals"), normals_options);
+  for (const MapKind kind : settings.maps.kinds)
+    if (const fs::path file = folder / map_file(kind, settings.maps.format); file.filename() != layout::position_map)
       run.outputs.push_back(file);
+  // What goes by the parts of the low mesh, or by its faces, reads the file that it came in.
+  const StageSettings& simplify = plan.settings_of("simplify");
+  const auto low = simplify.find("low");
+  if (low != simplify.end() && settings.needs_low_file()) {
+    run.add({"--low", command_word(low->second)});
+    run.inputs.emplace_back(low->second);
+  }
+  if (!settings.cage_mesh.empty()) run.inputs.emplace_back(settings.cage_mesh);
   run.add_settings(options(), plan.settings_of("normals"));
   return run;
 }
@@ -46,7 +54,10 @@ StageRun run(const AssetPlan& plan) {
 const StageInfo& normals_stage() {
   static const StageInfo info = {.name = "normals",
                                  .options = options,
-                                 .rivals = {{"albedo", "albedo-texture"}, {"opacity", "opacity-texture"}},
+                                 .rivals = {{"albedo", "albedo-texture"},
+                                            {"opacity", "opacity-texture"},
+                                            {"cage", "cage-mesh"},
+                                            {"part-cage", "cage-mesh"}},
                                  .metrics = {{metric_names}},
                                  .run = run};
   return info;

@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <map>
-#include <memory>
+#include <utility>
 
 #include "mesh/hard_edges.h"
 #include "mesh/mesh_components.h"
 #include "mesh/same_position.h"
+#include "normals/part_scene.h"
 
 namespace kiln {
 
@@ -32,41 +33,44 @@ std::vector<std::uint32_t> most_voted(const Components& low, const Components& h
   return own;
 }
 
-/// Part of a mesh, and for each of its triangles the triangle of the mesh that it is.
-struct Part {
-  std::vector<std::uint32_t> sources;
-  std::unique_ptr<RayScene> scene;
+/// Finds the components of a mesh's triangles, none of which goes beyond one of the parts `part_of`.
+Components components_within(const TriangleMesh& mesh, const std::vector<std::uint32_t>& part_of) {
+  if (part_of.empty()) return find_components(mesh);
+  TriangleMesh apart;
+  apart.triangles = taken_apart(mesh.triangles, part_of);
+  std::uint32_t vertices = 0;
+  for (const Triangle& t : apart.triangles) vertices = std::max({vertices, t[0] + 1, t[1] + 1, t[2] + 1});
+  apart.positions.resize(vertices);
+  return find_components(apart);
+}
 
-  Part(const TriangleMesh& mesh, const Components& components, std::uint32_t which) {
-    std::vector<Triangle> own;
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-      if (components.of_triangle[t] != which) continue;
-      sources.push_back(t);
-      own.push_back(mesh.triangles[t]);
-    }
-    scene = std::make_unique<RayScene>(mesh.positions, own);
-  }
-};
+PartScene scene_of(const TriangleMesh& mesh, const Components& components, std::uint32_t which) {
+  std::vector<std::uint32_t> triangles;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+    if (components.of_triangle[t] == which) triangles.push_back(t);
+  return {mesh, std::move(triangles)};
+}
 
 }  // namespace
 
-void keep_to_own_parts(const HighSurface& high, const TriangleMesh& atlas, const UvRaster& raster, float farthest,
+void keep_to_own_parts(const HighSurface& high, const PointMatcher& matcher, const UvRaster& raster, float farthest,
                        TexelMatches& matches, std::vector<std::uint32_t>& triangles) {
-  const Components high_parts = find_components(high.mesh);
+  const TriangleMesh& atlas = matcher.atlas();
+  const Components high_parts = components_within(high.mesh, matcher.plan().high_part);
   if (high_parts.count < 2) return;
-  const Components low_parts = find_components(join_at_positions(atlas));
+  const Components low_parts = components_within(join_at_positions(atlas), matcher.plan().low_part);
   const std::vector<std::uint32_t> own = most_voted(low_parts, high_parts, raster, triangles);
-  std::map<std::uint32_t, Part> parts;  // only those that are needed
+  std::map<std::uint32_t, PartScene> scenes;  // only those that are needed
   for (std::size_t texel = 0; texel < triangles.size(); ++texel) {
     const TexelSource& source = raster.texels[texel];
     if (!source.covered()) continue;
     const std::uint32_t part = own[low_parts.of_triangle[source.triangle]];
     if (high_parts.of_triangle[triangles[texel]] == part) continue;
-    const Part& asked = parts.try_emplace(part, high.mesh, high_parts, part).first->second;
-    SurfacePoint point = asked.scene->closest_facing_point(interpolate(atlas, atlas.positions, source),
-                                                           interpolate(atlas, atlas.normals, source), farthest);
+    auto scene = scenes.find(part);
+    if (scene == scenes.end()) scene = scenes.emplace(part, scene_of(high.mesh, high_parts, part)).first;
+    const SurfacePoint point = scene->second.closest_facing_point(interpolate(atlas, atlas.positions, source),
+                                                                  interpolate(atlas, atlas.normals, source), farthest);
     if (!point.found()) continue;
-    point.triangle = asked.sources[point.triangle];
     triangles[texel] = point.triangle;
     const auto pixel = [&](Image<float>& image) {
       return Eigen::Map<Eigen::Vector3f>(image.values().data() + 3 * texel);

@@ -13,8 +13,8 @@ namespace kiln {
 /// close to both parts. Such a texel gets the point of the high part that most texels of its low part stand for, if
 /// that part has a point no farther than `farthest` (object units) that faces the same way. `triangles` has the high
 /// triangle of every covered texel's point; both are changed together. Parts are connected by vertices; those of the
-/// low mesh also by positions.
-void keep_to_own_parts(const HighSurface& high, const TriangleMesh& atlas, const UvRaster& raster, float farthest,
+/// low mesh also by positions; none reaches beyond a part of the matcher's plan.
+void keep_to_own_parts(const HighSurface& high, const PointMatcher& matcher, const UvRaster& raster, float farthest,
                        TexelMatches& matches, std::vector<std::uint32_t>& triangles);
 
 }  // namespace kiln

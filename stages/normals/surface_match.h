@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 
 #include "mesh/triangle_mesh.h"
-#include "raycast/ray_scene.h"
+#include "normals/part_scene.h"
 
 namespace kiln {
 
@@ -29,7 +29,15 @@ struct MatchLimits {
 /// faces the same side is not believed, because it lies on another part of the object. Where no hit is left, the match
 /// is the nearest point within four cages that faces the same side, else the nearest point of all. A mesh that has
 /// triangles always gives a point.
-SurfaceMatch match_surface(const TriangleMesh& high, const RayScene& scene, const Eigen::Vector3f& low_point,
+SurfaceMatch match_surface(const TriangleMesh& high, const PartScene& scene, const Eigen::Vector3f& low_point,
                            const Eigen::Vector3f& low_normal, const MatchLimits& limits);
+
+/// Finds it through an artist's cage, a point of which lies at `low_point + offset`: the first front of a triangle that
+/// a ray from there to the low point meets, on its way or as far again behind the low point. The cage is believed: no
+/// nearer surface takes the place of a hit. Where nothing is hit, the match is as that of match_surface without a hit,
+/// the offset's length being the cage.
+SurfaceMatch match_through_cage(const TriangleMesh& high, const PartScene& scene, const Eigen::Vector3f& low_point,
+                                const Eigen::Vector3f& offset, const Eigen::Vector3f& low_normal,
+                                float surface_tolerance);
 
 }  // namespace kiln

@@ -8,6 +8,7 @@
 
 #include "mesh/same_position.h"
 #include "mesh/triangle_edges.h"
+#include "normals/part_scene.h"
 
 namespace kiln {
 
@@ -18,9 +19,10 @@ constexpr int most_steps = 32;
 
 }  // namespace
 
-SurfaceWalk::SurfaceWalk(const TriangleMesh& mesh)
+SurfaceWalk::SurfaceWalk(const TriangleMesh& mesh, const std::vector<std::uint32_t>& part_of)
     : mesh_(&mesh), neighbours_(mesh.triangles.size(), {none, none, none}) {
-  const std::vector<Triangle> welded = renumbered(mesh.triangles, first_at_position(mesh.positions));
+  const std::vector<Triangle> welded =
+      taken_apart(renumbered(mesh.triangles, first_at_position(mesh.positions)), part_of);
   TriangleEdges(welded).for_each([&](std::span<const std::uint32_t> sides) {
     if (sides.size() != 2) return;  // a border, or sheets that touch: walks stop there
     neighbours_[sides[0] / 3][(sides[0] % 3 + 2) % 3] = sides[1] / 3;

@@ -15,8 +15,9 @@ namespace kiln {
 /// cost next to nothing. May be used by several threads at once.
 class SurfaceWalk {
  public:
-  /// Keeps a reference to `mesh`. Triangles are neighbours where they share an edge by position.
-  explicit SurfaceWalk(const TriangleMesh& mesh);
+  /// Keeps a reference to `mesh`. Triangles are neighbours where they share an edge by position, and are of one part
+  /// where `part_of` has their parts.
+  explicit SurfaceWalk(const TriangleMesh& mesh, const std::vector<std::uint32_t>& part_of = {});
 
   /// Finds where the line through `point` along the unit vector `normal` meets the surface, starting at triangle
   /// `start`; the result's distance is from `point`, signed, positive along `normal`. Nothing is found where the walk

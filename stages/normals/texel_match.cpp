@@ -44,15 +44,15 @@ struct RowSums {
   double distance = 0, largest_distance = 0;
 };
 
-RowSums match_centres(int j, const HighSurface& high, const TriangleMesh& atlas, const UvRaster& raster,
-                      const MatchLimits& limits, TexelMatches& matches, std::vector<std::uint32_t>& triangles) {
+RowSums match_centres(int j, const HighSurface& high, const PointMatcher& matcher, const UvRaster& raster,
+                      TexelMatches& matches, std::vector<std::uint32_t>& triangles) {
   RowSums sums;
+  const TriangleMesh& atlas = matcher.atlas();
   for (int i = 0; i < raster.width; ++i) {
     const TexelSource& source = raster.at(i, j);
     if (!source.covered()) continue;
     const Eigen::Vector3f low_point = interpolate(atlas, atlas.positions, source);
-    const Eigen::Vector3f low_normal = interpolate(atlas, atlas.normals, source).normalized();
-    const SurfaceMatch match = match_surface(high.mesh, high.scene, low_point, low_normal, limits);
+    const SurfaceMatch match = matcher.match(low_point, matcher.line(source), source);
     const Eigen::Vector3f high_point = position_at(high.mesh, match.point);
     Pixel(matches.position.pixel(i, j).data()) = high_point;
     Pixel(matches.normal_object.pixel(i, j).data()) = normal_at(high.mesh, match.point);
@@ -73,18 +73,18 @@ RowSums match_centres(int j, const HighSurface& high, const TriangleMesh& atlas,
 }
 
 /// Matches the ring texels beside the charts, except buried ones.
-void match_ring(const HighSurface& high, const TriangleMesh& atlas, const UvRaster& raster, const MatchLimits& limits,
-                TexelMatches& matches) {
-  const std::vector<RingTexel> ring = ring_of_charts(atlas, raster);
+void match_ring(const HighSurface& high, const PointMatcher& matcher, const UvRaster& raster, TexelMatches& matches) {
+  const std::vector<RingTexel> ring = ring_of_charts(matcher.atlas(), raster);
   std::vector<SurfacePoint> points(ring.size());
   std::vector<Eigen::Vector3f> positions(ring.size()), normals(ring.size());
+  std::vector<std::uint32_t> parts(ring.size());
   parallel_for(std::size_t{0}, ring.size(), [&](std::size_t k) {
-    const Eigen::Vector3f low_normal = interpolate(atlas, atlas.normals, ring[k].nearest).normalized();
-    points[k] = match_surface(high.mesh, high.scene, ring[k].low_point, low_normal, limits).point;
+    points[k] = matcher.match(ring[k].low_point, matcher.line(ring[k].nearest), ring[k].nearest).point;
+    parts[k] = matcher.plan().part_of_low(ring[k].nearest.triangle);
     positions[k] = position_at(high.mesh, points[k]);
     normals[k] = normal_at(high.mesh, points[k]);
   });
-  const std::vector<std::uint8_t> buried = high.is_buried({positions, normals});
+  const std::vector<std::uint8_t> buried = high.parts.buried({positions, normals}, parts);
   for (std::size_t k = 0; k < ring.size(); ++k) {
     if (buried[k] != 0) continue;
     matches.known.texels[ring[k].texel] = ring[k].nearest;
@@ -224,15 +224,14 @@ float texel_size_on(const TriangleMesh& atlas, const Triangle& t, int width, int
 
 /// Matches all texels at their centres, in groups of rows so that progress can be reported. Sets the distances of
 /// `matches`, and `triangles` to the high triangle of each covered texel.
-void match_all_centres(const HighSurface& high, const TriangleMesh& atlas, const UvRaster& raster,
-                       const MatchLimits& limits, TexelMatches& matches, std::vector<std::uint32_t>& triangles,
-                       const ProgressFunction& progress) {
+void match_all_centres(const HighSurface& high, const PointMatcher& matcher, const UvRaster& raster,
+                       TexelMatches& matches, std::vector<std::uint32_t>& triangles, const ProgressFunction& progress) {
   std::vector<RowSums> rows(static_cast<std::size_t>(raster.height));
   constexpr int group_rows = 32;
   for (int begin = 0; begin < raster.height; begin += group_rows) {
     const int end = std::min(begin + group_rows, raster.height);
     parallel_for(begin, end, [&](int j) {
-      rows[static_cast<std::size_t>(j)] = match_centres(j, high, atlas, raster, limits, matches, triangles);
+      rows[static_cast<std::size_t>(j)] = match_centres(j, high, matcher, raster, matches, triangles);
     });
     progress(static_cast<double>(end) / raster.height);
   }
@@ -247,16 +246,16 @@ void match_all_centres(const HighSurface& high, const TriangleMesh& atlas, const
 class SampleMatcher {
  public:
   /// `triangles` has the high triangle of each covered texel's centre. All but `samples` outlive this.
-  SampleMatcher(const HighSurface& high, const TriangleMesh& atlas, const UvRaster& raster, const MatchLimits& limits,
-                int samples, const std::vector<std::uint32_t>& triangles)
+  SampleMatcher(const HighSurface& high, const PointMatcher& matcher, const UvRaster& raster, int samples,
+                const std::vector<std::uint32_t>& triangles)
       : high_(high),
-        atlas_(atlas),
+        matcher_(matcher),
+        atlas_(matcher.atlas()),
         raster_(raster),
-        limits_(limits),
         triangles_(triangles),
         samples_(samples),
         side_(static_cast<int>(std::lround(std::sqrt(samples)))),
-        walk_(high.mesh),
+        walk_(high.mesh, matcher.plan().high_part),
         fit_(raster.width, raster.height, side_) {
     if (!high.albedo.is_constant()) albedo_.emplace(raster.width, raster.height, side_);
   }
@@ -295,7 +294,7 @@ class SampleMatcher {
 
   void sample_band(const Band& band, Image<float>& positions, BilinearFit::Rows& rows, BilinearFit::Rows* albedo_rows) {
     const UvRaster fine = rasterise_band(atlas_, band, raster_.width, raster_.height, side_);
-    TexelSamples texel(high_.mesh, high_.scene, walk_, atlas_, limits_, samples_);
+    TexelSamples texel(high_.mesh, walk_, matcher_, samples_);
     for (int j = band.begin; j < band.end; ++j)
       for (int i = 0; i < raster_.width; ++i) {
         const std::size_t index =
@@ -312,9 +311,9 @@ class SampleMatcher {
   }
 
   const HighSurface& high_;
+  const PointMatcher& matcher_;
   const TriangleMesh& atlas_;
   const UvRaster& raster_;
-  const MatchLimits& limits_;
   const std::vector<std::uint32_t>& triangles_;
   int samples_, side_;
   SurfaceWalk walk_;
@@ -324,8 +323,8 @@ class SampleMatcher {
 
 }  // namespace
 
-TexelMatches match_texels(const HighSurface& high, const TriangleMesh& atlas, const UvRaster& raster,
-                          const MatchLimits& limits, int samples, bool fit_one, const ProgressFunction& progress) {
+TexelMatches match_texels(const HighSurface& high, const PointMatcher& matcher, const UvRaster& raster, int samples,
+                          bool fit_one, const ProgressFunction& progress) {
   TexelMatches matches;
   matches.position = Image<float>(raster.width, raster.height, 3);
   matches.normal_object = Image<float>(raster.width, raster.height, 3);
@@ -335,12 +334,13 @@ TexelMatches match_texels(const HighSurface& high, const TriangleMesh& atlas, co
 
   const double centres_part = samples > 1 ? 0.5 : 1;
   std::vector<std::uint32_t> triangles(raster.texels.size(), SurfacePoint::none);
-  match_all_centres(high, atlas, raster, limits, matches, triangles, part_of(progress, 0, centres_part));
-  const float near_distance = usual_distances * static_cast<float>(matches.mean_distance) + limits.surface_tolerance;
-  keep_to_own_parts(high, atlas, raster, near_distance, matches, triangles);
-  match_ring(high, atlas, raster, limits, matches);
+  match_all_centres(high, matcher, raster, matches, triangles, part_of(progress, 0, centres_part));
+  const float near_distance = usual_distances * static_cast<float>(matches.mean_distance) + matcher.surface_tolerance();
+  // The first surface behind a cage is meant, such as details that float over a part.
+  if (matcher.plan().cage.empty()) keep_to_own_parts(high, matcher, raster, near_distance, matches, triangles);
+  match_ring(high, matcher, raster, matches);
   if (samples > 1)
-    SampleMatcher(high, atlas, raster, limits, samples, triangles).run(matches, part_of(progress, centres_part, 1));
+    SampleMatcher(high, matcher, raster, samples, triangles).run(matches, part_of(progress, centres_part, 1));
   else if (fit_one)
     sharpen(matches.normal_object, raster, matches.known);
   return matches;

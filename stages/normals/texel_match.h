@@ -10,18 +10,16 @@
 #include "material/surface_albedo.h"
 #include "mesh/triangle_mesh.h"
 #include "mesh/uv_raster.h"
-#include "normals/surface_match.h"
-#include "raycast/buried_test.h"
-#include "raycast/ray_scene.h"
+#include "normals/high_parts.h"
+#include "normals/point_matcher.h"
 
 namespace kiln {
 
-/// High mesh with normals, its ray scene, its albedo, and the test for buried points.
+/// High mesh with normals, its parts and its albedo.
 struct HighSurface {
   const TriangleMesh& mesh;
-  const RayScene& scene;
+  const HighParts& parts;
   const SurfaceAlbedo& albedo;
-  const BuriedTest& is_buried;
 };
 
 /// Results of match_texels; rows from the bottom.
@@ -35,14 +33,14 @@ struct TexelMatches {
   double largest_distance = 0;
 };
 
-/// Matches all texels of `raster`, that of `atlas`, to the high mesh. Ring texels beside a chart, which lookups at its
-/// edge see, get the high normal at the point where the low triangle's plane continues beyond the edge, unless that
-/// point is buried in another part of the high mesh. With one sample and `fit_one`, texels hold what makes bilinear
-/// lookups fit, a little sharper than the normals at their centres. With `samples` of 4, 16 or 64, that many points of
-/// a regular grid in each texel are matched (those outside all charts are left out), and normals are those whose
-/// bilinear lookups fit the points best (BilinearFit). Albedo is fitted likewise, and kept within the range of the
-/// points around a texel, so that no halo lies beside a sharp edge.
-TexelMatches match_texels(const HighSurface& high, const TriangleMesh& atlas, const UvRaster& raster,
-                          const MatchLimits& limits, int samples, bool fit_one, const ProgressFunction& progress);
+/// Matches all texels of `raster`, that of the matcher's atlas, to the high mesh. Ring texels beside a chart, which
+/// lookups at its edge see, get the high normal at the point where the low triangle's plane continues beyond the edge,
+/// unless that point is buried in another part of the high mesh. With one sample and `fit_one`, texels hold what makes
+/// bilinear lookups fit, a little sharper than the normals at their centres. With `samples` of 4, 16 or 64, that many
+/// points of a regular grid in each texel are matched (those outside all charts are left out), and normals are those
+/// whose bilinear lookups fit the points best (BilinearFit). Albedo is fitted likewise, and kept within the range of
+/// the points around a texel, so that no halo lies beside a sharp edge.
+TexelMatches match_texels(const HighSurface& high, const PointMatcher& matcher, const UvRaster& raster, int samples,
+                          bool fit_one, const ProgressFunction& progress);
 
 }  // namespace kiln

@@ -15,15 +15,14 @@ constexpr std::int64_t most_supersampled_texels = std::int64_t{1024} * 1024;
 
 }  // namespace
 
-TexelMeans::TexelMeans(const HighSurface& high, const TriangleMesh& atlas, int width, int height,
-                       const MatchLimits& limits)
+TexelMeans::TexelMeans(const HighSurface& high, const PointMatcher& matcher, int width, int height)
     : width_(width), height_(height), side_(std::int64_t{width} * height <= most_supersampled_texels ? 2 : 1) {
-  const UvRaster raster = rasterise_uvs(atlas, side_ * width, side_ * height);
+  const UvRaster raster = rasterise_uvs(matcher.atlas(), side_ * width, side_ * height);
   if (raster.covered_texels == 0)
     throw WrongUsage("the atlas covers no texel of a map of " + std::to_string(width) + " x " + std::to_string(height) +
                      "; give a larger one");
-  const HighSurface without_albedo{high.mesh, high.scene, SurfaceAlbedo(), high.is_buried};
-  const TexelMatches matches = match_texels(without_albedo, atlas, raster, limits, 1, false, no_progress);
+  const SurfaceAlbedo none;
+  const TexelMatches matches = match_texels({high.mesh, high.parts, none}, matcher, raster, 1, false, no_progress);
   points_.resize(raster.texels.size());
   known_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
   parallel_for(0, raster.height, [&](int j) {
@@ -31,7 +30,8 @@ TexelMeans::TexelMeans(const HighSurface& high, const TriangleMesh& atlas, int w
       if (!raster.at(i, j).covered()) continue;
       const Eigen::Vector3f position(matches.position.pixel(i, j).data());
       points_[static_cast<std::size_t>(j) * static_cast<std::size_t>(raster.width) + static_cast<std::size_t>(i)] =
-          high.scene.closest_point(position, std::numeric_limits<float>::infinity());
+          high.parts.scene(matcher.plan().part_of_low(raster.at(i, j).triangle))
+              .closest_point(position, std::numeric_limits<float>::infinity());
     }
   });
   for (int j = 0; j < raster.height; ++j)

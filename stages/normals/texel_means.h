@@ -8,8 +8,7 @@
 
 #include "image/image.h"
 #include "mesh/surface_point.h"
-#include "mesh/triangle_mesh.h"
-#include "normals/surface_match.h"
+#include "normals/point_matcher.h"
 #include "normals/texel_match.h"
 
 namespace kiln {
@@ -19,7 +18,7 @@ class TexelMeans {
  public:
   /// Matches the samples, four of each texel up to a map of 1024 x 1024, one beyond. Throws WrongUsage where the atlas
   /// covers no texel of that size.
-  TexelMeans(const HighSurface& high, const TriangleMesh& atlas, int width, int height, const MatchLimits& limits);
+  TexelMeans(const HighSurface& high, const PointMatcher& matcher, int width, int height);
 
   /// Returns the mean of a value over each texel's samples, of 1 or 3 channels; 0 where there are none.
   Image<float> of(int channels, const std::function<Eigen::Vector3f(const SurfacePoint&)>& value) const;

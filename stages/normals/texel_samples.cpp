@@ -42,12 +42,8 @@ struct Vectors {
 
 }  // namespace
 
-TexelSamples::Corners::Corners(const std::vector<Eigen::Vector3f>& values, const Triangle& t)
-    : first(values[t[0]]), second(values[t[1]] - values[t[0]]), third(values[t[2]] - values[t[0]]) {}
-
-TexelSamples::TexelSamples(const TriangleMesh& high, const RayScene& scene, const SurfaceWalk& walk,
-                           const TriangleMesh& atlas, const MatchLimits& limits, int samples)
-    : high_(high), scene_(scene), walk_(walk), atlas_(atlas), limits_(limits), samples_(samples) {}
+TexelSamples::TexelSamples(const TriangleMesh& high, const SurfaceWalk& walk, const PointMatcher& matcher, int samples)
+    : high_(high), walk_(walk), matcher_(matcher), samples_(samples) {}
 
 void TexelSamples::start(std::uint32_t triangle, float reach) {
   triangle_ = triangle;
@@ -61,11 +57,15 @@ void TexelSamples::start(std::uint32_t triangle, float reach) {
 void TexelSamples::add(int sample, const TexelSource& source) {
   if (source.triangle != low_triangle_) {
     low_triangle_ = source.triangle;
-    low_positions_ = Corners(atlas_.positions, atlas_.triangles[low_triangle_]);
-    low_normals_ = Corners(atlas_.normals, atlas_.triangles[low_triangle_]);
+    const TriangleMesh& atlas = matcher_.atlas();
+    const Triangle& t = atlas.triangles[low_triangle_];
+    low_positions_ = Corners(atlas.positions[t[0]], atlas.positions[t[1]], atlas.positions[t[2]]);
+    const std::array<Eigen::Vector3f, 3> lines = matcher_.lines(low_triangle_);
+    low_lines_ = Corners(lines[0], lines[1], lines[2]);
   }
   points_.row(sample) = low_positions_.at(source.u, source.v);
-  directions_.row(sample) = low_normals_.at(source.u, source.v);
+  directions_.row(sample) = low_lines_.at(source.u, source.v);
+  sources_[static_cast<std::size_t>(sample)] = source;
   pending_[static_cast<std::size_t>(sample)] = -1;
   found_.present[static_cast<std::size_t>(sample)] = 1;
   ++found_.count;
@@ -120,7 +120,7 @@ void TexelSamples::find(int sample) {
   SurfacePoint met;
   if (triangle_ != SurfacePoint::none) met = walk_.meet(point, direction, triangle_);
   if (!met.found() || !(std::abs(met.distance) <= reach_)) {
-    met = match_surface(high_, scene_, point, direction, limits_).point;
+    met = matcher_.match(point, direction, sources_[static_cast<std::size_t>(sample)]).point;
     reach_ = std::max(reach_, met.distance);
   }
   triangle_ = met.triangle;

@@ -7,9 +7,8 @@
 
 #include "mesh/triangle_mesh.h"
 #include "mesh/uv_raster.h"
-#include "normals/surface_match.h"
+#include "normals/point_matcher.h"
 #include "normals/surface_walk.h"
-#include "raycast/ray_scene.h"
 
 namespace kiln {
 
@@ -28,8 +27,7 @@ struct TexelPoints {
 class TexelSamples {
  public:
   /// Keeps references. `samples` per texel, at most TexelPoints::most.
-  TexelSamples(const TriangleMesh& high, const RayScene& scene, const SurfaceWalk& walk, const TriangleMesh& atlas,
-               const MatchLimits& limits, int samples);
+  TexelSamples(const TriangleMesh& high, const SurfaceWalk& walk, const PointMatcher& matcher, int samples);
 
   /// Starts a texel: the triangle of its centre's point, if it has one, and how far away samples' points may be.
   void start(std::uint32_t triangle, float reach);
@@ -48,7 +46,8 @@ class TexelSamples {
   struct Corners {
     Eigen::Vector3f first, second, third;
     Corners() = default;
-    Corners(const std::vector<Eigen::Vector3f>& values, const Triangle& t);
+    Corners(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c)
+        : first(a), second(b - a), third(c - a) {}
     Eigen::Vector3f at(float u, float v) const { return first + u * second + v * third; }
   };
 
@@ -57,20 +56,19 @@ class TexelSamples {
   void normalise(TexelPoints::Components& vectors) const;
 
   const TriangleMesh& high_;
-  const RayScene& scene_;
   const SurfaceWalk& walk_;
-  const TriangleMesh& atlas_;
-  const MatchLimits& limits_;
+  const PointMatcher& matcher_;
   int samples_;
 
   std::uint32_t triangle_ = SurfacePoint::none;
   float reach_ = 0;
   std::uint32_t low_triangle_ = TexelSource::none;
-  Corners low_positions_, low_normals_;
+  Corners low_positions_, low_lines_;
   TexelPoints::Components points_ = TexelPoints::Components::Zero(), directions_ = TexelPoints::Components::Zero();
   std::array<std::int32_t, TexelPoints::most> pending_{};  ///< -1 or 0
   TexelPoints found_;
   std::array<SurfacePoint, TexelPoints::most> places_;
+  std::array<TexelSource, TexelPoints::most> sources_;
 };
 
 }  // namespace kiln

@@ -3,9 +3,9 @@
 
 #include <charconv>
 #include <system_error>
-#include <utility>
 
 #include "base/errors.h"
+#include "import/low_import.h"
 
 namespace kiln {
 
@@ -20,19 +20,7 @@ std::optional<double> SimplifySettings::drop_size() const {
 }
 
 ImportSettings SimplifySettings::low_import() const {
-  ImportSettings settings = import;
-  settings.fill_hole_edges = 0;
-  OptionSet options;
-  add_import_options(options, settings);
-  for (const auto& [name, text] : {std::pair("up", low_up), {"unit", low_unit}, {"scale", low_scale}}) {
-    if (text == "same") continue;
-    try {
-      options.find(name)->set(text);
-    } catch (const WrongUsage& fault) {
-      throw WrongUsage(std::string("low-") + fault.what() + ", or same");
-    }
-  }
-  return settings;
+  return low_import_settings(import, {low_up, low_unit, low_scale});
 }
 
 std::span<const char* const> steering_options() {

@@ -105,7 +105,7 @@ TEST(AlbedoMap, ErrorIsThatOfTheMap) {
   const TriangleMesh plane = shapes::plane(64);
   const SurfaceAlbedo albedo =
       painted(plane, [](const Eigen::Vector3f& p) { return Eigen::Vector3f(0.5f, p.x() < 0 ? 0.5f : 0.8f, 0.5f); });
-  const AlbedoError error = measure_albedo_error(plane, albedo, plane, Image<float>(8, 8, 3, 0.5f), 50'000);
+  const AlbedoError error = measure_albedo_error({plane, plane, {}}, albedo, Image<float>(8, 8, 3, 0.5f), 50'000);
   // sqrt(0.3^2 / 2 / 3); the strip between the two halves is a 64th of the plane.
   EXPECT_NEAR(error.rms, 0.3 / std::sqrt(6), 0.002);
   EXPECT_NEAR(error.percentile_95, 0.3, 1e-6);

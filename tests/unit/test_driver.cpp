@@ -5,6 +5,7 @@
 #include <array>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <set>
 #include <sstream>
 
 #include "base/asset_layout.h"
@@ -294,6 +295,31 @@ TEST(Pipeline, ALowMeshOfItsOwnIsAnInputAndIsNotSimplified) {
     const std::string message = refusal_of(keys);
     EXPECT_NE(message.find(line), std::string::npos) << keys << message;
     EXPECT_NE(message.find(word), std::string::npos) << keys << message;
+  }
+}
+
+TEST(Pipeline, NamesAndCagesMakeFilesInputsOfNormals) {
+  const std::string low = "assets:\n  a:\n    mesh: a.obj\n    low: a.glb\n";
+  const auto inputs_of = [&](const std::string& settings) {
+    const std::vector<MakeRule> rules = make_rules(pipeline_of(low + settings));
+    const StageRun& run = run_of(rules, "a", "normals");
+    EXPECT_EQ(value_after(run.command, "--low"), settings.empty() ? "" : "a.glb") << settings;
+    std::set<std::string> names;
+    for (const fs::path& input : run.inputs) names.insert(input.string());
+    return names;
+  };
+  EXPECT_FALSE(inputs_of("").contains("a.glb"));
+  EXPECT_TRUE(inputs_of("    normals: {match: names}\n").contains("a.glb"));
+  const std::set<std::string> with_cage = inputs_of("    normals: {cage-mesh: cage.obj}\n");
+  EXPECT_TRUE(with_cage.contains("a.glb") && with_cage.contains("cage.obj"));
+  for (const auto& [settings, word] : std::initializer_list<std::array<const char*, 2>>{
+           {"normals: {match: names}", "add 'low: FILE'"},
+           {"normals: {cage-mesh: a.obj}", "whose cage it is"},
+           {"normals: {part-cage: 'a=0.1'}", "'match: names' beside it"},
+           {"normals: {part-cage: 'a'}", "NAME=CAGE"},
+           {"normals: {cage: 0.1, cage-mesh: a.obj}", "both cage and cage-mesh"}}) {
+    const std::string message = refusal("assets:\n  a:\n    mesh: x.obj\n    " + std::string(settings) + "\n");
+    EXPECT_NE(message.find(word), std::string::npos) << settings << ": " << message;
   }
 }
 

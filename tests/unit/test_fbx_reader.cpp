@@ -206,6 +206,16 @@ TEST_F(FbxReader, KeepsPolygonsOfTextAndBinaryFiles) {
   }
 }
 
+TEST_F(FbxReader, ModelsNameParts) {
+  Cube cube;
+  cube.objects = "Model: 22, \"Model::bolt_low\", \"Mesh\" {\n}\n";
+  cube.links = "C: \"OO\",22,0\nC: \"OO\",10,22\n";
+  const SourceMesh mesh = read(cube);
+  EXPECT_EQ(mesh.parts, (std::vector<std::string>{"cube", "bolt_low"}));
+  ASSERT_EQ(mesh.faces.size(), 12u);
+  for (std::size_t f = 0; f < 12; ++f) EXPECT_EQ(mesh.faces[f].part, f < 6 ? 0 : 1);
+}
+
 TEST_F(FbxReader, TurnsOtherAxesToYUp) {
   Cube cube;
   cube.settings = Cube::number("UpAxis", 2) + Cube::number("UpAxisSign", 1) + Cube::number("FrontAxis", 1) +

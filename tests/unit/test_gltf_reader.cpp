@@ -92,6 +92,21 @@ TEST_F(GltfReader, PutsMeshesWhereTheSceneHasThem) {
   }
 }
 
+TEST_F(GltfReader, NodesNameParts) {
+  GltfBuilder builder;
+  const std::size_t ball = builder.mesh(builder.primitive(mesh_));
+  builder.json["meshes"][ball]["name"] = "ball";
+  builder.json["nodes"] = {{{"mesh", ball}, {"name", "bolt_low"}},
+                           {{"mesh", ball}, {"translation", {3, 0, 0}}},
+                           {{"name", "bolt_low"}, {"mesh", ball}, {"translation", {6, 0, 0}}},
+                           {{"name", "empty"}}};
+  const SourceMesh mesh = read(builder);
+  EXPECT_EQ(mesh.parts, (std::vector<std::string>{"bolt_low", "ball"}));
+  const std::size_t each = mesh_.triangles.size();
+  ASSERT_EQ(mesh.faces.size(), 3 * each);
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) EXPECT_EQ(mesh.faces[f].part, f / each == 1 ? 1 : 0);
+}
+
 TEST_F(GltfReader, TurnsTheWindingOfMirroredMeshes) {
   for (const double sign : {1.0, -1.0}) {
     const SourceMesh mesh = read(sphere({{"scale", {sign * 3, 1, 0.5}}}));

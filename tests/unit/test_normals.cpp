@@ -486,7 +486,7 @@ TEST(Normals, ErrorOfTheMapIsTheAngleToTheHighNormals) {
   Image<float> map(16, 16, 3);
   for (int j = 0; j < 16; ++j)
     for (int i = 0; i < 16; ++i) map.at(i, j, 1) = 1;
-  const MapError error = measure_map_error(high, atlas, map, NormalSpace::object, 50'000);
+  const MapError error = measure_map_error({high, atlas, {}}, map, NormalSpace::object, 50'000);
   // Between the last vertex of the first half and the first of the other, an eighth of the plane before x = 0, normals
   // turn from 10 to 30: 3/8 at 10, 1/8 at 20 in the mean, 4/8 at 30.
   EXPECT_NEAR(error.mean_degrees, 0.375 * 10 + 0.125 * 20 + 0.5 * 30, 0.05);

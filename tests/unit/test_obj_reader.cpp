@@ -255,6 +255,28 @@ TEST_F(ObjFiles, SmoothingGroups) {
   EXPECT_FALSE(read(square + "f 1 2 3\n").has_smoothing_groups);
 }
 
+TEST_F(ObjFiles, ObjectsNamePartsElseGroupsDo) {
+  using Names = std::vector<std::string>;
+  using Parts = std::vector<std::int32_t>;
+  const auto parts_of = [](const SourceMesh& mesh) {
+    Parts parts;
+    for (const SourceMesh::Face& face : mesh.faces) parts.push_back(face.part);
+    return parts;
+  };
+  const std::string a = "f 1 2 3\n", b = "f 1 3 4\n";
+  SourceMesh mesh = read(square + "o empty\n" + b + "o a bolt_low # seen\ng x\n" + a + "o plate_low\n" + b +
+                         "o unused\no a bolt_low\n" + b + "o\n" + a);
+  EXPECT_EQ(mesh.parts, (Names{"empty", "a bolt_low", "plate_low"}));
+  EXPECT_EQ(parts_of(mesh), (Parts{0, 1, 2, 1, -1}));
+  mesh = read(square + a + "g left_low\n" + b + a + "g right_low\n" + b + "g\n" + a);
+  EXPECT_EQ(mesh.parts, (Names{"left_low", "right_low"}));
+  EXPECT_EQ(parts_of(mesh), (Parts{-1, 0, 0, 1, -1}));
+  mesh = read(square + "o\n" + a);
+  EXPECT_TRUE(mesh.parts.empty());
+  mesh = read(square + "o b\xe9\n" + a);  // not UTF-8
+  EXPECT_EQ(mesh.parts, (Names{"b\\xe9"}));
+}
+
 TEST_F(ObjFiles, PrecisionIsThatOfTheLastDigit) {
   const auto precision = [&](const std::string& coordinate) {
     return read("v " + coordinate + " 0 0\nv 0 0.25 0\nv 0 0 0.5\nv 1e30 0 0\nf 1 2 3\n").precision;

@@ -82,11 +82,11 @@ void check_named_files(const Pipeline& pipeline, const Asset& asset, std::vector
     for (const auto& [name, file] : settings->second) {
       const bool is_texture = name == "albedo-texture" || name == "opacity-texture";
       if (!options.find(name)->names_file || (textures_alone && !is_texture) || !seen.insert(file).second) continue;
-      const bool is_mesh = name == "low";
+      const bool is_mesh = name == "low" || name == "cage-mesh";
       const fs::path path = pipeline.folder / file;
       const std::string fault = is_mesh ? fault_of_mesh(path) : fault_of_file(path);
       if (fault.empty()) continue;
-      const std::string what = is_texture ? "texture" : is_mesh ? "low mesh" : name;
+      const std::string what = is_texture ? "texture" : name == "low" ? "low mesh" : name;
       faults.emplace_back(asset.setting_lines.at(stage->name).at(name),
                           fmt::format("the {} of '{}', {}, {}", what, asset.name, file, fault),
                           is_texture ? "a picture"

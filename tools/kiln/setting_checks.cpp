@@ -73,6 +73,14 @@ class Checks {
     require(value("atlas", "uv") != "keep" || !text("simplify", "low").empty(), "atlas", "uv",
             "a low mesh of the asset's own beside it, since kiln-simplify makes one without uvs",
             "add 'low: FILE', or leave the line out");
+    const bool has_low = !text("simplify", "low").empty();
+    require(text("normals", "match") != "names" || has_low, "normals", "match",
+            "a low mesh of the asset's own beside it, whose parts have names",
+            "add 'low: FILE', or leave the line out");
+    require(text("normals", "cage-mesh").empty() || has_low, "normals", "cage-mesh",
+            "a low mesh of the asset's own beside it, whose cage it is", "add 'low: FILE', or leave the line out");
+    require(text("normals", "part-cage").empty() || text("normals", "match") == "names", "normals", "part-cage",
+            "'match: names' beside it", "add that, or leave the line out");
     require(value("bake", "per-vertex") == false, "bake", "per-vertex",
             "none in a pipeline, whose other stages are for texels", "leave it out, or run kiln-bake by hand");
     require(value("bake", "size") == 0, "bake", "size",

@@ -55,6 +55,12 @@ ImportedSurface CornerAttributes::surface() const {
     for (std::size_t t = 0; t < count; ++t) surface.material_of.push_back(face_of(t).material);
   }
 
+  surface.parts = source_.parts;
+  if (!surface.parts.empty()) {
+    surface.part_of.reserve(count);
+    for (std::size_t t = 0; t < count; ++t) surface.part_of.push_back(face_of(t).part);
+  }
+
   surface.without_uvs.resize(plain + 1);
   for (std::uint32_t f = 0; f < source_.faces.size(); ++f) {
     const SourceMesh::Face& face = source_.faces[f];
@@ -97,6 +103,24 @@ std::vector<std::array<Eigen::Vector3f, 3>> CornerAttributes::normals() const {
       normals[t][c] = sum;
     }
   return normals;
+}
+
+std::vector<std::array<Eigen::Vector3f, 3>> CornerAttributes::offsets_to(const SourceMesh& cage) const {
+  std::vector<std::array<Eigen::Vector3f, 3>> offsets(mesh_.triangles.size());
+  for (std::size_t t = 0; t < offsets.size(); ++t)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Weights weight = weights(t, c);
+      Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (weight[k] == 0) continue;
+        const CutTriangle& cut = triangles_[origins_[t]];
+        const std::uint32_t in_face = cut.corners[k] - source_.faces[cut.face].first_corner;
+        const std::uint32_t place = cage.corners[cage.faces[cut.face].first_corner + in_face].place;
+        offset += weight[k] * (cage.places[place] - source_.places[source_.corners[cut.corners[k]].place]);
+      }
+      offsets[t][c] = (offset / mesh_.frame.unit()).cast<float>();
+    }
+  return offsets;
 }
 
 bool CornerAttributes::has_smoothing_groups() const {

@@ -21,12 +21,16 @@ class CornerAttributes {
   CornerAttributes(const SourceMesh& source, const std::vector<CutTriangle>& triangles, const TriangleMesh& mesh,
                    const TriangleOrigins& origins);
 
-  /// Returns materials and texture coordinates.
+  /// Returns materials, parts and texture coordinates.
   ImportedSurface surface() const;
 
   bool has_normals() const { return !source_.normals.empty(); }
   /// Returns normals as the file has them at each corner, interpolated, of any length; NaN where it has none.
   std::vector<std::array<Eigen::Vector3f, 3>> normals() const;
+
+  /// Returns how far it is from each corner to its place in a mesh of the same faces and corners, in units of the
+  /// frame.
+  std::vector<std::array<Eigen::Vector3f, 3>> offsets_to(const SourceMesh& cage) const;
 
   bool has_smoothing_groups() const;
   std::vector<std::uint32_t> smoothing_groups() const;

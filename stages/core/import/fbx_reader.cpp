@@ -12,6 +12,7 @@
 #include "import/fbx_material.h"
 #include "import/fbx_objects.h"
 #include "import/mesh_transform.h"
+#include "import/part_names.h"
 #include "import/readers.h"
 
 // The transform of a model follows the FBX SDK's reference, "Computing transformation matrices": T Roff Rp Rpre R
@@ -77,6 +78,7 @@ class FbxReader {
       document_.fail("has no polygons that a model places", "a mesh", "export the surface as a mesh");
     materials_.add_warnings(mesh_.warnings);
     mesh_.materials = std::move(materials_).all();
+    mesh_.parts = std::move(parts_).all();
     add_warnings();
     return std::move(mesh_);
   }
@@ -204,12 +206,13 @@ class FbxReader {
                                corner.normal == FbxGeometry::none ? SourceMesh::none : first_normal + corner.normal});
     }
     add_colors(geometry, first_place, first_corner);
+    const std::int32_t part = geometry.first_corner.size() > 1 ? parts_.number_of(model.name()) : -1;
     for (std::size_t i = 0; i + 1 < geometry.first_corner.size(); ++i) {
       const std::uint32_t first = first_corner + geometry.first_corner[i];
       const std::uint32_t count = geometry.first_corner[i + 1] - geometry.first_corner[i];
       const std::int64_t material = geometry.materials[i];
       const bool is_known = material >= 0 && material < static_cast<std::int64_t>(materials.size());
-      mesh_.faces.push_back({first, count, is_known ? materials[static_cast<std::size_t>(material)] : -1, 0, 0});
+      mesh_.faces.push_back({first, count, is_known ? materials[static_cast<std::size_t>(material)] : -1, 0, 0, part});
       if (transform.is_mirror()) std::reverse(mesh_.corners.begin() + first + 1, mesh_.corners.begin() + first + count);
     }
   }
@@ -258,6 +261,7 @@ class FbxReader {
   FbxObjects objects_;
   FbxMaterials materials_;
   SourceMesh mesh_;
+  PartNames parts_;
   Eigen::Matrix4d axes_ = Eigen::Matrix4d::Identity();
   std::map<std::int64_t, Eigen::Matrix4d> worlds_;
   std::map<std::int64_t, FbxGeometry> geometries_;

@@ -11,6 +11,7 @@
 #include "import/gltf_primitive.h"
 #include "import/gltf_scene.h"
 #include "import/mesh_transform.h"
+#include "import/part_names.h"
 #include "import/readers.h"
 #include "import/text_lines.h"
 
@@ -42,6 +43,9 @@ class SceneAssembler {
 
   std::size_t expected_triangles() const { return expected_triangles_; }
 
+  /// Hands over the names of the parts that were added.
+  std::vector<std::string> part_names() && { return std::move(parts_).all(); }
+
   /// Adds one copy.
   void add(const GltfPrimitive& primitive, const GltfPlacement& placement) {
     const bool is_skinned = placement.joints != nullptr && primitive.influences > 0;
@@ -61,8 +65,9 @@ class SceneAssembler {
     }
     mesh_.uvs.insert(mesh_.uvs.end(), primitive.uvs.begin(), primitive.uvs.end());
     add_colors(primitive);
+    const std::int32_t part = primitive.triangles.empty() ? -1 : parts_.number_of(placement.name);
     for (const auto& triangle : primitive.triangles) {
-      mesh_.faces.push_back({static_cast<std::uint32_t>(mesh_.corners.size()), 3, primitive.material, 0, 0});
+      mesh_.faces.push_back({static_cast<std::uint32_t>(mesh_.corners.size()), 3, primitive.material, 0, 0, part});
       const bool is_turned = is_skinned ? is_mirrored[triangle[0]] : world.is_mirror();
       for (const std::size_t k : {0, is_turned ? 2 : 1, is_turned ? 1 : 2})
         mesh_.corners.push_back({first_place_ + triangle[k],
@@ -111,6 +116,7 @@ class SceneAssembler {
   const GltfDocument& document_;
   const GltfBuffers& buffers_;
   SourceMesh& mesh_;
+  PartNames parts_;
   std::size_t expected_triangles_ = 0;
   std::uint32_t first_place_ = 0, first_normal_ = 0;
 };
@@ -161,6 +167,7 @@ SourceMesh read_gltf(const std::filesystem::path& file) {
     for (const GltfPrimitive& primitive : found->second) assembler.add(primitive, placement);
     if (--uses[key] == 0) meshes.erase(found);
   }
+  mesh.parts = std::move(assembler).part_names();
   add_warnings(document, passed_by, mesh.warnings);
   mesh.further_files = buffers.files();
   if (mesh.faces.empty()) {

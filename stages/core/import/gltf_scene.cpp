@@ -146,30 +146,37 @@ class SceneReader {
       const Node& node = nodes_[i];
       if (node.mesh == no_node) return;
       const std::string place_name = name_of(i);
+      const GltfJson& object = document_.element("nodes", i, "the file");
+      const std::string name = given_name(object);
       if (node.skin != no_node) {
-        place(node.mesh, node.world, node.weights);
+        place(node.mesh, node.world, node.weights, name);
         placements_.back().joints = joints(node.skin, place_name);
         ++skinned_;
         return;
       }
-      const GltfJson& object = document_.element("nodes", i, "the file");
       const GltfJson* instancing = document_.extension(object, "EXT_mesh_gpu_instancing", place_name);
       if (instancing == nullptr)
-        place(node.mesh, node.world, node.weights);
+        place(node.mesh, node.world, node.weights, name);
       else
         for (const Eigen::Matrix4d& instance : instances(*instancing, place_name))
-          place(node.mesh, node.world * instance, node.weights);
+          place(node.mesh, node.world * instance, node.weights, name);
     });
   }
 
-  void place(std::size_t mesh, const Eigen::Matrix4d& world, std::vector<double> weights) {
+  static std::string given_name(const GltfJson& object) {
+    const auto name = object.find("name");
+    return name != object.end() && name->is_string() ? name->get<std::string>() : std::string();
+  }
+
+  void place(std::size_t mesh, const Eigen::Matrix4d& world, std::vector<double> weights, std::string name = {}) {
     const GltfJson& object = document_.element("meshes", mesh, "a node");
+    if (name.empty()) name = given_name(object);
     if (weights.empty()) weights = document_.numbers(object, "weights", 0, "mesh " + std::to_string(mesh));
     if (weights.size() > most_weights)
       document_.fail("mesh " + std::to_string(mesh) + " has " + std::to_string(weights.size()) + " morph weights",
                      "at most " + std::to_string(most_weights));
     if (std::all_of(weights.begin(), weights.end(), [](double weight) { return weight == 0; })) weights.clear();
-    placements_.push_back({mesh, world, std::move(weights), nullptr});
+    placements_.push_back({mesh, world, std::move(weights), std::move(name), nullptr});
   }
 
   using Joints = std::shared_ptr<const std::vector<Eigen::Matrix4d>>;

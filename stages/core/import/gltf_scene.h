@@ -15,6 +15,7 @@ struct GltfPlacement {
   std::size_t mesh = 0;
   Eigen::Matrix4d world = Eigen::Matrix4d::Identity();
   std::vector<double> morph_weights;
+  std::string name;  ///< of the node, or of the mesh where that has none
   /// Transforms of a skinned mesh's joints, from the mesh's space to the world's, at rest; null for other meshes.
   std::shared_ptr<const std::vector<Eigen::Matrix4d>> joints;
 };

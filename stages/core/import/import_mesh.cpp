@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "base/errors.h"
 #include "import/corner_attributes.h"
@@ -128,8 +129,12 @@ MeshFrame frame_of(const Eigen::Vector3d& lowest, const Eigen::Vector3d& highest
   return frame;
 }
 
-ImportedMesh import_mesh(const std::filesystem::path& file, const ImportSettings& settings,
-                         const std::optional<MeshFrame>& frame) {
+namespace {
+
+/// Calls `also` with the attributes at the end, where it is given.
+ImportedMesh import(const std::filesystem::path& file, const ImportSettings& settings,
+                    const std::optional<MeshFrame>& frame,
+                    const std::function<void(const SourceMesh&, const CornerAttributes&)>& also = {}) {
   // Step 1: read the file, in our axes and units, as triangles.
   const std::string name = file.string();
   SourceMesh source = read_source_mesh(file);
@@ -173,6 +178,43 @@ ImportedMesh import_mesh(const std::filesystem::path& file, const ImportSettings
   result.surface = attributes.surface();
   set_normals(mesh, attributes, settings.normals, name, result.warnings);
   warn_of_emission(source, result.warnings);
+  if (also) also(source, attributes);
+  return result;
+}
+
+/// Refuses a cage whose faces are not those of the low mesh.
+void check_cage(const std::filesystem::path& file, const SourceMesh& cage, const std::string& low_name,
+                const SourceMesh& low) {
+  const char* remedy = "export low mesh and cage of one mesh, in one way, both before or both after triangulation";
+  if (cage.faces.size() != low.faces.size())
+    throw BadInput(file.string(), "has " + std::to_string(cage.faces.size()) + " faces",
+                   "the " + std::to_string(low.faces.size()) + " of " + low_name + ", whose cage it is", remedy);
+  for (std::size_t f = 0; f < low.faces.size(); ++f)
+    if (cage.faces[f].corner_count != low.faces[f].corner_count)
+      throw BadInput(
+          file.string(),
+          "face " + std::to_string(f + 1) + " has " + std::to_string(cage.faces[f].corner_count) + " corners",
+          "the " + std::to_string(low.faces[f].corner_count) + " that it has in " + low_name, remedy);
+}
+
+}  // namespace
+
+ImportedMesh import_mesh(const std::filesystem::path& file, const ImportSettings& settings,
+                         const std::optional<MeshFrame>& frame) {
+  return import(file, settings, frame);
+}
+
+CagedMesh import_caged_mesh(const std::filesystem::path& file, const std::filesystem::path& cage,
+                            const ImportSettings& settings, const std::optional<MeshFrame>& frame) {
+  CagedMesh result;
+  result.low = import(file, settings, frame, [&](const SourceMesh& low, const CornerAttributes& attributes) {
+    SourceMesh source = read_source_mesh(cage);
+    turn_and_scale(source, settings);
+    check_cage(cage, source, file.string(), low);
+    result.offsets = attributes.offsets_to(source);
+    result.files = {cage};
+    result.files.insert(result.files.end(), source.further_files.begin(), source.further_files.end());
+  });
   return result;
 }
 

@@ -26,6 +26,8 @@ struct ImportedSurface {
 
   std::vector<SourceMaterial> materials;
   std::vector<std::int32_t> material_of;            ///< per triangle, -1 for none; empty where no face has one
+  std::vector<std::string> parts;                   ///< names of the file's parts; none where it names none
+  std::vector<std::int32_t> part_of;                ///< per triangle, -1 for none; empty where `parts` is
   std::vector<std::array<Eigen::Vector2f, 3>> uvs;  ///< per triangle's corners; empty where the file has none
   std::vector<FaceWithoutUvs> without_uvs;          ///< per material; the last entry is for faces without one
   std::optional<BadInput> materials_fault;          ///< reason why the file's materials cannot be used
@@ -50,6 +52,20 @@ struct ImportedMesh {
 /// normals and it has none.
 ImportedMesh import_mesh(const std::filesystem::path& file, const ImportSettings& settings = {},
                          const std::optional<MeshFrame>& frame = std::nullopt);
+
+/// Low mesh and the cage that an artist made for it.
+struct CagedMesh {
+  ImportedMesh low;
+  /// Offsets from the corners of each triangle of the low mesh to their places in the cage.
+  std::vector<std::array<Eigen::Vector3f, 3>> offsets;
+  std::vector<std::filesystem::path> files;  ///< the cage's, and what it names
+};
+
+/// Reads a mesh as import_mesh does, and its cage: a mesh of any format that has the same faces in the same order, each
+/// of as many corners in the same order, which `settings` turn and scale likewise. Throws BadInput, which names the
+/// cage, where faces or corners are not as many.
+CagedMesh import_caged_mesh(const std::filesystem::path& file, const std::filesystem::path& cage,
+                            const ImportSettings& settings, const std::optional<MeshFrame>& frame = std::nullopt);
 
 /// Returns the mesh of import_mesh alone.
 TriangleMesh load_mesh(const std::filesystem::path& file, MeshRepairs* repairs = nullptr,

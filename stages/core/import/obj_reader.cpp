@@ -6,12 +6,14 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "base/errors.h"
 #include "base/files.h"
 #include "import/obj_colors.h"
 #include "import/obj_materials.h"
 #include "import/obj_vertices.h"
+#include "import/part_names.h"
 #include "import/readers.h"
 #include "import/text_words.h"
 #include "import/wavefront_lines.h"
@@ -29,6 +31,27 @@ struct Kind {
 };
 constexpr Kind place_kind{"vertex", "v"}, uv_kind{"texture coordinate", "vt"}, normal_kind{"normal", "vn"};
 
+/// Name that holds for the faces after it; only names of faces are numbered.
+class CurrentName {
+ public:
+  void begin(std::string_view name) {
+    name_ = std::string(name);
+    is_numbered_ = false;
+  }
+  std::int32_t current() {
+    if (!is_numbered_) number_ = names_.number_of(name_);
+    is_numbered_ = true;
+    return number_;
+  }
+  std::vector<std::string> all() && { return std::move(names_).all(); }
+
+ private:
+  PartNames names_;
+  std::string name_;
+  std::int32_t number_ = -1;
+  bool is_numbered_ = false;
+};
+
 class ObjReader {
  public:
   explicit ObjReader(const fs::path& file) : file_(file), text_(read_text(file)), lines_(text_) {}
@@ -45,6 +68,7 @@ class ObjReader {
     mesh_.has_smoothing_groups = std::any_of(mesh_.faces.begin(), mesh_.faces.end(),
                                              [](const SourceMesh::Face& face) { return face.smoothing_group != 0; });
     warn();
+    finish_parts();
     materials_.finish(file_, mesh_);
     return std::move(mesh_);
   }
@@ -92,6 +116,10 @@ class ObjReader {
       material_ = materials_.use(rest);
     } else if (same_word(keyword, "mtllib")) {
       materials_.add_library(rest, lines_.line());
+    } else if (same_word(keyword, "o")) {
+      objects_.begin(name_without_comment(rest));
+    } else if (same_word(keyword, "g")) {
+      groups_.begin(name_without_comment(rest));
     } else if (same_word(keyword, "#mrgb")) {
       vertices_.colors().add_polypaint(rest, mesh_.places.size());
     } else {
@@ -166,12 +194,25 @@ class ObjReader {
     face.material = material_;
     face.smoothing_group = smoothing_group_;
     face.line = lines_.line();
+    face.part = objects_.current();
     for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest))
       mesh_.corners.push_back(read_corner(word));
     if (mesh_.corners.size() >= SourceMesh::none) refuse("more than 4294967294 corners", "fewer", "cut the mesh");
     face.corner_count = static_cast<std::uint32_t>(mesh_.corners.size()) - face.first_corner;
     if (face.corner_count < 3) refuse_few(face.corner_count, "a face", "three corners or more", "corner");
     mesh_.faces.push_back(face);
+    if (const std::int32_t group = groups_.current(); group >= 0) {
+      group_of_face_.resize(mesh_.faces.size(), -1);
+      group_of_face_.back() = group;
+    }
+  }
+
+  /// Names the faces' parts: by objects (o) where a face has one, else by groups (g).
+  void finish_parts() {
+    mesh_.parts = std::move(objects_).all();
+    if (!mesh_.parts.empty()) return;
+    mesh_.parts = std::move(groups_).all();
+    for (std::size_t k = 0; k < group_of_face_.size(); ++k) mesh_.faces[k].part = group_of_face_[k];
   }
 
   /// Reads VERTEX, VERTEX/UV, VERTEX//NORMAL or VERTEX/UV/NORMAL.
@@ -334,6 +375,8 @@ class ObjReader {
   SourceMesh mesh_;
   ObjVertices vertices_;
   ObjMaterials materials_;
+  CurrentName objects_, groups_;
+  std::vector<std::int32_t> group_of_face_;  ///< up to the last face that has one
   std::int32_t material_ = -1;
   std::uint32_t smoothing_group_ = 0;
   std::size_t lines_of_shape_ = 0, points_of_shape_ = 0, surfaces_ = 0, calls_ = 0;

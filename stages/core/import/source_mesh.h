@@ -79,6 +79,7 @@ struct SourceMesh {
     std::int32_t material = -1;         ///< -1: none
     std::uint32_t smoothing_group = 0;  ///< 0: none; faces of one group are smooth across their edges
     std::uint32_t line = 0;             ///< line in a text file, from 1; 0: the format has no lines
+    std::int32_t part = -1;             ///< entry of `parts`; -1: the file does not name it
   };
 
   std::vector<Eigen::Vector3d> places;   ///< in the file's units and axes; those that faces use are finite
@@ -87,7 +88,8 @@ struct SourceMesh {
   std::vector<Eigen::Vector3f> normals;  ///< not normalised; those that faces use are finite
   std::vector<Eigen::Vector2f> uvs;      ///< (0, 0) is a picture's lower left corner
   std::vector<Corner> corners;
-  std::vector<Face> faces;  ///< at least one
+  std::vector<Face> faces;         ///< at least one
+  std::vector<std::string> parts;  ///< names of the objects or groups that the file divides its faces into, each once
   std::vector<SourceMaterial> materials;
   /// Reason why the file's materials cannot be used, such as a missing library or picture; faces have none then. Only
   /// code that needs materials throws it: the shape is complete without them.

@@ -4,8 +4,10 @@
 #include <algorithm>
 
 #include "base/errors.h"
+#include "base/file_names.h"
 #include "base/files.h"
 #include "base/json.h"
+#include "import/low_import.h"
 
 namespace kiln {
 
@@ -43,7 +45,13 @@ AssetHints read_asset_hints(const std::filesystem::path& folder) {
   hints.height = static_cast<int>(both ? height : size);
   const Json simplify = read_result(folder / "simplify.json");
   hints.hausdorff_distance = positive_number(simplify, "hausdorff_distance");
-  if (simplify.contains("settings")) hints.import = import_settings_of(simplify["settings"]);
+  if (simplify.contains("settings") && simplify["settings"].is_object()) {
+    const Json& settings = simplify["settings"];
+    hints.import = import_settings_of(settings);
+    hints.low_import = low_import_settings_of(settings);
+    if (settings.contains("low") && settings["low"].is_string())
+      hints.low_file = path_of_text(settings["low"].get<std::string>());
+  }
   if (simplify.contains("warnings") && simplify["warnings"].is_array())
     for (const Json& warning : simplify["warnings"])
       if (warning.is_string()) hints.warnings.push_back(warning.get<std::string>());

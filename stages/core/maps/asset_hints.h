@@ -13,8 +13,10 @@ namespace kiln {
 struct AssetHints {
   int width = 0;  ///< atlas.json: size that the atlas was packed for, texels
   int height = 0;
-  double hausdorff_distance = 0;  ///< simplify.json: from the high to the low mesh, object units
-  ImportSettings import = {};     ///< simplify.json: import settings of the high mesh, which later stages reuse
+  double hausdorff_distance = 0;        ///< simplify.json: from the high to the low mesh, object units
+  ImportSettings import = {};           ///< simplify.json: import settings of the high mesh, which later stages reuse
+  std::filesystem::path low_file = {};  ///< simplify.json: the file of a low mesh that was taken as it is; else empty
+  ImportSettings low_import = {};       ///< how that file was read
   std::vector<std::string> warnings = {};  ///< simplify.json: warnings about the high mesh
 };
 

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "mesh/triangle_mesh.h"
+#include "normals/match_plan.h"
+#include "normals/part_scene.h"
+#include "raycast/buried_test.h"
+
+namespace kiln {
+
+/// Parts of a high mesh that texels are matched to, each on its own; without parts, the whole mesh as one.
+class HighParts {
+ public:
+  /// Keeps no reference.
+  HighParts(const TriangleMesh& high, const MatchPlan& plan);
+
+  const PartScene& scene(std::uint32_t part) const { return scenes_[part]; }
+
+  /// Returns 1 for each point that is buried in its own part, as BuriedTest does, else 0. `parts` has one part for each
+  /// point.
+  std::vector<std::uint8_t> buried(const Receivers& points, const std::vector<std::uint32_t>& parts) const;
+
+ private:
+  std::vector<PartScene> scenes_;
+  std::vector<std::unique_ptr<BuriedTest>> tests_;
+};
+
+}  // namespace kiln
