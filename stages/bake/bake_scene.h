@@ -17,6 +17,7 @@ struct BakePaths {
   std::filesystem::path atlas;                   ///< per vertex: any mesh
   std::filesystem::path detail;                  ///< empty: none
   std::vector<std::filesystem::path> occluders;  ///< empty: the atlas' own mesh
+  std::filesystem::path levels;                  ///< folder of kiln-lod; empty: none
   std::filesystem::path output;
 };
 
@@ -34,6 +35,7 @@ struct BakeScene {
 
   NormalSpace normal_space = NormalSpace::object;  ///< space of the normal map
   PrtAlbedo albedo;                                ///< albedo of the receivers, for ranges.json
+  std::vector<PrtLevel> levels;                    ///< levels of detail to ship, of paths.levels
   BuriedReport buried;                             ///< receivers that were set aside
   double high_area = 0;  ///< area of the high mesh that receivers stand on, square object units; else 0
 
