@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "asset/shipped.h"
+#include "bake/levels.h"
 #include "bake/planes/coefficient_planes.h"
 #include "bake/planes/vertex_planes.h"
 #include "bake/verify.h"
@@ -94,6 +95,8 @@ Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene&
   asset.albedo = scene.albedo;
   asset.bits = settings.bits;
   fs::copy_file(paths.atlas, outputs.add(atlas_mesh_name), fs::copy_options::overwrite_existing);
+  asset.levels = scene.levels;
+  ship_levels(outputs, paths.levels, scene.levels);
   if (!paths.detail.empty() && settings.ship.normal_bits > 0) {
     asset.normals_file = normal_map_name;
     asset.normal_space = scene.normal_space;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "bake/backends.h"
+#include "bake/levels.h"
 #include "bake/scene/vertex_receivers.h"
 #include "base/errors.h"
 #include "base/extent.h"
@@ -113,6 +114,8 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
     throw WrongUsage(
         "per-vertex: found --detail; expected none, which is for texels; --receiver high takes the first "
         "--occluder as the high mesh");
+  if (!paths.levels.empty())
+    throw WrongUsage("per-vertex: found --levels; expected none, which share the texels of an atlas");
   if (settings.adaptive > 0)
     throw WrongUsage("per-vertex: found --adaptive; expected none, it goes by squares of texels");
   if (settings.ship.all_maps || !settings.ship.maps.empty())
@@ -175,6 +178,10 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
   BakeScene scene;
   scene.atlas = load_atlas(paths.atlas);
   const TriangleMesh& atlas = scene.atlas;
+  if (!paths.levels.empty()) {
+    scene.levels = load_levels(paths.levels, paths.atlas);
+    for (const PrtLevel& level : scene.levels) scene.further_files.push_back(paths.levels / level.mesh_file);
+  }
   std::optional<DetailMaps> detail;
   if (!paths.detail.empty()) {
     detail = load_detail_maps(paths.detail, atlas);

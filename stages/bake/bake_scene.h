@@ -17,6 +17,7 @@ struct BakePaths {
   std::filesystem::path atlas;                   ///< per vertex: any mesh
   std::filesystem::path detail;                  ///< empty: none
   std::vector<std::filesystem::path> occluders;  ///< empty: the atlas' own mesh
+  std::filesystem::path levels;                  ///< folder of kiln-lod; empty: none
   std::filesystem::path output;
 };
 
@@ -36,6 +37,7 @@ struct BakeScene {
   PrtAlbedo albedo;                                 ///< albedo of the receivers, for ranges.json
   int own_normal_width = 0, own_normal_height = 0;  ///< texels of the normal map that ships, as DetailMaps has them
   bool has_opacity_map = false;                     ///< the detail folder has a map of opacity
+  std::vector<PrtLevel> levels;                     ///< levels of detail to ship, of paths.levels
   BuriedReport buried;                              ///< receivers that were set aside
   double high_area = 0;  ///< area of the high mesh that receivers stand on, square object units; else 0
 

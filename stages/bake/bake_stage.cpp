@@ -78,6 +78,11 @@ StageRun run(const AssetPlan& plan) {
   // A low receiver lies beneath the high mesh here and above it there: it is in the shadow of its own mesh, which is
   // what kiln-bake takes where nothing is said.
   if (settings.receiver == BakeReceiver::high) run.add({"--occluder", command_word(plan.mesh)});
+  if (plan.passes("lod")) {
+    const fs::path levels = layout::stage_folder(plan.folder, "lod");
+    run.add({"--levels", folder_word(levels)});
+    run.inputs.push_back(layout::record(plan.folder, "lod"));
+  }
   run.add({"-o", folder_word(prt)});
   if (!plan.place.empty()) run.add({"--place", plan.place});
   for (const PlanNeighbour& neighbour : plan.neighbours) {
@@ -87,6 +92,7 @@ StageRun run(const AssetPlan& plan) {
   run.add_settings(options(), plan.settings_of("bake"));
   for (int i = 0; i < settings.bands * settings.bands; ++i) run.outputs.push_back(prt / plane_file(0, i));
   for (const char* name : {atlas_mesh_name, ranges_name}) run.outputs.push_back(prt / name);
+  if (plan.passes("lod")) run.outputs.push_back(prt / level_file(1));
   if (settings.ship.normal_bits > 0) run.outputs.push_back(prt / normal_map_name);
   // Checkpoints are of blocks of directions, by which a bake that interpolates texels does not go.
   if (settings.adaptive == 0) run.checkpoint = layout::checkpoint_folder(prt);

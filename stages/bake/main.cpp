@@ -18,6 +18,8 @@ int main(int argc, char** argv) {
                          "Folder of kiln-normals: the high mesh's point and normal of every texel");
     command.input_option("occluder", paths.occluders,
                          "Mesh that casts shadows, may be repeated (default: ATLAS itself)");
+    command.input_option("levels", paths.levels,
+                         "Folder of kiln-lod: coarser meshes that share the atlas, to ship with it");
     command.list_option(
         "neighbour", settings.surroundings.neighbours, "Bake",
         "Mesh beside the asset that casts shadows, may be repeated: FILE[;place=X,Y,Z[,AZIMUTH[,SCALE]]]"

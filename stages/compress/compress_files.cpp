@@ -127,6 +127,7 @@ EncodedFiles encode_planes(const PrtAsset& asset, int bits, PngEffort effort) {
 
 Json save_compressed(OutputSet& outputs, const fs::path& input, const PrtAsset& asset, const CompressResult& result) {
   copy_into(outputs, input, asset.mesh_file);
+  for (const PrtLevel& level : asset.levels) copy_into(outputs, input, level.mesh_file);
   if (!asset.normals_file.empty())
     copy_into(outputs, input, asset.normals_file);
   else

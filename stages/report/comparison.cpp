@@ -2,16 +2,12 @@
 #include "report/comparison.h"
 
 #include <cmath>
-#include <fmt/format.h>
 #include <numbers>
 
 #include "base/asset_layout.h"
 #include "base/errors.h"
-#include "base/interruption.h"
 #include "base/json.h"
-#include "base/process.h"
 #include "base/stopwatch.h"
-#include "image/image_file.h"
 #include "import/import_mesh.h"
 #include "material/cut_out.h"
 #include "material/load_albedo.h"
@@ -20,6 +16,7 @@
 #include "mesh/draco_file.h"
 #include "report/pictures.h"
 #include "report/reference.h"
+#include "report/render_asset.h"
 #include "report/transport.h"
 #include "scatter/subsurface_settings.h"
 #include "sh/directions.h"
@@ -32,8 +29,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double field_of_view_degrees = 30;
-constexpr int supersample = 2;
 constexpr double split_share = 0.3;  // share of the progress
 
 std::vector<LightSpec> parse_lights(const std::string& option, const std::vector<std::string>& texts) {
@@ -201,79 +196,6 @@ std::vector<CameraView> camera_views(const ReportSettings& settings) {
   return views;
 }
 
-/// Pictures of assets under each light.
-struct Rendered {
-  Json said;                           ///< result of kiln-render for the first picture
-  std::vector<Image<float>> pictures;  ///< asset after asset, light after light
-};
-
-/// Reads a picture, which has the size asked for.
-Image<float> read_rendered(const fs::path& file, const ReportSettings& settings) {
-  Image<float> picture = read_float_image(file);
-  if (picture.width() != settings.picture_size || picture.height() != settings.picture_size || picture.channels() != 4)
-    throw std::runtime_error("kiln-render drew another size or number of channels than asked");
-  return picture;
-}
-
-/// Draws the asset and, if there is one, its compressed form under each light. All in one run of kiln-render, because
-/// starting takes longer than drawing.
-Rendered render(const AssetFolder& asset, const CameraView& view, double albedo, const ReportSettings& settings,
-                const ComparisonRun& run) {
-  const std::vector<std::string>& lights = view.lights;
-  std::string printed;
-  ProcessSettings process;
-  process.on_output_line = [&](const std::string& line) { printed += line; };
-  // State everything that the reference must share, whatever the renderer's defaults are.
-  const std::string size = std::to_string(settings.picture_size);
-  std::vector<std::string> command = {
-      (program_folder() / "kiln-render").string(),
-      asset.prt().string(),
-      "-o",
-      (run.scratch / "light.exr").string(),
-      "--each-light",
-      "--each-asset",
-      "--window",
-      "hann",
-      fmt::format("--camera={},{}", view.azimuth_degrees, settings.camera_elevation_degrees),
-      "--field-of-view",
-      fmt::format("{}", field_of_view_degrees),
-      fmt::format("--zoom={}", settings.framing.zoom),
-      "--target=" + settings.framing.target,
-      "--distance=" + settings.framing.distance,
-      "--width",
-      size,
-      "--height",
-      size,
-      "--supersample",
-      std::to_string(supersample),
-      "--albedo",
-      fmt::format("{}", albedo),
-      "--background",
-      "none",
-      "--gl-device",
-      settings.gl_device,
-      "--threads",
-      std::to_string(run.threads),
-      "--quiet",
-      "--json"};
-  for (const std::string& light : lights) command.push_back("--light=" + light);
-  if (!asset.compressed.empty()) command.insert(command.begin() + 2, asset.compressed.string());
-  const ProcessEnd end = run_process(command, process);
-  throw_if_interrupted();
-  if (end.exit_status == static_cast<int>(ExitCode::machine_lacks))
-    throw MachineLacks("kiln-render cannot draw on this machine; it has said why");
-  if (end.exit_status == static_cast<int>(ExitCode::bad_input))
-    throw BadInput(asset.folder.string(), "could not be drawn by kiln-render, which has said why",
-                   "a whole output of kiln-bake or kiln-compress", "run that again");
-  if (end.exit_status == static_cast<int>(ExitCode::wrong_usage))
-    throw WrongUsage("kiln-render refuses its settings and has said why");
-  if (!end.succeeded()) throw std::runtime_error(fmt::format("kiln-render failed (exit status {})", end.exit_status));
-  Rendered rendered{Json::parse(printed), {}};
-  for (std::size_t k = 0; k < lights.size() * (asset.compressed.empty() ? 1 : 2); ++k)
-    rendered.pictures.push_back(read_rendered(run.scratch / fmt::format("light_{:03}.exr", k), settings));
-  return rendered;
-}
-
 }  // namespace
 
 Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high_file, const ReportSettings& settings,
@@ -286,7 +208,14 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   const Stopwatch render_watch;
   std::vector<Camera> cameras;
   for (const CameraView& view : views) {
-    Rendered rendered = render(asset, view, albedo, settings, run);
+    const RenderedView drawn = {.azimuth_degrees = view.azimuth_degrees,
+                                .elevation_degrees = settings.camera_elevation_degrees,
+                                .framing = settings.framing,
+                                .size = settings.picture_size,
+                                .albedo = albedo,
+                                .gl_device = settings.gl_device,
+                                .compressed = !asset.compressed.empty()};
+    Rendered rendered = render_asset(asset, drawn, view.lights, run);
     comparison.renderer = rendered.said.at("renderer").get<std::string>();
     comparison.software_renderer = rendered.said.at("software_renderer").get<bool>();
     cameras.push_back(camera_of_json(rendered.said.at("camera")));
@@ -300,6 +229,7 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
       light.compressed_difference = compare_pictures(light.compressed, light.asset);
     }
   }
+  if (!asset.baked.levels.empty()) comparison.levels = compare_levels(asset, albedo, settings, run);
   comparison.render_seconds = render_watch.seconds();
 
   // Draw the high mesh by rays, from the very cameras that kiln-render used.
@@ -310,7 +240,7 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   TriangleMesh high = imported.mesh;
   ReferenceView view;
   view.width = view.height = settings.picture_size;
-  view.supersample = supersample;
+  view.supersample = drawn_supersample;
   view.albedo = static_cast<float>(albedo);
   const SubsurfaceSettings subsurface = settings_of(asset.record("bake"), add_subsurface_options);
   if (subsurface.wanted()) {

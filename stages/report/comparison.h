@@ -10,6 +10,7 @@
 #include "base/progress.h"
 #include "image/image.h"
 #include "report/error_causes.h"
+#include "report/level_comparison.h"
 #include "report/picture_difference.h"
 #include "report/records.h"
 #include "report/report_settings.h"
@@ -33,22 +34,15 @@ struct Comparison {
   std::vector<LightComparison> lights;  ///< of the settings' camera first
   std::size_t compared_pixels = 0;      ///< number of pixels covered wholly by both, of the first
   double silhouette_difference =
-      0;                 ///< share of the pixels in either silhouette that lie (by half or more) in only one
-  std::string renderer;  ///< renderer that drew the asset
+      0;  ///< share of the pixels in either silhouette that lie (by half or more) in only one
+  std::vector<LevelComparison> levels;  ///< levels of detail, the finest first
+  std::string renderer;                 ///< renderer that drew the asset
   bool software_renderer = false;
   double render_seconds = 0;
   double reference_seconds = 0;
   std::optional<ErrorSplit> error;          ///< E of what is seen, and its causes
   std::string error_left_out;               ///< why that was not measured
   std::map<std::string, double> predicted;  ///< what a plan predicted, by name
-};
-
-/// Context of a comparison beyond the settings.
-struct ComparisonRun {
-  std::filesystem::path scratch;  ///< folder for temporary files
-  int threads = 0;
-  int seed = 1;
-  ProgressFunction progress = no_progress;
 };
 
 /// Draws the asset by kiln-render, which lies beside this executable, and the mesh of `high_file` by rays, under each

@@ -12,6 +12,7 @@
 #include "maps/texel_way.h"
 #include "report/error_section.h"
 #include "report/labels.h"
+#include "report/levels_section.h"
 #include "report/page_style.h"
 #include "report/page_tables.h"
 #include "report/pictures.h"
@@ -375,9 +376,9 @@ std::string page_html(const AssetFolder& asset, const Report& report, const Json
          "</style>\n</head>\n<body><main>\n" + header(asset, report, metrics) +
          relit_section(asset, report, metrics, scratch) + marked_budgets(report.budgets) +
          error_section(report.comparison) + compression_section(asset, report, scratch) +
-         transport_section(asset.record("bake")) + textures_section(asset, scratch) +
-         coefficients_section(asset, scratch) + verification_section(asset) + stages_section(metrics) +
-         footer(metrics) + "</main></body>\n</html>\n";
+         levels_section(report.comparison.levels, scratch) + transport_section(asset.record("bake")) +
+         textures_section(asset, scratch) + coefficients_section(asset, scratch) + verification_section(asset) +
+         stages_section(metrics) + footer(metrics) + "</main></body>\n</html>\n";
 }
 
 }  // namespace kiln

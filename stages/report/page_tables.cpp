@@ -19,9 +19,9 @@ struct StageColor {
   const char* color;
 };
 constexpr std::array stage_colors = {StageColor{"simplify", "#7a5c3e"}, StageColor{"atlas", "#5f6b3a"},
-                                     StageColor{"normals", "#3f6b6b"},  StageColor{"bake", "#8c4a2f"},
-                                     StageColor{"compress", "#7d4a66"}, StageColor{"probes", "#8a6d2f"},
-                                     StageColor{"report", "#5a5568"}};
+                                     StageColor{"normals", "#3f6b6b"},  StageColor{"lod", "#4a5f86"},
+                                     StageColor{"bake", "#8c4a2f"},     StageColor{"compress", "#7d4a66"},
+                                     StageColor{"probes", "#8a6d2f"},   StageColor{"report", "#5a5568"}};
 
 std::string row(const std::string& label, const std::string& value) {
   return fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", html_escaped(label), value);

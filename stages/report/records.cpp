@@ -55,6 +55,8 @@ AssetFolder load_asset_folder(const fs::path& folder, const fs::path& compressed
   if (!probes.empty()) asset.records.push_back(load_record(layout::record_in(probes, "probes"), "probes"));
 
   asset.baked = load_prt_description(asset.prt());
+  const fs::path lod = layout::record(folder, "lod");
+  if (!asset.baked.levels.empty() && fs::exists(lod)) asset.records.push_back(load_record(lod, "lod"));
   if (asset.baked.vertices > 0 || asset.baked.pca)
     throw BadInput(asset.baked.ranges_file.string(), "has no planes of coefficients in pictures",
                    "the ranges of kiln-bake for an atlas", "run kiln-bake again");

@@ -53,6 +53,7 @@ Json Report::to_json() const {
                {"lights", lights}};
   put_verdicts(json, budgets);
   if (is_compressed) json["compressed_relative_l2"] = compressed_relative_l2;
+  if (!comparison.levels.empty()) json["levels"] = kiln::to_json(comparison.levels);
   if (comparison.error) {
     json["error"] = kiln::to_json(*comparison.error);
     if (!comparison.predicted.empty()) json["error"]["predicted"] = comparison.predicted;

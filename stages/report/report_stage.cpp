@@ -52,6 +52,7 @@ StageRun run(const AssetPlan& plan) {
     run.add({"--compressed", folder_word(layout::stage_folder(folder, "compress"))});
     run.inputs.push_back(layout::record(folder, "compress"));
   }
+  if (plan.passes("lod")) run.inputs.push_back(layout::record(folder, "lod"));
   if (plan.passes("probes")) {
     run.add({"--probes", folder_word(layout::stage_folder(folder, "probes"))});
     run.inputs.push_back(layout::record(folder, "probes"));
@@ -75,6 +76,8 @@ const StageInfo& report_stage() {
                    [](const AssetSettings& all) { return splits_error(all) && !bake_has(all, "bounces", "0"); }},
                   {"error.causes.compression", "error.causes.compression", "compress",
                    [](const AssetSettings& all) { return splits_error(all) && all.contains("compress"); }},
+                  {"levels.relative_l2 levels.silhouette_difference levels.popping levels.popping_inside", "levels.",
+                   "lod", [](const AssetSettings& all) { return all.contains("lod"); }},
                   {"compressed_relative_l2", "compressed_", "compress",
                    [](const AssetSettings& all) { return all.contains("compress"); }}},
       .run = run};

@@ -89,7 +89,8 @@ int main(int argc, char** argv) {
                 result.cage_distance);
   } else {
     const Image<float> map = load_map(map_file);
-    const MapError error = measure_map_error(high, atlas, map, NormalSpace::object);
+    const MatchPlan whole;
+    const MapError error = measure_map_error({high, atlas, whole}, map, NormalSpace::object);
     const SeamMismatch seams = Seams(atlas, map.width(), map.height()).mismatch_degrees(map, NormalSpace::object);
     std::printf("{\"mean\": %.4f, \"p95\": %.4f, \"max\": %.4f, \"seam_mean\": %.4f, \"seam_max\": %.4f}\n",
                 error.mean_degrees, error.percentile_95_degrees, error.largest_degrees, seams.mean, seams.largest);

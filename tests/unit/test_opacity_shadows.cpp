@@ -39,6 +39,13 @@ class OpacityShadows : public testing::TestWithParam<BakeBackend> {
     return file.string();
   }
 
+  /// Fewer for depth maps, of which software draws a hundred a second.
+  static int directions() { return GetParam() == BakeBackend::egl ? 1024 : 16384; }
+
+  /// Difference that is the quadrature's at a shadow's edge: some 1e-3 of the sky with 16,384 directions. It falls by
+  /// about the power 3/4 of their number, as that of lattices does, so 1,024 have up to 8 times as much.
+  static double tolerance() { return GetParam() == BakeBackend::egl ? 0.006 : 0.0015; }
+
   /// Bakes t_0 of a point at the origin that looks up.
   static double constant_term(const std::string& neighbour) {
     std::vector<TriangleMesh> meshes;
@@ -48,7 +55,7 @@ class OpacityShadows : public testing::TestWithParam<BakeBackend> {
     ReceiverSet receivers{1, 1, {0}, {Eigen::Vector3f::Zero()}, {Eigen::Vector3f::UnitY()}};
     BakeSettings settings;
     settings.bands = 1;
-    settings.directions = 16384;
+    settings.directions = directions();
     settings.backend = GetParam();
     const Occluders occluders = join_occluders(meshes);
     return bake({receivers, occluders, settings, 1, 2}).channels.front().plane(0)[0];
@@ -66,21 +73,21 @@ class OpacityShadows : public testing::TestWithParam<BakeBackend> {
 };
 
 TEST_P(OpacityShadows, AHoleLetsItsShareOfTheSkyThrough) {
-  // A disc of radius r at height h is r^2 / (r^2 + h^2) of what a surface below its middle sees. 16,384 directions: the
-  // quadrature's error at a shadow's edge is some 1e-3 of the sky; depth maps add as much.
-  for (const double h : {0.5, 1.0, 2.0}) {
+  // A disc of radius r at height h is r^2 / (r^2 + h^2) of what a surface below its middle sees.
+  for (const double h : {0.5, 1.5}) {
     const double r = 0.6, hidden = square(2, h) - r * r / (r * r + h * h);
     const std::string place = ";place=0," + std::to_string(h) + ",0";
-    EXPECT_NEAR(constant_term(card(2, r) + place), unoccluded * (1 - hidden), 0.0015) << h;
-    EXPECT_NEAR(constant_term(card(2, r) + place + ";opacity=none"), unoccluded * (1 - square(2, h)), 0.0015) << h;
+    EXPECT_NEAR(constant_term(card(2, r) + place), unoccluded * (1 - hidden), tolerance()) << h;
+    EXPECT_NEAR(constant_term(card(2, r) + place + ";opacity=none"), unoccluded * (1 - square(2, h)), tolerance()) << h;
   }
 }
 
 TEST_P(OpacityShadows, ASieveLetsItsOpenShareThrough) {
-  // 32 x 32 holes that are 40 % of the card, at a height of 40 of them: what the card hides scales with the rest.
-  const double a = 2, h = 5, r = a / 32 * std::sqrt(4 * 0.4 / std::numbers::pi);
-  EXPECT_NEAR(constant_term(card(a, r, 32) + ";place=0," + std::to_string(h) + ",0"),
-              unoccluded * (1 - 0.6 * square(a, h)), 0.002);
+  // 12 x 12 holes that are 40 % of the card, many of which the directions see: what the card hides scales with the
+  // rest.
+  const double a = 2, h = 1, r = a / 12 * std::sqrt(4 * 0.4 / std::numbers::pi);
+  EXPECT_NEAR(constant_term(card(a, r, 12) + ";place=0," + std::to_string(h) + ",0"),
+              unoccluded * (1 - 0.6 * square(a, h)), 2 * tolerance());
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, OpacityShadows,

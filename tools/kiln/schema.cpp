@@ -81,6 +81,10 @@ Json stage_schema(const StageInfo& stage) {
   Json schema = object_of(properties);
   schema["type"] = {"object", "null"};
   if (stage.on_request) schema["type"] = {"object", "boolean", "null"};
+  if (!stage.list_setting.empty()) {
+    schema["type"].push_back("array");
+    schema["items"] = {{"type", {"string", "number"}}};
+  }
   return schema;
 }
 

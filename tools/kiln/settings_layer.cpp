@@ -32,7 +32,12 @@ class BlockReader {
                     fmt::format("true, false or settings of {}", stage->name));
       StageBlock& entry = layer.blocks[stage->name];
       entry.on = !is_switch || block.Scalar() == "true";
-      if (!is_switch && !block.IsNull()) entry.settings = stage_settings(*stage, block);
+      if (block.IsSequence() && !stage->list_setting.empty()) {
+        YAML::Node whole;  // `lod: [0.5, 0.25]` is `lod: {levels: [0.5, 0.25]}`
+        whole[stage->list_setting] = block;
+        entry.settings = stage_settings(*stage, whole);
+      } else if (!is_switch && !block.IsNull())
+        entry.settings = stage_settings(*stage, block);
     }
     if (const YAML::Node material = map["material"]) add_material(material, layer);
     if (const YAML::Node sizes = map["maps"]) add_map_sizes(sizes, layer);

@@ -45,9 +45,19 @@ std::string frame_name(const std::string& name, int frame) {
   return fmt::format("{}_{:03}{}", path.stem().string(), frame, path.extension().string());
 }
 
+/// Returns the vertices of some assets' own meshes in the scene, which cameras frame.
+std::vector<Eigen::Vector3f> framed_shape(const RenderScene& scene, std::size_t first, std::size_t last) {
+  std::vector<Eigen::Vector3f> shape;
+  for (std::size_t k = first; k < last; ++k)
+    for (const Eigen::Vector3f& vertex : scene.shapes[k])
+      shape.emplace_back(scene.placements[k].to_scene(vertex.cast<double>()).cast<float>());
+  return shape;
+}
+
 /// One picture of a sheet.
 struct Cell {
   const PrtAsset* asset = nullptr;
+  std::size_t index = 0;  ///< of the asset in the scene
   Placement placement;
   Technique technique = Technique::textured_prt;
   std::string caption;
@@ -63,7 +73,7 @@ std::vector<Cell> cells_of(const RenderScene& scene, const RenderSettings& setti
       const Technique technique = technique_of(settings, asset);
       require_technique(technique, asset);
       cells.push_back(
-          {&asset, scene.placements[k], technique, scene.names[k] + ": " + technique_caption(technique, asset)});
+          {&asset, k, scene.placements[k], technique, scene.names[k] + ": " + technique_caption(technique, asset)});
     }
     return cells;
   }
@@ -75,7 +85,7 @@ std::vector<Cell> cells_of(const RenderScene& scene, const RenderSettings& setti
     } catch (const WrongUsage&) {
       continue;  // a sheet shows the techniques that there are data for
     }
-    cells.push_back({&asset, scene.placements.front(), technique, technique_caption(technique, asset)});
+    cells.push_back({&asset, 0, scene.placements.front(), technique, technique_caption(technique, asset)});
   }
   return cells;
 }
@@ -89,7 +99,7 @@ Json write_sheet(OutputSet& outputs, const std::string& name, const RenderScene&
   for (const Cell& cell : cells_of(scene, settings)) {
     Uploaded uploaded;
     uploaded.add(*cell.asset, cell.placement, cell.technique, samples);
-    const SceneView view = views_of(settings, scene_shape(uploaded.assets)).front();
+    const SceneView view = views_of(settings, framed_shape(scene, cell.index, cell.index + 1)).front();
     const Image<float> radiance = render_scene(uploaded.assets, scene.lights, view);
     const GpuMemory memory = uploaded.renderers.front()->memory(cell.technique);
     pictures.push_back({picture_from_radiance(radiance, picture),
@@ -152,6 +162,14 @@ void place_the_rest(RenderScene& scene, double camera_azimuth_degrees) {
     scene.note = "assets without --place stand side by side on one ground line: " + told;
 }
 
+/// Loads an asset with its own mesh, or with that of a level of detail, and keeps the vertices of its own.
+PrtAsset load_at_level(const fs::path& folder, int level, std::vector<Eigen::Vector3f>& shape) {
+  PrtAsset asset = load_prt_asset(folder);
+  shape = asset.mesh.positions;
+  if (level > 0) asset.mesh = load_level(folder, asset, level);
+  return asset;
+}
+
 }  // namespace
 
 RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& light_settings,
@@ -188,7 +206,7 @@ RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& lig
   for (const std::string& place : paths.places) scene.placements.push_back(parse_placement("place", place));
   int bands = 0;
   for (const fs::path& folder : paths.assets) {
-    scene.assets.push_back(load_prt_asset(folder));
+    scene.assets.push_back(load_at_level(folder, settings.level, scene.shapes.emplace_back()));
     scene.names.push_back(name_of(folder));
     bands = std::max(bands, scene.assets.back().bands);
   }
@@ -197,7 +215,10 @@ RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& lig
     scene.placements.resize(scene.assets.size());
   else
     place_the_rest(scene, camera_settings_of(settings).azimuth_degrees);
-  if (!paths.compressed.empty()) scene.compressed = load_other_form(paths.compressed, scene.assets.front());
+  if (!paths.compressed.empty()) {
+    scene.compressed = load_other_form(paths.compressed, scene.assets.front());
+    if (settings.level > 0) scene.compressed->mesh = load_level(paths.compressed, *scene.compressed, settings.level);
+  }
   if (!paths.probes.empty()) scene.probes = load_probes(paths.probes);
   const int light_bands = std::max(bands, scene.probes ? scene.probes->bands : 0);
   scene.lights = scene_lights(given, light_bands);
@@ -230,7 +251,7 @@ class PictureSeries {
                    probed ? &*scene_.probes : nullptr);
     }
     const PictureSettings picture = picture_of(settings_);
-    const std::vector<SceneView> views = views_of(settings_, scene_shape(uploaded.assets));
+    const std::vector<SceneView> views = views_of(settings_, framed_shape(scene_, first, last));
     const std::size_t pictures = std::max(views.size(), scene_.each_light.size());
     const std::size_t all = pictures * (scene_.each_asset ? scene_.assets.size() : 1);
     const bool is_numbered = views.size() > 1 || scene_.each_asset || !scene_.each_light.empty();

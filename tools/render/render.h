@@ -32,9 +32,10 @@ struct RenderScene {
   std::vector<PrtAsset> assets;
   std::vector<std::string> names;  ///< names of the assets' folders
   std::vector<Placement> placements;
-  std::string note;                    ///< where assets without a place were put; empty: all have one
-  std::optional<PrtAsset> compressed;  ///< another form of the only asset
-  std::optional<ProbeSet> probes;      ///< probes of the first asset, for the others, or for the only one
+  std::vector<std::vector<Eigen::Vector3f>> shapes;  ///< vertices of the assets' own meshes, whatever level is drawn
+  std::string note;                                  ///< where assets without a place were put; empty: all have one
+  std::optional<PrtAsset> compressed;                ///< another form of the only asset
+  std::optional<ProbeSet> probes;                    ///< probes of the first asset, for the others, or for the only one
   std::vector<LightSpec> specs;
   SceneLights lights;
   std::vector<SceneLights> each_light;  ///< lights of each picture, if there is one for each light

@@ -25,6 +25,9 @@ OptionSet render_options(RenderSettings& settings) {
               "How to shade; auto is what the asset was made for, all a sheet of every technique it can be drawn by")
       .choice("space", settings.space, {{"camera", PictureSpace::camera}, {"texture", PictureSpace::texture}},
               "texture: the relit atlas itself, texel for texel, gutters included; needs no GPU")
+      .integer("level", settings.level, 0, most_levels,
+               "Of detail of each asset: 0 for its own mesh, 1 for the finest of its coarser ones; the camera stands "
+               "where it would for 0")
       .toggle("side-by-side", settings.side_by_side, "Each asset by itself on a sheet, with its folder's name")
       .integer_or_auto("incident-samples", settings.incident_samples, 1, most_incident_samples,
                        "Points around each asset at which the incident light is computed; auto: 8 if a light is a "

@@ -28,6 +28,7 @@ enum class PictureSpace {
 struct RenderSettings {
   TechniqueChoice technique = TechniqueChoice::automatic;
   PictureSpace space = PictureSpace::camera;
+  int level = 0;              ///< of detail, of each asset; 0: its own mesh
   bool side_by_side = false;  ///< several assets, each by itself on a sheet
   int incident_samples = 0;   ///< points of incident light around each asset; 0: 8 if a light is local, else 1
   Shading shading = Shading::forward;

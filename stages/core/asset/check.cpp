@@ -33,6 +33,8 @@ class FileCheck {
 
   void run() {
     if (!asset_.mesh_file.empty()) asset_.vertices > 0 ? check_vertices() : check_atlas();
+    for (const PrtLevel& level : asset_.levels)
+      if (!level.mesh_file.empty()) faults_.guard([&] { check_level(level); });
     if (asset_.width == 0 || asset_.height == 0) return;  // without the asset's sizes, pictures cannot be checked
     faults_.guard([&] { read_albedo_picture(folder_, asset_); });
     faults_.guard([&] { read_opacity_picture(folder_, asset_); });
@@ -54,6 +56,15 @@ class FileCheck {
 
   void check_atlas() {
     faults_.guard([&] { check_origin(read_atlas_mesh(folder_, asset_)); });
+  }
+
+  void check_level(const PrtLevel& level) {
+    const TriangleMesh mesh = read_level_mesh(folder_, asset_, level);
+    const Eigen::Vector3d &said = asset_.origin, &found = mesh.frame.origin;
+    if (said != found)
+      throw BadInput((folder_ / level.mesh_file).string(),
+                     fmt::format("has the origin {}, {}, {}", found.x(), found.y(), found.z()),
+                     fmt::format("{}, {}, {}, as the folder's JSON has it", said.x(), said.y(), said.z()), remedy_);
   }
 
   void check_vertices() {

@@ -39,6 +39,9 @@ inline constexpr const char* matrices_png_name = "matrices.png";
 /// Makes the name of a coefficient's picture: "coeff_0_07.png" is coefficient 7 of channel 0.
 std::string plane_file(int channel, int coefficient);
 
+/// Makes the name of the mesh of a level of detail: "lod_1.drc" is the first that is coarser than the mesh itself.
+std::string level_file(int level);
+
 /// Makes the name of a picture of weights: "weight_03.png" holds those of basis vector 3 of a compressed asset.
 std::string weight_file(int component);
 
@@ -46,6 +49,9 @@ std::string weight_file(int component);
 /// vertex.
 std::string plane_attribute(int channel, int group);
 inline constexpr int attribute_components = 4;  ///< coefficients per attribute: a shader's vec4
+
+/// Tests whether `name` is one that level_file makes.
+bool is_level_name(const std::string& name);
 
 /// Tests whether `name` is one that Kiln gives to planes, weights or tables, in any run.
 bool is_plane_name(const std::string& name);
@@ -74,6 +80,10 @@ inline constexpr const char* opacity = "opacity";
 inline constexpr const char* maps = "maps";
 inline constexpr const char* unit = "unit";
 inline constexpr const char* origin = "origin";
+inline constexpr const char* levels = "levels";
+inline constexpr const char* triangles = "triangles";
+inline constexpr const char* error = "error";
+inline constexpr const char* distance = "distance";
 inline constexpr const char* planes = "planes";
 inline constexpr const char* file = "file";
 inline constexpr const char* attribute = "attribute";
@@ -116,6 +126,8 @@ inline constexpr int most_asset_channels = 64;
 inline constexpr int largest_asset_side = 16384;
 inline constexpr int most_asset_vertices = 1 << 30;
 inline constexpr int most_clusters = 256;
+inline constexpr int most_asset_triangles = 1 << 30;
+inline constexpr int most_levels = 16;
 inline constexpr int most_probe_bands = 8;
 inline constexpr std::size_t most_probes = 1u << 18;
 inline constexpr int largest_probe_grid = 1024;

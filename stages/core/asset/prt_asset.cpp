@@ -2,6 +2,7 @@
 #include "asset/prt_asset.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <numeric>
 
 #include "asset/read_description.h"
@@ -108,6 +109,16 @@ PrtAsset load_prt_asset(const fs::path& folder) {
   static_cast<PrtDescription&>(asset) = load_prt_description(folder);
   asset.vertices > 0 ? load_vertices(folder, asset) : load_pictures(folder, asset);
   return asset;
+}
+
+TriangleMesh load_level(const fs::path& folder, const PrtDescription& asset, int level) {
+  if (level == 0 && asset.vertices == 0) return read_atlas_mesh(folder, asset);
+  if (level < 1 || static_cast<std::size_t>(level) > asset.levels.size())
+    throw BadInput(asset.ranges_file.string(),
+                   asset.levels.empty() ? "has no levels of detail" : fmt::format("has no level {} of detail", level),
+                   asset.levels.empty() ? "an asset baked with them" : fmt::format("0 to {}", asset.levels.size()),
+                   "bake with levels of kiln-lod (lod: in pipeline.yaml), or ask for another level");
+  return read_level_mesh(folder, asset, asset.levels[static_cast<std::size_t>(level) - 1]);
 }
 
 PrtAsset load_other_form(const fs::path& folder, const PrtAsset& asset) {

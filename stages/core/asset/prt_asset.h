@@ -92,6 +92,15 @@ struct PrtMap {
   std::optional<PlaneRange> range;
 };
 
+/// Coarser mesh of an asset with an atlas, with the same uvs, planes and normal map, to be drawn from afar. Readers may
+/// ignore it.
+struct PrtLevel {
+  std::string mesh_file;  ///< relative to the JSON file's folder
+  int triangles = 0;      ///< of that mesh, fewer than of the level before
+  double error = 0;       ///< largest distance that a point of the surface has moved by, object units
+  double distance = 0;    ///< from the camera to the centre of the asset's box, from which on to draw it, object units
+};
+
 /// Content of a baked folder's JSON, without the files that it names. Planes of coefficients are sorted by channel,
 /// then coefficient, each there once; of planes of weights, `coefficient` is the number of the basis vector.
 struct PrtDescription {
@@ -113,6 +122,7 @@ struct PrtDescription {
   int vertices = 0;  ///< vertices of an asset baked per vertex, whose width and height are 0; else 0
   std::vector<PrtPlane> planes = {};
   std::optional<PcaTables> pca = {};  ///< set for compressed assets only
+  std::vector<PrtLevel> levels = {};  ///< levels of detail, the finest first; the mesh itself is not among them
 
   /// Returns the numbers of a transfer vector: all channels' coefficients, channel after channel.
   std::size_t vector_length() const {
@@ -140,6 +150,10 @@ PrtAsset load_prt_asset(const std::filesystem::path& folder);
 
 /// Reads the JSON alone, by the same rules.
 PrtDescription load_prt_description(const std::filesystem::path& folder);
+
+/// Reads the mesh of level `level` of detail: 0 is the asset's own, 1 the first of `asset.levels`. Throws BadInput for
+/// a level that the asset does not have, and for a file that does not fit its description.
+TriangleMesh load_level(const std::filesystem::path& folder, const PrtDescription& asset, int level);
 
 /// Reads another form of `asset`, such as kiln-compress makes. Throws BadInput as load_prt_asset does, and for a
 /// different number of bands.

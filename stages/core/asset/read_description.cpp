@@ -84,6 +84,7 @@ void read_shared(const Fields& fields, PrtDescription& asset) {
   if (asset.vertices == 0 && fields.has(key::opacity)) asset.opacity_file = fields.safe_path(key::opacity);
   asset.maps = read_maps(fields);
   asset.origin = read_origin(fields);
+  if (asset.vertices == 0) asset.levels = read_levels(fields);
 }
 
 /// Reads the plane at `index` of the list, which has each plane once, in order.
@@ -170,6 +171,30 @@ FormatHead read_head(const Fields& fields, const char* format, const std::vector
   }
   fields.constant(key::basis, basis_name);
   return head;
+}
+
+std::vector<PrtLevel> read_levels(const Fields& fields) {
+  std::vector<PrtLevel> levels;
+  if (!fields.has(key::levels)) return levels;
+  const Json* list = fields.list(key::levels, std::nullopt, "levels of detail");
+  if (list != nullptr && list->size() > most_levels)
+    fields.fail(key::levels, fmt::format("a list of {}", list->size()), fmt::format("{} levels at most", most_levels));
+  for (std::size_t k = 0; list != nullptr && k < list->size(); ++k) {
+    const Fields entry = fields.child(key::levels, k, (*list)[k]);
+    PrtLevel level{entry.safe_path(key::mesh), entry.integer(key::triangles, 1, most_asset_triangles),
+                   entry.number(key::error), entry.number(key::distance)};
+    if (level.error < 0) entry.fail(entry.path(key::error), fmt::format("{:g}", level.error), "0 or more");
+    const PrtLevel* before = levels.empty() ? nullptr : &levels.back();
+    if (before != nullptr && before->triangles > 0 && level.triangles >= before->triangles)
+      entry.fail(entry.path(key::triangles), std::to_string(level.triangles),
+                 fmt::format("fewer than {}, those of the level before", before->triangles));
+    if (level.distance < (before == nullptr ? 0 : before->distance))
+      entry.fail(
+          entry.path(key::distance), fmt::format("{:g}", level.distance),
+          before == nullptr ? "0 or more" : fmt::format("{:g}, that of the level before, or more", before->distance));
+    levels.push_back(std::move(level));
+  }
+  return levels;
 }
 
 PlaneRange read_range(const Fields& fields) {

@@ -23,6 +23,10 @@ FormatHead read_head(const Fields& fields, const char* format, const std::vector
 /// Reads "min" and "max".
 PlaneRange read_range(const Fields& fields);
 
+/// Reads the levels of detail under "levels", each coarser than the one before and for farther away; none where the key
+/// is missing.
+std::vector<PrtLevel> read_levels(const Fields& fields);
+
 /// Reads `file`, ranges.json or pca.json, with all faults reported, and returns its description and its head. Faulty
 /// parts are left out, or 0.
 std::pair<PrtDescription, FormatHead> read_description(const std::filesystem::path& file, Faults& faults);

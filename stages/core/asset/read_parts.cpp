@@ -89,6 +89,16 @@ TriangleMesh read_atlas_mesh(const fs::path& folder, const PrtDescription& asset
   return mesh;
 }
 
+TriangleMesh read_level_mesh(const fs::path& folder, const PrtDescription& asset, const PrtLevel& level) {
+  const fs::path file = folder / level.mesh_file;
+  TriangleMesh mesh = load_atlas(file);
+  require_drawable(mesh, file);
+  if (mesh.triangles.size() != static_cast<std::size_t>(level.triangles))
+    throw BadInput(file.string(), fmt::format("has {} triangles", mesh.triangles.size()),
+                   fmt::format("{}, as the folder's JSON has it", level.triangles), remedy_for(asset));
+  return mesh;
+}
+
 AttributedMesh read_vertex_mesh(const fs::path& folder, const PrtDescription& asset) {
   const fs::path file = folder / asset.mesh_file;
   const std::string remedy = remedy_for(asset);

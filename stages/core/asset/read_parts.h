@@ -17,6 +17,9 @@ namespace kiln {
 /// Reads the mesh of an asset with an atlas, and checks that it can be drawn.
 TriangleMesh read_atlas_mesh(const std::filesystem::path& folder, const PrtDescription& asset);
 
+/// Reads the mesh of a level of detail, and checks it against its description.
+TriangleMesh read_level_mesh(const std::filesystem::path& folder, const PrtDescription& asset, const PrtLevel& level);
+
 /// Reads the mesh of an asset baked per vertex with its attributes, and checks that it can be drawn.
 AttributedMesh read_vertex_mesh(const std::filesystem::path& folder, const PrtDescription& asset);
 

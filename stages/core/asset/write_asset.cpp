@@ -63,6 +63,11 @@ void add_shared(Json& head, const PrtDescription& asset) {
     if (map.range) entry.update(range_json(*map.range));
   }
   if (!asset.origin.isZero(0)) head[key::origin] = {asset.origin.x(), asset.origin.y(), asset.origin.z()};
+  for (const PrtLevel& level : asset.levels)
+    head[key::levels].push_back({{key::mesh, level.mesh_file},
+                                 {key::triangles, level.triangles},
+                                 {key::error, level.error},
+                                 {key::distance, level.distance}});
 }
 
 Json coefficient_json(const PrtPlane& plane) {
@@ -149,7 +154,7 @@ void remove_stale_planes(OutputSet& outputs) {
   for (const auto& entry : std::filesystem::directory_iterator(outputs.folder())) {
     const std::string name = entry.path().filename().string();
     const bool is_plane = is_plane_name(name) && (was_compressed || name.starts_with("coeff_"));
-    if (!is_plane && name != ranges_name && name != pca_name) continue;
+    if (!is_plane && !is_level_name(name) && name != ranges_name && name != pca_name) continue;
     if (std::find(written.begin(), written.end(), name) == written.end()) outputs.remove_stale(name);
   }
 }

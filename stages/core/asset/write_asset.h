@@ -15,7 +15,7 @@ namespace kiln {
 std::string description_text(const PrtDescription& asset);
 
 /// Writes the description under its name, after the files that it names. Has commit() remove what an earlier run left
-/// in the folder: planes, weights, tables and descriptions that are not among `outputs`.
+/// in the folder: planes, weights, tables, levels and descriptions that are not among `outputs`.
 void write_description(OutputSet& outputs, const PrtDescription& asset);
 
 /// Removes the remains of an earlier run as write_description does, for callers that write the text by other means.

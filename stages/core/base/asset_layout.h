@@ -12,6 +12,7 @@ inline constexpr const char* atlas_mesh = "atlas.drc";
 inline constexpr const char* atlas_picture = "atlas.png";
 inline constexpr const char* normals_folder = "normals";
 inline constexpr const char* baked_folder = "prt";
+inline constexpr const char* lod_folder = "lod";
 inline constexpr const char* compressed_folder = "small";
 inline constexpr const char* probes_folder = "probes";
 inline constexpr const char* report_page = "report.html";
@@ -34,6 +35,7 @@ inline std::filesystem::path record_in(const std::filesystem::path& folder, cons
 inline std::filesystem::path stage_folder(const std::filesystem::path& asset, const std::string& stage) {
   if (stage == "normals") return asset / normals_folder;
   if (stage == "bake") return asset / baked_folder;
+  if (stage == "lod") return asset / lod_folder;
   if (stage == "compress") return asset / compressed_folder;
   if (stage == "probes") return asset / probes_folder;
   return asset;

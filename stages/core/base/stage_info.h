@@ -106,8 +106,9 @@ struct MetricGroup {
 
 /// Description of a stage, beside its settings: all that the driver and other tools know of it.
 struct StageInfo {
-  std::string name;         ///< name in pipeline.yaml; the program's is kiln- and this
-  bool on_request = false;  ///< an asset passes it only where pipeline.yaml has a block for it
+  std::string name;               ///< name in pipeline.yaml; the program's is kiln- and this
+  bool on_request = false;        ///< an asset passes it only where pipeline.yaml has a block for it
+  std::string list_setting = {};  ///< setting that a list in place of the block stands for; empty: it may be none
   StageOptions (*options)() = nullptr;
   std::vector<std::pair<std::string, std::string>> rivals = {};  ///< settings that exclude each other
   std::vector<MetricGroup> metrics = {};                         ///< besides those of every stage

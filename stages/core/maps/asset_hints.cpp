@@ -43,6 +43,9 @@ AssetHints read_asset_hints(const std::filesystem::path& folder) {
   const bool both = width >= 1 && height >= 1;
   hints.width = static_cast<int>(both ? width : size);
   hints.height = static_cast<int>(both ? height : size);
+  hints.gap_texels = static_cast<int>(std::min(positive_number(atlas, "smallest_gap_texels"), 16384.0));
+  hints.position_bits = static_cast<int>(std::min(positive_number(atlas, "position_bits"), 30.0));
+  hints.uv_bits = static_cast<int>(std::min(positive_number(atlas, "uv_bits"), 30.0));
   const Json simplify = read_result(folder / "simplify.json");
   hints.hausdorff_distance = positive_number(simplify, "hausdorff_distance");
   if (simplify.contains("settings") && simplify["settings"].is_object()) {

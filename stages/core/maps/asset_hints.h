@@ -13,6 +13,8 @@ namespace kiln {
 struct AssetHints {
   int width = 0;  ///< atlas.json: size that the atlas was packed for, texels
   int height = 0;
+  int gap_texels = 0;                   ///< atlas.json: least distance between two charts, or a chart and the border
+  int position_bits = 0, uv_bits = 0;   ///< atlas.json: of the atlas's file
   double hausdorff_distance = 0;        ///< simplify.json: from the high to the low mesh, object units
   ImportSettings import = {};           ///< simplify.json: import settings of the high mesh, which later stages reuse
   std::filesystem::path low_file = {};  ///< simplify.json: the file of a low mesh that was taken as it is; else empty

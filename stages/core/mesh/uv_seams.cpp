@@ -4,34 +4,11 @@
 #include <span>
 
 #include "mesh/disjoint_sets.h"
+#include "mesh/mesh_vertices.h"
 #include "mesh/same_position.h"
 #include "mesh/triangle_edges.h"
 
 namespace kiln {
-
-namespace {
-
-/// Appends what `from` has at each of `vertices` to `to`.
-template <class Value>
-void take(const std::vector<Value>& from, const std::vector<std::uint32_t>& vertices, std::vector<Value>& to) {
-  if (from.empty()) return;
-  to.reserve(vertices.size());
-  for (const std::uint32_t vertex : vertices) to.push_back(from[vertex]);
-}
-
-/// Returns a mesh of these vertices of another, without triangles.
-TriangleMesh with_vertices(const TriangleMesh& mesh, const std::vector<std::uint32_t>& vertices) {
-  TriangleMesh taken;
-  taken.frame = mesh.frame;
-  take(mesh.positions, vertices, taken.positions);
-  take(mesh.normals, vertices, taken.normals);
-  take(mesh.uvs, vertices, taken.uvs);
-  take(mesh.texture_uvs, vertices, taken.texture_uvs);
-  take(mesh.colors, vertices, taken.colors);
-  return taken;
-}
-
-}  // namespace
 
 CornerUvs uvs_at_corners(const std::vector<Triangle>& triangles, const std::vector<Eigen::Vector2f>& uvs) {
   CornerUvs corners;

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// J. Cohen, M. Olano, D. Manocha: Appearance-Preserving Simplification. SIGGRAPH 1998. Their bound is over all points
+// of the overlay of both meshes in the plane; ours is sampled, and the levels are measured at every texel afterwards.
+#include "lod/texture_deviation.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "mesh/triangle_edges.h"
+
+namespace kiln {
+
+namespace {
+
+constexpr double least_cosine = 0.2;               // between a triangle's normals before and after a collapse
+constexpr double least_texture_height = 1 / 16.0;  // of a triangle in the atlas, texels
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+template <class Vector>
+double longest_side(const std::array<Vector, 3>& corners) {
+  return std::sqrt(std::max({(corners[1] - corners[0]).squaredNorm(), (corners[2] - corners[1]).squaredNorm(),
+                             (corners[0] - corners[2]).squaredNorm()}));
+}
+
+double twice_area(const std::array<Eigen::Vector2d, 3>& corners) {
+  return cross(corners[1] - corners[0], corners[2] - corners[0]);
+}
+
+Eigen::Vector3d normal_of(const std::array<Eigen::Vector3d, 3>& corners) {
+  return (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+}
+
+/// Finds the weights of the corners at the point of a triangle that is nearest to another in the plane.
+std::array<double, 3> nearest_weights(const Eigen::Vector2d& point, const std::array<Eigen::Vector2d, 3>& corners,
+                                      double& squared_distance) {
+  const double area = twice_area(corners);
+  std::array<double, 3> weights{};
+  bool inside = area != 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Vector2d &a = corners[(k + 1) % 3], &b = corners[(k + 2) % 3];
+    weights[k] = area == 0 ? 0 : cross(b - a, point - a) / area;
+    inside = inside && weights[k] >= 0;
+  }
+  squared_distance = 0;
+  if (inside) return weights;
+  squared_distance = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Vector2d &a = corners[k], &b = corners[(k + 1) % 3], along = b - a;
+    const double length = along.squaredNorm();
+    const double place = length > 0 ? std::clamp((point - a).dot(along) / length, 0.0, 1.0) : 0;
+    const double squared = (a + place * along - point).squaredNorm();
+    if (squared >= squared_distance) continue;
+    squared_distance = squared;
+    weights = {};
+    weights[k] = 1 - place;
+    weights[(k + 1) % 3] = place;
+  }
+  return weights;
+}
+
+}  // namespace
+
+TextureDeviation::TextureDeviation(const TriangleMesh& mesh, Extent size) : samples_in_(mesh.triangles.size()) {
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    uvs_.emplace_back(mesh.uvs[v].x() * size.width, mesh.uvs[v].y() * size.height);
+    positions_.emplace_back(mesh.positions[v].cast<double>());
+    normals_.emplace_back(mesh.normals.empty() ? Eigen::Vector3d::Zero().eval() : mesh.normals[v].cast<double>());
+    samples_.push_back({uvs_.back(), positions_.back(), 0, 0});
+  }
+  const BoundingBox box = bounding_box(mesh);
+  least_height_ = 2 * box.sides().maxCoeff() / 65'535.0;  // two steps of the file
+
+  // Give each triangle's area to its vertices and the middles of its sides. Two triangles have one sample of their edge
+  // where it lies on no seam; two, at the same place, where it does.
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::uint32_t wedge : triangle) samples_[wedge].weight += area_normal(mesh, triangle).norm() / 12;
+  TriangleEdges(mesh.triangles).for_each([&](std::span<const std::uint32_t> sides) {
+    const std::uint32_t a = vertex_at(mesh.triangles, sides[0]), b = vertex_at(mesh.triangles, next_corner(sides[0]));
+    Sample sample{(uvs_[a] + uvs_[b]) / 2, (positions_[a] + positions_[b]) / 2, 0, 0};
+    for (const std::uint32_t side : sides) sample.weight += area_normal(mesh, mesh.triangles[side / 3]).norm() / 12;
+    samples_in_[sides[0] / 3].push_back(static_cast<std::uint32_t>(samples_.size()));
+    samples_.push_back(sample);
+  });
+}
+
+bool TextureDeviation::shape_is_kept(const NewTriangle& changed, const Triangle& wedges, const Triangle& before) const {
+  // In the atlas: of the same side up, and not too thin.
+  const std::array<Eigen::Vector2d, 3> old_uvs = {uvs_[before[0]], uvs_[before[1]], uvs_[before[2]]};
+  const double old_area = twice_area(old_uvs), area = twice_area(changed.uvs);
+  if (old_area * area < 0 || area == 0) return false;
+  const double least = std::min(least_texture_height, 0.5 * std::abs(old_area) / longest_side(old_uvs));
+  if (std::abs(area) < least * longest_side(changed.uvs)) return false;
+
+  // In space: turned neither from how it was nor from what it is shaded by, and not too thin.
+  const std::array<Eigen::Vector3d, 3> old_positions = {positions_[before[0]], positions_[before[1]],
+                                                        positions_[before[2]]};
+  const Eigen::Vector3d old_normal = normal_of(old_positions), normal = normal_of(changed.positions);
+  if (normal.dot(old_normal) < least_cosine * normal.norm() * old_normal.norm()) return false;
+  const auto shading = [&](const Triangle& t) { return (normals_[t[0]] + normals_[t[1]] + normals_[t[2]]).eval(); };
+  if (normal.dot(shading(wedges)) < 0 && old_normal.dot(shading(before)) >= 0) return false;
+  const double old_height = old_normal.norm() / longest_side(old_positions);
+  return normal.norm() >= std::min(least_height_, 0.5 * old_height) * longest_side(changed.positions);
+}
+
+TextureDeviation::Move TextureDeviation::nearest(const Sample& sample,
+                                                 const std::vector<NewTriangle>& triangles) const {
+  Move best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const NewTriangle& candidate : triangles) {
+    double squared = 0;
+    const std::array<double, 3> weights = nearest_weights(sample.uv, candidate.uvs, squared);
+    if (squared >= least) continue;
+    least = squared;
+    const Eigen::Vector3d place =
+        weights[0] * candidate.positions[0] + weights[1] * candidate.positions[1] + weights[2] * candidate.positions[2];
+    best.triangle = candidate.triangle;
+    best.squared = (place - sample.position).squaredNorm();
+    if (squared == 0) break;
+  }
+  return best;
+}
+
+DeviationChange TextureDeviation::follow(const WedgeMesh& wedges, const WedgeCollapse& collapse,
+                                         std::vector<Move>* moves) const {
+  DeviationChange change;
+  double worst = 0;
+  std::vector<NewTriangle> changed;
+  for (const WedgeCollapse::Sector& sector : collapse.sectors) {
+    changed.clear();
+    for (const std::uint32_t t : sector.triangles) {
+      const Triangle& before = wedges.wedges(t);
+      if (wedges.point_of(before[0]) == collapse.to || wedges.point_of(before[1]) == collapse.to ||
+          wedges.point_of(before[2]) == collapse.to)
+        continue;
+      Triangle after = before;
+      after[wedges.corner_at(t, collapse.from)] = sector.to_wedge;
+      NewTriangle& triangle = changed.emplace_back();
+      triangle.triangle = t;
+      for (std::size_t k = 0; k < 3; ++k) {
+        triangle.uvs[k] = uvs_[after[k]];
+        triangle.positions[k] = positions_[after[k]];
+      }
+      if (!shape_is_kept(triangle, after, before)) return change;
+    }
+    if (changed.empty()) return change;
+    const auto follow_one = [&](std::uint32_t index) {
+      const Sample& sample = samples_[index];
+      Move move = nearest(sample, changed);
+      move.sample = index;
+      change.cost +=
+          sample.weight * (move.squared * std::sqrt(move.squared) - sample.squared * std::sqrt(sample.squared));
+      worst = std::max(worst, move.squared);
+      if (moves != nullptr) moves->push_back(move);
+    };
+    for (const std::uint32_t t : sector.triangles)
+      for (const std::uint32_t index : samples_in_[t]) follow_one(index);
+    follow_one(sector.from_wedge);
+  }
+  change.allowed = true;
+  change.worst = std::sqrt(worst);
+  return change;
+}
+
+DeviationChange TextureDeviation::judge(const WedgeMesh& wedges, const WedgeCollapse& collapse) const {
+  return follow(wedges, collapse, nullptr);
+}
+
+void TextureDeviation::apply(const WedgeMesh& wedges, const WedgeCollapse& collapse) {
+  std::vector<Move> moves;
+  follow(wedges, collapse, &moves);
+  for (const WedgeCollapse::Sector& sector : collapse.sectors)
+    for (const std::uint32_t t : sector.triangles) samples_in_[t].clear();
+  for (const Move& move : moves) {
+    samples_in_[move.triangle].push_back(move.sample);
+    samples_[move.sample].squared = move.squared;
+  }
+}
+
+double TextureDeviation::largest() const {
+  double squared = 0;
+  for (const Sample& sample : samples_) squared = std::max(squared, sample.squared);
+  return std::sqrt(squared);
+}
+
+}  // namespace kiln

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "base/extent.h"
+#include "lod/wedge_mesh.h"
+#include "mesh/triangle_mesh.h"
+
+namespace kiln {
+
+/// What a collapse would do to the surface points that texels stand for.
+struct DeviationChange {
+  bool allowed = false;  ///< false where a triangle would fold over or become too thin, in space or in the atlas
+  double cost = 0;       ///< growth of the sum of cubed distances, times area
+  double worst = 0;      ///< largest distance of the samples concerned afterwards, in units of the mesh
+};
+
+/// Distance between a mesh under collapse and the first one, at places of the same uv: how far what a texel shows has
+/// moved. This bounds how far surfaces lie apart as well as how far textures slide over them, the texture deviation of
+/// [Cohen 1998]. It is tracked at samples, the first mesh's vertices and the middles of its edges, each kept with the
+/// triangle whose uvs hold it; where an outline has drawn back from it, with the nearest.
+class TextureDeviation {
+ public:
+  TextureDeviation(const TriangleMesh& mesh, Extent size);
+
+  DeviationChange judge(const WedgeMesh& wedges, const WedgeCollapse& collapse) const;
+
+  /// Moves the samples to the triangles that they will be in. To be called before the collapse is applied.
+  void apply(const WedgeMesh& wedges, const WedgeCollapse& collapse);
+
+  /// Returns the largest distance of all samples.
+  double largest() const;
+
+ private:
+  struct Sample {
+    Eigen::Vector2d uv;
+    Eigen::Vector3d position;
+    double weight = 0;
+    double squared = 0;  ///< distance to the surface's point of this uv, squared
+  };
+  struct Move {
+    std::uint32_t sample = 0, triangle = 0;
+    double squared = 0;
+  };
+  struct NewTriangle {
+    std::uint32_t triangle = 0;
+    std::array<Eigen::Vector2d, 3> uvs;
+    std::array<Eigen::Vector3d, 3> positions;
+  };
+  bool shape_is_kept(const NewTriangle& changed, const Triangle& wedges, const Triangle& before) const;
+  DeviationChange follow(const WedgeMesh& wedges, const WedgeCollapse& collapse, std::vector<Move>* moves) const;
+  Move nearest(const Sample& sample, const std::vector<NewTriangle>& triangles) const;
+
+  std::vector<Eigen::Vector2d> uvs_;                    ///< by wedge, texels
+  std::vector<Eigen::Vector3d> positions_;              ///< by wedge
+  std::vector<Eigen::Vector3d> normals_;                ///< by wedge
+  std::vector<Sample> samples_;                         ///< those of the wedges first
+  std::vector<std::vector<std::uint32_t>> samples_in_;  ///< by triangle; those of wedges that are gone, and of edges
+  double least_height_ = 0;                             ///< of a triangle in space
+};
+
+}  // namespace kiln
