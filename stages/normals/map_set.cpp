@@ -173,7 +173,7 @@ class MapMaker {
         normals.push_back(seen_.normals[k]);
       }
       if (positions.empty()) continue;
-      const TriangleMesh occluder{in_.high.positions, chosen(in_.high.triangles, triangles_of[part]), {}, {}};
+      const TriangleMesh occluder = part_of_mesh(in_.high, triangles_of[part]);
       visit(occluder, Receivers{positions, normals}, points_of[part]);
     }
   }
