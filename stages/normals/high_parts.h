@@ -15,7 +15,7 @@ namespace kiln {
 /// Parts of a high mesh that texels are matched to, each on its own; without parts, the whole mesh as one.
 class HighParts {
  public:
-  /// Keeps no reference.
+  /// Keeps a reference to `high`.
   HighParts(const TriangleMesh& high, const MatchPlan& plan);
 
   const PartScene& scene(std::uint32_t part) const { return scenes_[part]; }
@@ -25,8 +25,10 @@ class HighParts {
   std::vector<std::uint8_t> buried(const Receivers& points, const std::vector<std::uint32_t>& parts) const;
 
  private:
+  const TriangleMesh& high_;
   std::vector<PartScene> scenes_;
-  std::vector<std::unique_ptr<BuriedTest>> tests_;
+  std::vector<std::vector<std::uint32_t>> triangles_;  ///< by part; empty where all is one
+  std::unique_ptr<BuriedTest> whole_test_;             ///< of that; those of parts are made when they are asked
 };
 
 }  // namespace kiln

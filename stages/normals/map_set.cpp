@@ -181,7 +181,7 @@ class MapMaker {
         normals.push_back(seen_.normals[k]);
       }
       if (positions.empty()) continue;
-      const TriangleMesh occluder{in_.occluder.positions, chosen(in_.occluder.triangles, triangles_of[part]), {}, {}};
+      const TriangleMesh occluder = part_of_mesh(in_.occluder, triangles_of[part]);
       visit(occluder, Receivers{positions, normals}, points_of[part]);
     }
   }

@@ -36,7 +36,7 @@ void check_outside(MatchPlan& plan, const TriangleMesh& atlas, const std::string
   if (outwards == 0 && inwards == 0)
     throw BadInput(cage, "does not differ from the low mesh", "the low mesh, its vertices moved outwards",
                    "push it, or leave out --cage-mesh");
-  const auto share = fmt::format("lies inside the low mesh at {:.2g} % of its corners",
+  const auto share = fmt::format("lies inside the low mesh at {:.3g} % of its corners",
                                  100.0 * static_cast<double>(inwards) / static_cast<double>(inwards + outwards));
   if (inwards >= outwards)
     throw BadInput(cage, share, "the low mesh, its vertices moved outwards",

@@ -7,7 +7,7 @@
 namespace kiln {
 
 PartScene::PartScene(const TriangleMesh& mesh, std::vector<std::uint32_t> triangles)
-    : triangles_(std::move(triangles)), scene_(mesh.positions, chosen(mesh.triangles, triangles_)) {}
+    : triangles_(std::move(triangles)), scene_(part_of_mesh(mesh, triangles_)) {}
 
 std::vector<std::vector<std::uint32_t>> listed_by_part(const std::vector<std::uint32_t>& part_of, std::size_t count) {
   std::vector<std::vector<std::uint32_t>> listed(count);
@@ -26,11 +26,20 @@ std::vector<PartScene> scenes_of_parts(const TriangleMesh& mesh, const std::vect
   return scenes;
 }
 
-std::vector<Triangle> chosen(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& listed) {
-  std::vector<Triangle> result;
-  result.reserve(listed.size());
-  for (const std::uint32_t t : listed) result.push_back(triangles[t]);
-  return result;
+TriangleMesh part_of_mesh(const TriangleMesh& mesh, const std::vector<std::uint32_t>& listed) {
+  TriangleMesh part;
+  part.frame = mesh.frame;
+  part.triangles.reserve(listed.size());
+  std::unordered_map<std::uint32_t, std::uint32_t> number_of;
+  for (const std::uint32_t t : listed) {
+    Triangle& triangle = part.triangles.emplace_back(mesh.triangles[t]);
+    for (std::uint32_t& vertex : triangle) {
+      const auto [entry, is_new] = number_of.try_emplace(vertex, static_cast<std::uint32_t>(part.positions.size()));
+      if (is_new) part.positions.push_back(mesh.positions[vertex]);
+      vertex = entry->second;
+    }
+  }
+  return part;
 }
 
 std::vector<Triangle> taken_apart(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& part_of) {

@@ -49,8 +49,8 @@ std::vector<std::vector<std::uint32_t>> listed_by_part(const std::vector<std::ui
 std::vector<PartScene> scenes_of_parts(const TriangleMesh& mesh, const std::vector<std::uint32_t>& part_of,
                                        std::size_t count);
 
-/// Returns the triangles `listed` of `triangles`.
-std::vector<Triangle> chosen(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& listed);
+/// Returns the mesh of the triangles `listed` and their positions alone, in the frame of `mesh`.
+TriangleMesh part_of_mesh(const TriangleMesh& mesh, const std::vector<std::uint32_t>& listed);
 
 /// Renumbers the corners of triangles so that those of different parts share no vertex. Empty `part_of`: they are all
 /// of one.

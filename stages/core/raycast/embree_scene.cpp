@@ -13,6 +13,12 @@ namespace kiln {
 
 namespace {
 
+/// Returns the device of all scenes: hundreds of parts with one each would exhaust the machine. It is never released.
+RTCDevice device_of_all() {
+  static const RTCDevice device = rtcNewDevice(nullptr);
+  return device;
+}
+
 /// Makes Embree's own copy of the buffers, padded as its wide loads need.
 RTCGeometry make_geometry(RTCDevice device, std::span<const Eigen::Vector3f> positions,
                           std::span<const Triangle> triangles) {
@@ -35,8 +41,7 @@ RTCGeometry make_geometry(RTCDevice device, std::span<const Eigen::Vector3f> pos
 }  // namespace
 
 EmbreeScene::EmbreeScene(std::span<const Eigen::Vector3f> positions, std::span<const Triangle> triangles)
-    : surface_{positions, triangles, doubtful_share * bounding_box(positions).diagonal()},
-      device_(rtcNewDevice(nullptr)) {
+    : surface_{positions, triangles, doubtful_share * bounding_box(positions).diagonal()}, device_(device_of_all()) {
   build(positions, triangles, RTC_BUILD_QUALITY_HIGH, nullptr, this, refuse_behind);
   // Builds the tree with one thread, so that it does not depend on their number.
   tbb::task_arena one_thread(1);
@@ -45,7 +50,7 @@ EmbreeScene::EmbreeScene(std::span<const Eigen::Vector3f> positions, std::span<c
 
 EmbreeScene::EmbreeScene(std::span<const Eigen::Vector3f> positions, std::span<const Triangle> triangles,
                          RTCFilterFunctionN filter, void* filter_data)
-    : device_(rtcNewDevice(nullptr)) {
+    : device_(device_of_all()) {
   build(positions, triangles, RTC_BUILD_QUALITY_MEDIUM, filter, filter_data, nullptr);
   commit();
 }
@@ -99,7 +104,6 @@ void EmbreeScene::refuse_behind(const RTCFilterFunctionNArguments* arguments) {
 
 EmbreeScene::~EmbreeScene() {
   if (scene_ != nullptr) rtcReleaseScene(scene_);
-  rtcReleaseDevice(device_);
 }
 
 }  // namespace kiln
