@@ -154,6 +154,37 @@ assets:
   EXPECT_TRUE(passes(make_rules(pipeline_of("assets:\n  a: {mesh: x.obj, compress: true}\n")), "a", "compress"));
 }
 
+TEST(Pipeline, LevelsOfDetailOnRequest) {
+  EXPECT_FALSE(passes(make_rules(pipeline_of(two_assets)), "first", "lod"));
+  const std::vector<MakeRule> rules = make_rules(pipeline_of(R"(
+defaults:
+  lod: [1, 0.5, 0.25]
+assets:
+  shares: {mesh: a.obj}
+  pixels: {mesh: a.obj, lod: {pixels: [1, 4]}}
+  none: {mesh: a.obj, lod: false}
+)"));
+  // Runs between the atlas and the bake, which ships what it makes.
+  const StageRun& lod = run_of(rules, "shares", "lod");
+  EXPECT_EQ(lod.command,
+            (std::vector<std::string>{"kiln-lod", "out/shares/atlas.drc", "--high", value_after(lod.command, "--high"),
+                                      "-o", "out/shares/lod/", "--levels", "1; 0.5; 0.25"}));
+  EXPECT_TRUE(contains(lod.inputs, "out/shares/atlas.drc"));
+  const StageRun& bake = run_of(rules, "shares", "bake");
+  EXPECT_EQ(value_after(bake.command, "--levels"), "out/shares/lod/");
+  EXPECT_TRUE(contains(bake.inputs, "out/shares/lod/lod.json"));
+  EXPECT_TRUE(contains(bake.outputs, "out/shares/prt/lod_1.drc"));
+  EXPECT_TRUE(contains(run_of(rules, "shares", "report").inputs, "out/shares/lod/lod.json"));
+  const StageRun& pixels = run_of(rules, "pixels", "lod");
+  EXPECT_EQ(value_after(pixels.command, "--pixels"), "1; 4");
+  EXPECT_EQ(value_after(pixels.command, "--levels"), "");
+  EXPECT_EQ(value_after(run_of(rules, "none", "bake").command, "--levels"), "");
+  EXPECT_FALSE(passes(rules, "none", "lod"));
+  EXPECT_NE(refusal("assets:\n  a:\n    mesh: x.obj\n    lod: [0.5, 0.75]\n").find("pipeline.yaml:4: '0.5; 0.75'"),
+            std::string::npos);
+  EXPECT_NE(refusal("assets:\n  a:\n    mesh: x.obj\n    bake: [5]\n").find("pipeline.yaml:4: "), std::string::npos);
+}
+
 TEST(Pipeline, ProbesOnRequest) {
   EXPECT_FALSE(passes(make_rules(pipeline_of(two_assets)), "first", "probes"));
   const Pipeline pipeline = pipeline_of(R"(
