@@ -15,8 +15,9 @@ namespace kiln {
 
 namespace {
 
-constexpr double in_the_open =
-    4;  // so many times the overhang, where texels are free (gutters continue smoothly there)
+/// Returns the texels that a chart may hang over where they lie nearer to it than to any other: with the lookup's half
+/// texel as many as the gutter has, which continue its chart.
+double farthest_overhang(double overhang) { return overhang > 0 ? 2 * overhang + 0.5 : 0; }
 
 struct Goals {
   std::vector<LevelGoal> goals;
@@ -95,7 +96,7 @@ LodResult make_levels(OutputSet& outputs, const LodInput& input, const LodSettin
   const Goals goals = goals_of(input, settings, radius);
   const Stopwatch collapse;
   const std::vector<Level> levels = make_level_chain(
-      input.atlas, goals.goals, {input.size, input.overhang_texels, in_the_open * input.overhang_texels},
+      input.atlas, goals.goals, {input.size, input.overhang_texels, farthest_overhang(input.overhang_texels)},
       part_of(progress, 0, 0.7));
   result.collapse_seconds = collapse.seconds();
 

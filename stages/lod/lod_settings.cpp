@@ -64,11 +64,10 @@ OptionSet lod_options(LodSettings& settings) {
       .integer("lines", settings.view.lines, 16, 65536, "Lines of the picture that pixels are of")
       .number("fov", settings.view.vertical_fov_degrees, 1, 170,
               "Vertical field of view of the camera that distances are for, degrees")
-      .number_or_auto(
-          "overhang", settings.overhang_texels, 0, 64,
-          "Texels that a chart of a level may hang over its outline, and four times as many where it is nearer to "
-          "them than any other chart; auto: half of the atlas's smallest gap "
-          "less half a texel, which bilinear lookups take")
+      .number_or_auto("overhang", settings.overhang_texels, 0, 64,
+                      "Texels that a chart of a level may hang over its outline, and twice as many and half of one "
+                      "where they are nearer to it than to any other chart; auto: half of the atlas's smallest gap "
+                      "less half a texel, which bilinear lookups take")
       .extent("size", settings.size, 0, 16384, "Size of the atlas, texels; 0: as atlas.json beside it says");
   return options;
 }

@@ -76,15 +76,27 @@ with tempfile.TemporaryDirectory() as folder:
         "--directions", "64", "--quiet")
     run("kiln-compress", "out/post/prt", "-o", "pca", "--clusters", "2", "--pca", "2", "--quiet")
     run("kiln-probes", "post.obj", "-o", "probes", "--grid", "2x1x2", "--bands", "2", "--directions", "64", "--quiet")
+    side = 9  # a bumpy sheet, which has levels of detail
+    sheet = [f"v {i} {(i * j) % 3 * 0.2} {-j}" for j in range(side) for i in range(side)]
+    for j in range(side - 1):
+        for i in range(side - 1):
+            a = j * side + i + 1
+            sheet += [f"f {a} {a + 1} {a + side + 1}", f"f {a} {a + side + 1} {a + side}"]
+    pathlib.Path("sheet.obj").write_text("\n".join(sheet) + "\n")
+    run("kiln-atlas", "sheet.obj", "-o", "fine/atlas.drc", "--size", "64", "--gutter", "2", "--density", "even", "--quiet")
+    run("kiln-lod", "fine/atlas.drc", "-o", "fine/lod", "--levels", "0.7", "--quiet")
+    run("kiln-bake", "fine/atlas.drc", "--receiver", "low", "--levels", "fine/lod", "-o", "levels", "--bands", "2",
+        "--directions", "64", "--quiet")
     read = lambda name: json.loads(pathlib.Path(name).read_text())
 
     # Written files conform to the schemas.
     for name, files in {
-        "ranges": ["out/post/prt/ranges.json", "vertices/ranges.json", "hollow/ranges.json"],
+        "ranges": ["out/post/prt/ranges.json", "vertices/ranges.json", "hollow/ranges.json", "levels/ranges.json"],
         "pca": ["pca/pca.json"],
         "matrices": ["probes/matrices.json"],
         "record": ["out/post/simplify.json", "out/post/atlas.json", "out/post/normals/normals.json", "out/post/prt/bake.json",
-                   "out/post/small/compress.json", "out/post/probes/probes.json", "out/post/report.json", "vertices/bake.json", "probes/probes.json"],
+                   "out/post/small/compress.json", "out/post/probes/probes.json", "out/post/report.json", "vertices/bake.json", "probes/probes.json",
+                   "fine/lod/lod.json"],
         "metrics": ["out/post/metrics.json"],
     }.items():
         for file in files:
@@ -109,6 +121,9 @@ with tempfile.TemporaryDirectory() as folder:
         (("planes", 1, "min"), "0"), (("origin",), [1, 2])])
     refuses("ranges", read("vertices/ranges.json"), [
         (("requires",), []), (("planes", 0, "attribute"), DROP), (("planes", 0, "component"), 4), (("albedo",), "albedo.png")])
+    refuses("ranges", read("levels/ranges.json"), [
+        (("levels", 0, "mesh"), "../lod_1.drc"), (("levels", 0, "triangles"), 0), (("levels", 0, "error"), -1),
+        (("levels", 0, "distance"), DROP), (("levels",), {})])
     refuses("ranges", read("hollow/ranges.json"), [(("requires",), []), (("normal_space",), "world")])
     refuses("pca", read("pca/pca.json"), [
         (("requires",), ["vertices"]), (("clusters",), 257), (("cluster_ids",), DROP), (("planes", 0, "bits"), 9),
@@ -121,9 +136,13 @@ with tempfile.TemporaryDirectory() as folder:
         (("bake",), DROP), (("bake", "stage"), "atlas"), (("report", "budgets", 0, "met"), 1), (("more",), {})])
     refuses("check", told, [(("folders",), []), (("folders", 0, "faults", 0, "remedy"), DROP)])
     pipeline = yaml.safe_load(PIPELINE)
+    for levels in ([1, 0.5], True, {"levels": [0.5, 0.25]}, {"pixels": "1, 4"}):
+        pipeline["defaults"]["lod"] = levels
+        fits("pipeline", pipeline, f"lod: {levels}")
     refuses("pipeline", pipeline, [
         (("assets",), DROP), (("asets",), {}), (("defaults", "bake", "bands"), 25), (("defaults", "bake", "bands"), "five"),
         (("defaults", "bake", "backend"), "cuda"), (("defaults", "bake", "refine"), True), (("defaults", "stir"), {}),
+        (("defaults", "lod"), 0.5), (("defaults", "bake"), [5]),
         (("defaults", "simplify", "face"), 7), (("budgets", "bake.texels"), {}), (("budgets", "bake.texels"), {"most": 1}),
         (("assets", "post", "mesh"), {"archive": "a.tar"}), (("assets", "post", "default"), "yes"),
         (("assets", "post", "material"), {"albedo": 1, "texture": "a.png"})])

@@ -16,6 +16,7 @@
 #include "base/files.h"
 #include "base/json.h"
 #include "image/image_file.h"
+#include "mesh/draco_file.h"
 #include "scratch.h"
 #include "sh/light_spec.h"
 
@@ -236,6 +237,57 @@ TEST(Opacity, IsAPictureOfAnySize) {
   EXPECT_NE(refusal(copy.folder()).find("opacity.png"), std::string::npos) << refusal(copy.folder());
   fs::remove(copy.folder() / "opacity.png");
   EXPECT_NE(refusal(copy.folder()).find("opacity.png"), std::string::npos) << refusal(copy.folder());
+}
+
+/// A folder of version 2 with a level of detail of one triangle less.
+class WithLevel : public Copy {
+ public:
+  WithLevel() : Copy("textured") {
+    raise({"albedo"});
+    TriangleMesh mesh = load_prt_asset(folder()).mesh;
+    mesh.triangles.pop_back();
+    save_draco(folder() / level_file(1), mesh);
+    triangles = static_cast<int>(load_draco(folder() / level_file(1)).triangles.size());
+    set("/levels", {{{"mesh", level_file(1)}, {"triangles", triangles}, {"error", 0.25}, {"distance", 7.5}}});
+  }
+  int triangles = 0;
+};
+
+TEST(Levels, AreReadWrittenAndLoaded) {
+  const WithLevel copy;
+  EXPECT_EQ(joined(faults_of(copy.folder())), "");
+  const PrtAsset asset = load_prt_asset(copy.folder());
+  ASSERT_EQ(asset.levels.size(), 1u);
+  EXPECT_EQ(asset.levels[0].triangles, copy.triangles);
+  EXPECT_EQ(asset.levels[0].error, 0.25);
+  EXPECT_EQ(asset.levels[0].distance, 7.5);
+  EXPECT_EQ(Json::parse(description_text(asset)).at("levels"), copy.read().at("levels"));
+  EXPECT_FALSE(Json::parse(description_text(asset)).at("requires").contains("levels"));
+  EXPECT_EQ(load_level(copy.folder(), asset, 0).triangles.size(), asset.mesh.triangles.size());
+  EXPECT_EQ(load_level(copy.folder(), asset, 1).triangles.size(), static_cast<std::size_t>(copy.triangles));
+  EXPECT_THROW(load_level(copy.folder(), asset, 2), BadInput);
+  EXPECT_THROW(load_level(version_1 / "textured", load_prt_asset(version_1 / "textured"), 1), BadInput);
+}
+
+TEST(Levels, FaultsAreToldByName) {
+  const auto fault = [](const std::string& pointer, const Json& value) {
+    const WithLevel copy;
+    copy.set(pointer, value);
+    return joined(faults_of(copy.folder()));
+  };
+  EXPECT_NE(fault("/levels/0/mesh", "lod_9.drc").find("lod_9.drc"), std::string::npos);
+  EXPECT_NE(fault("/levels/0/mesh", "../lod_1.drc").find("levels[0].mesh"), std::string::npos);
+  EXPECT_NE(fault("/levels/0/triangles", 1).find("lod_1.drc: has"), std::string::npos);
+  EXPECT_NE(fault("/levels/0/triangles", 100'000).find("levels[0].triangles is 100000"), std::string::npos);
+  EXPECT_NE(fault("/levels/0/error", -1).find("levels[0].error is -1"), std::string::npos);
+  EXPECT_NE(fault("/levels/0/distance", "far").find("levels[0].distance"), std::string::npos);
+  const Json level = WithLevel().read().at("levels")[0];
+  EXPECT_NE(fault("/levels", {level, level}).find("levels[1].triangles is"), std::string::npos);
+  Json nearer = level;
+  nearer["triangles"] = 1;
+  nearer["distance"] = 1;
+  EXPECT_NE(fault("/levels", {level, nearer}).find("levels[1].distance is 1"), std::string::npos);
+  EXPECT_NE(fault("/levels", Json(17, level)).find("16 levels at most"), std::string::npos);
 }
 
 TEST(Check, TellsEveryFault) {

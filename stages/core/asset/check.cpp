@@ -55,7 +55,14 @@ class FileCheck {
   }
 
   void check_atlas() {
-    faults_.guard([&] { check_origin(read_atlas_mesh(folder_, asset_)); });
+    faults_.guard([&] {
+      const TriangleMesh mesh = read_atlas_mesh(folder_, asset_);
+      check_origin(mesh);
+      const int finest = asset_.levels.empty() ? 0 : asset_.levels.front().triangles;
+      if (static_cast<std::size_t>(finest) >= mesh.triangles.size())
+        throw BadInput(asset_.ranges_file.string(), fmt::format("levels[0].triangles is {}", finest),
+                       fmt::format("fewer than {}, those of the mesh", mesh.triangles.size()), remedy_);
+    });
   }
 
   void check_level(const PrtLevel& level) {
