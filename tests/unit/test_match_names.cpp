@@ -13,6 +13,7 @@
 #include "import/import_mesh.h"
 #include "import/uv_mesh.h"
 #include "mesh/draco_file.h"
+#include "normals/high_parts.h"
 #include "normals/low_triangles.h"
 #include "normals/match_plan.h"
 #include "normals/normals.h"
@@ -252,6 +253,31 @@ TEST_F(MatchNames, PartsHaveCagesOfTheirOwn) {
       EXPECT_THROW(parse_part_cages(text), WrongUsage) << text;
     else
       EXPECT_EQ(parse_part_cages(text).size(), 1u);
+}
+
+TEST_F(MatchNames, AThousandPartsAreSeenEachAlone) {
+  // Squares one above the other: each part sees its own. Embree has no more than some hundreds of devices.
+  constexpr std::uint32_t count = 1100;
+  const TriangleMesh square = shapes::plane(1);
+  TriangleMesh high;
+  MatchPlan plan;
+  plan.parts.resize(count);
+  for (std::uint32_t part = 0; part < count; ++part) {
+    const auto first = static_cast<std::uint32_t>(high.positions.size());
+    for (const Eigen::Vector3f& p : square.positions)
+      high.positions.emplace_back(p + Eigen::Vector3f(0, static_cast<float>(part), 0));
+    for (const Triangle& t : square.triangles) {
+      high.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+      plan.high_part.push_back(part);
+    }
+  }
+  const HighParts parts(high, plan);
+  for (const std::uint32_t part : {0u, 1u, count - 1}) {
+    const SurfacePoint hit = parts.scene(part).first_hit({0.1f, 2000, 0.2f}, {0, -1, 0}, 0, 3000);
+    ASSERT_TRUE(hit.found());
+    EXPECT_EQ(hit.triangle / 2, part);
+    EXPECT_NEAR(hit.distance, 2000 - static_cast<float>(part), 1e-2f);
+  }
 }
 
 TEST_F(MatchNames, OccludersAreAllPartsOrTheOwnOne) {
