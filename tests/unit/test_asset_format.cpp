@@ -210,14 +210,14 @@ TEST(Normals, MayHaveASizeOfTheirOwn) {
   const Copy copy("textured");
   write_png(copy.folder() / "normal.png", Image<std::uint8_t>(16, 64, 3, 200));
   EXPECT_NE(joined(faults_of(copy.folder())).find("normal.png"), std::string::npos);
-  copy.raise({"normal_size"});
+  copy.raise({"albedo", "normal_size"});
   copy.set("/normals", "normal.png");
   copy.set("/normal_width", 16);
   copy.set("/normal_height", 64);
   EXPECT_EQ(joined(faults_of(copy.folder())), "");
   const Json written = Json::parse(description_text(load_prt_description(copy.folder())));
   EXPECT_EQ(written["normal_width"], 16);
-  EXPECT_EQ(written["requires"], Json({"normal_size"}));
+  EXPECT_EQ(written["requires"], Json({"albedo", "normal_size"}));
   copy.set("/normal_height", 65);
   EXPECT_NE(joined(faults_of(copy.folder())).find("normal.png"), std::string::npos);
 }
@@ -225,14 +225,14 @@ TEST(Normals, MayHaveASizeOfTheirOwn) {
 TEST(Opacity, IsAPictureOfAnySize) {
   const Copy copy("textured");
   write_png(copy.folder() / "opacity.png", Image<std::uint8_t>(64, 16, 1, 200));
-  copy.raise({"opacity"});
+  copy.raise({"albedo", "opacity"});
   copy.set("/opacity", "opacity.png");
   EXPECT_EQ(joined(faults_of(copy.folder())), "");
   EXPECT_EQ(load_prt_asset(copy.folder()).opacity.width(), 64);
   EXPECT_EQ(Json::parse(description_text(load_prt_description(copy.folder())))["opacity"], "opacity.png");
-  copy.raise({});
+  copy.raise({"albedo"});
   EXPECT_NE(joined(faults_of(copy.folder())).find("requires lacks opacity"), std::string::npos);
-  copy.raise({"opacity"});
+  copy.raise({"albedo", "opacity"});
   write_png(copy.folder() / "opacity.png", Image<std::uint8_t>(64, 16, 3, 200));
   EXPECT_NE(refusal(copy.folder()).find("opacity.png"), std::string::npos) << refusal(copy.folder());
   fs::remove(copy.folder() / "opacity.png");

@@ -128,14 +128,14 @@ TEST_F(Opacity, AgreesWithLookupsUnderEveryWrap) {
         float u = share(random), v = share(random);
         if (u + v > 1) u = 1 - u, v = 1 - v;
         const float value = loaded.opacity.at(t, u, v);
-        if (std::abs(value - 0.5f) < 0.08f) continue;  // noise is steep: up to a tenth of a texel from the outline
+        if (std::abs(value - 0.5f) < 0.12f) continue;  // noise changes by 1 a texel, and outlines are off by a tenth
         const Triangle& triangle = mesh.mesh.triangles[t];
         const Eigen::Vector3f p = (1 - u - v) * mesh.mesh.positions[triangle[0]] +
                                   u * mesh.mesh.positions[triangle[1]] + v * mesh.mesh.positions[triangle[2]];
         wrong += is_on(cut.mesh, p.head<2>()) != (value >= 0.5f);
         ++tried;
       }
-      EXPECT_GT(tried, 2500);
+      EXPECT_GT(tried, 2000);
       EXPECT_LE(wrong, tried / 500) << options << mirrored;  // cells' outlines are straight, those of lookups are not
     }
 }
