@@ -35,27 +35,34 @@ Goals goals_of(const LodInput& input, const LodSettings& settings, double radius
   return all;
 }
 
-/// Makes levels that keep to the errors asked for where they are measured. The collapse goes by samples, between which
-/// there may be more: then it goes again, to a smaller error in proportion.
+/// Makes the levels. Those of an error are the coarsest found that keep to it where they are measured: the collapse
+/// goes by samples, between which there may be more, so it goes again to smaller errors, and halves what it does not
+/// know.
 std::vector<Level> chain_within(const LodInput& input, const std::vector<LevelGoal>& goals,
                                 const TexelDisplacementMeter& meter, const ProgressFunction& progress) {
   const LevelLimits limits{input.size, input.overhang_texels, farthest_overhang(input.overhang_texels)};
+  if (goals.front().error == 0) return make_level_chain(input.atlas, goals, limits, progress);
   const double diagonal = bounding_box(input.atlas).diagonal();
-  constexpr std::size_t attempts = 4;
-  constexpr double margin = 0.95;
+  constexpr std::size_t attempts = 6;
+  constexpr double first_step = 0.7, margin = 0.99;  // the file rounds a little
   std::vector<LevelGoal> tried = goals;
-  for (std::size_t attempt = 0;; ++attempt) {
+  std::vector<double> kept(goals.size(), 0), broken(goals.size(), 0);
+  std::vector<Level> best(goals.size());
+  for (std::size_t attempt = 0; attempt < attempts; ++attempt) {
     std::vector<Level> levels = make_level_chain(input.atlas, tried, limits, step_of(progress, attempt, attempts));
-    bool kept = true;
-    for (std::size_t k = 0; k < goals.size() && goals[k].error > 0; ++k) {
+    for (std::size_t k = 0; k < goals.size(); ++k) {
       const TriangleMesh& mesh = levels[k].mesh;
       const double error = std::max(meter.measure(mesh).largest, mesh_distance(input.atlas, mesh).hausdorff * diagonal);
-      if (error > goals[k].error) tried[k].error *= margin * goals[k].error / error;
+      const bool keeps = error <= margin * goals[k].error;
+      const bool is_best = kept[k] == 0 || (keeps && mesh.triangles.size() <= best[k].mesh.triangles.size());
+      (keeps ? kept[k] : broken[k]) = tried[k].error;
+      if (is_best) best[k] = std::move(levels[k]);  // until one keeps to it, the last and least
+      if (broken[k] > 0) tried[k].error = kept[k] > 0 ? (kept[k] + broken[k]) / 2 : first_step * broken[k];
       if (k > 0) tried[k].error = std::max(tried[k].error, tried[k - 1].error);
-      kept = kept && error <= goals[k].error;
     }
-    if (kept || attempt + 1 == attempts) return levels;
+    if (std::all_of(broken.begin(), broken.end(), [](double error) { return error == 0; })) break;
   }
+  return best;
 }
 
 /// Writes a level and measures what the file holds.
