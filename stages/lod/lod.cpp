@@ -35,6 +35,36 @@ Goals goals_of(const LodInput& input, const LodSettings& settings, double radius
   return all;
 }
 
+/// Makes the levels. Those of an error are the coarsest found that keep to it where they are measured: the collapse
+/// goes by samples, between which there may be more, so it goes again to smaller errors, and halves what it does not
+/// know.
+std::vector<Level> chain_within(const LodInput& input, const std::vector<LevelGoal>& goals,
+                                const TexelDisplacementMeter& meter, const ProgressFunction& progress) {
+  const LevelLimits limits{input.size, input.overhang_texels, farthest_overhang(input.overhang_texels)};
+  if (goals.front().error == 0) return make_level_chain(input.atlas, goals, limits, progress);
+  const double diagonal = bounding_box(input.atlas).diagonal();
+  constexpr std::size_t attempts = 6;
+  constexpr double first_step = 0.7, margin = 0.99;  // the file rounds a little
+  std::vector<LevelGoal> tried = goals;
+  std::vector<double> kept(goals.size(), 0), broken(goals.size(), 0);
+  std::vector<Level> best(goals.size());
+  for (std::size_t attempt = 0; attempt < attempts; ++attempt) {
+    std::vector<Level> levels = make_level_chain(input.atlas, tried, limits, step_of(progress, attempt, attempts));
+    for (std::size_t k = 0; k < goals.size(); ++k) {
+      const TriangleMesh& mesh = levels[k].mesh;
+      const double error = std::max(meter.measure(mesh).largest, mesh_distance(input.atlas, mesh).hausdorff * diagonal);
+      const bool keeps = error <= margin * goals[k].error;
+      const bool is_best = kept[k] == 0 || (keeps && mesh.triangles.size() <= best[k].mesh.triangles.size());
+      (keeps ? kept[k] : broken[k]) = tried[k].error;
+      if (is_best) best[k] = std::move(levels[k]);  // until one keeps to it, the last and least
+      if (broken[k] > 0) tried[k].error = kept[k] > 0 ? (kept[k] + broken[k]) / 2 : first_step * broken[k];
+      if (k > 0) tried[k].error = std::max(tried[k].error, tried[k - 1].error);
+    }
+    if (std::all_of(broken.begin(), broken.end(), [](double error) { return error == 0; })) break;
+  }
+  return best;
+}
+
 /// Writes a level and measures what the file holds.
 WrittenLevel write_level(OutputSet& outputs, const std::string& name, const TriangleMesh& mesh, const LodInput& input,
                          const TexelDisplacementMeter& meter) {
@@ -95,13 +125,11 @@ LodResult make_levels(OutputSet& outputs, const LodInput& input, const LodSettin
   // Collapse.
   const Goals goals = goals_of(input, settings, radius);
   const Stopwatch collapse;
-  const std::vector<Level> levels = make_level_chain(
-      input.atlas, goals.goals, {input.size, input.overhang_texels, farthest_overhang(input.overhang_texels)},
-      part_of(progress, 0, 0.7));
+  const TexelDisplacementMeter meter(input.atlas, input.size);
+  const std::vector<Level> levels = chain_within(input, goals.goals, meter, part_of(progress, 0, 0.7));
   result.collapse_seconds = collapse.seconds();
 
   // Write, and measure what was written.
-  const TexelDisplacementMeter meter(input.atlas, input.size);
   std::size_t before = input.atlas.triangles.size();
   for (std::size_t k = 0; k < levels.size(); ++k) {
     const bool by_pixels = goals.goals[k].error > 0;
@@ -117,7 +145,11 @@ LodResult make_levels(OutputSet& outputs, const LodInput& input, const LodSettin
     const std::string name = level_file(static_cast<int>(result.levels.size()) + 1);
     WrittenLevel level = write_level(outputs, name, levels[k].mesh, input, meter);
     level.goal = goals.asked[k];
-    level.reached_goal = by_pixels || levels[k].reached_goal;
+    const double allowed = goals.goals[k].error * input.atlas.frame.unit();
+    level.reached_goal = by_pixels ? level.error <= allowed : levels[k].reached_goal;
+    if (by_pixels && !level.reached_goal)
+      result.warnings.push_back(
+          fmt::format("the level of {} has an error of {:.3g} of them", asked, goals.asked[k] * level.error / allowed));
     level.distance = switching_distance(level.error, result.radius, settings.switch_pixels, settings.view);
     if (!result.levels.empty()) level.distance = std::max(level.distance, result.levels.back().distance);
     result.levels.push_back(level);

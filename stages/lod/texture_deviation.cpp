@@ -61,6 +61,22 @@ std::array<double, 3> nearest_weights(const Eigen::Vector2d& point, const std::a
   return weights;
 }
 
+/// Edge in the atlas and in space.
+struct Edge {
+  Eigen::Vector2d from_uv, to_uv;
+  Eigen::Vector3d from, to;
+};
+
+/// Returns the squared distance in space of two edges at the uv where they cross; 0 where they do not.
+double squared_distance_at_crossing(const Edge& a, const Edge& b) {
+  const Eigen::Vector2d along_a = a.to_uv - a.from_uv, along_b = b.to_uv - b.from_uv, between = b.from_uv - a.from_uv;
+  const double turn = cross(along_a, along_b);
+  if (turn == 0) return 0;
+  const double place_a = cross(between, along_b) / turn, place_b = cross(between, along_a) / turn;
+  if (!(place_a >= 0 && place_a <= 1 && place_b >= 0 && place_b <= 1)) return 0;
+  return (a.from + place_a * (a.to - a.from) - b.from - place_b * (b.to - b.from)).squaredNorm();
+}
+
 }  // namespace
 
 TextureDeviation::TextureDeviation(const TriangleMesh& mesh, Extent size) : samples_in_(mesh.triangles.size()) {
@@ -146,6 +162,16 @@ DeviationChange TextureDeviation::follow(const WedgeMesh& wedges, const WedgeCol
       if (!shape_is_kept(triangle, after, before)) return change;
     }
     if (changed.empty()) return change;
+    // Where a new edge crosses one that vanishes, this collapse alone moves the surface most ([Cohen 1998], section 4).
+    for (const std::uint32_t t : sector.triangles)
+      for (const std::uint32_t wedge : wedges.wedges(t)) {
+        const Edge gone{uvs_[sector.from_wedge], uvs_[wedge], positions_[sector.from_wedge], positions_[wedge]};
+        for (const NewTriangle& made : changed)
+          for (std::size_t k = 0; k < 3; ++k)
+            worst = std::max(
+                worst, squared_distance_at_crossing(
+                           gone, {uvs_[sector.to_wedge], made.uvs[k], positions_[sector.to_wedge], made.positions[k]}));
+      }
     const auto follow_one = [&](std::uint32_t index) {
       const Sample& sample = samples_[index];
       Move move = nearest(sample, changed);

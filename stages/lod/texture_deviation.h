@@ -15,7 +15,9 @@ namespace kiln {
 struct DeviationChange {
   bool allowed = false;  ///< false where a triangle would fold over or become too thin, in space or in the atlas
   double cost = 0;       ///< growth of the sum of cubed distances, times area
-  double worst = 0;      ///< largest distance of the samples concerned afterwards, in units of the mesh
+  /// Largest distance of the samples concerned afterwards, and of new edges from vanishing ones where they cross in the
+  /// atlas; in units of the mesh.
+  double worst = 0;
 };
 
 /// Distance between a mesh under collapse and the first one, at places of the same uv: how far what a texel shows has

@@ -286,5 +286,23 @@ TEST(Lod, WrittenLevelsAreMeasuredOnTheirFiles) {
   EXPECT_EQ(json.at("missed_goals"), 0);
 }
 
+TEST(Lod, ErrorsInPixelsAreKeptWhereTheyAreMeasured) {
+  const TriangleMesh sphere = cube_sphere(12);
+  const Scratch scratch;
+  OutputSet outputs(scratch.folder() / "lod");
+  const LodInput input{.atlas = sphere, .size = size, .overhang_texels = 1.5, .file = "sphere.drc"};
+  LodSettings settings;
+  settings.pixels = "8, 24";
+  const LodResult result = make_levels(outputs, input, settings);
+  ASSERT_EQ(result.levels.size(), 2U);
+  EXPECT_LT(result.levels[1].triangles, result.levels[0].triangles);
+  EXPECT_LT(result.levels[0].triangles, sphere.triangles.size());
+  for (const WrittenLevel& level : result.levels) {
+    EXPECT_TRUE(level.reached_goal);
+    EXPECT_LE(level.error, length_of_pixels(level.goal, result.radius, settings.view));
+    EXPECT_GT(level.error, 0.3 * length_of_pixels(level.goal, result.radius, settings.view));
+  }
+}
+
 }  // namespace test_lod
 }  // namespace kiln
