@@ -226,42 +226,46 @@ void measure_maps(const MapVersions& map, const Seams& seams, const TriangleMesh
   result.seam_change_degrees_rms = angles_between(map.before, map.after, raster).rms;
 }
 
-/// Makes the normal map at a size of its own, from points of its own texels.
+/// Texels of a map, and the points that they stand for.
+struct MatchedTexels {
+  UvRaster raster;
+  TexelMatches matches;
+};
+
+/// Matches the texels of a map of a size of its own, which `option` asks for.
+MatchedTexels match_own_size(const HighSurface& high, const PointMatcher& matcher, const Extent& size,
+                             const std::string& option, const NormalsSettings& settings) {
+  MatchedTexels own{rasterise_uvs(matcher.atlas(), size.width, size.height), {}};
+  if (own.raster.covered_texels == 0)
+    throw WrongUsage("the atlas covers no texel at " + option + " " + size.text() + "; give a larger one");
+  own.matches = match_texels(high, matcher, own.raster, settings.samples, settings.fit, no_progress);
+  return own;
+}
+
+/// Makes the normal map at a size of its own.
 Image<std::uint16_t> normal_of_own_size(const HighSurface& high, const PointMatcher& matcher,
                                         const NormalsSettings& settings) {
-  const TriangleMesh& atlas = matcher.atlas();
   const Extent& size = settings.normal_size;
-  const UvRaster raster = rasterise_uvs(atlas, size.width, size.height);
-  if (raster.covered_texels == 0)
-    throw WrongUsage("the atlas covers no texel at --normal-size " + size.text() + "; give a larger one");
   const SurfaceAlbedo none;
-  const TexelMatches matches =
-      match_texels({high.mesh, high.parts, none}, matcher, raster, settings.samples, settings.fit, no_progress);
-  Image<float> map = normal_map(matches.normal_object, settings.space, atlas, matches.known);
-  const Seams seams(atlas, size.width, size.height);
+  const MatchedTexels own = match_own_size({high.mesh, high.parts, none}, matcher, size, "--normal-size", settings);
+  Image<float> map = normal_map(own.matches.normal_object, settings.space, matcher.atlas(), own.matches.known);
+  const Seams seams(matcher.atlas(), size.width, size.height);
   if (settings.seams == SeamChoice::equalise && !seams.edges().empty())
-    equalise_normals(map, seams, coverage_of(raster), settings.space);
+    equalise_normals(map, seams, coverage_of(own.raster), settings.space);
   return quantise_normals(map);
 }
 
-/// Makes the map of the albedo at a size of its own, from points of its own texels.
-AlbedoMap albedo_of_own_size(const HighSurface& high, const PointMatcher& matcher, const NormalsSettings& settings) {
-  const TriangleMesh& atlas = matcher.atlas();
-  const Extent& size = settings.albedo_size;
-  const UvRaster raster = rasterise_uvs(atlas, size.width, size.height);
-  if (raster.covered_texels == 0)
-    throw WrongUsage("the atlas covers no texel at --albedo-size " + size.text() + "; give a larger one");
-  TexelMatches matches = match_texels(high, matcher, raster, settings.samples, settings.fit, no_progress);
-  return make_albedo_map(std::move(matches.albedo), coverage_of(matches.known), coverage_of(raster),
-                         Seams(atlas, size.width, size.height), settings.seams);
-}
-
-/// Makes the map of opacity, of the albedo's size: outlines of leaves need as many texels as their colours.
-OpacityMap opacity_of(const HighSurface& high, const PointMatcher& matcher, const Extent& size,
-                      const SurfaceOpacity& opacity, SeamChoice seams) {
-  const TexelMeans means(high, matcher, size.width, size.height);
-  return make_opacity_map(opacity, means, rasterise_uvs(matcher.atlas(), size.width, size.height),
-                          Seams(matcher.atlas(), size.width, size.height), seams);
+/// Makes the maps of opacity and albedo, where they vary, of texels whose albedo this takes. Both are of one size:
+/// outlines of leaves need as many texels as their colours.
+void make_color_maps(const HighSurface& high, const PointMatcher& matcher, const UvRaster& raster,
+                     TexelMatches& matches, const SurfaceOpacity& opacity, SeamChoice choice, NormalsResult& result) {
+  const Seams seams(matcher.atlas(), raster.width, raster.height);
+  if (!opacity.is_opaque())
+    result.opacity_map =
+        make_opacity_map(opacity, TexelMeans(high, matcher, raster, matches.position), raster, seams, choice);
+  if (!high.albedo.is_constant())
+    result.albedo_map =
+        make_albedo_map(std::move(matches.albedo), coverage_of(matches.known), coverage_of(raster), seams, choice);
 }
 
 /// What shadows the high mesh: the mesh itself, or what its opacity leaves of it.
@@ -340,25 +344,24 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
                  [](std::uint8_t c) { return static_cast<std::uint8_t>(c != 0 ? 255 : 0); });
   result.match = picture_of(ways);
   result.albedo = albedo;
-  if (!albedo.is_constant()) {
-    const bool own_size = settings.albedo_size.width > 0 && settings.albedo_size != size;
-    result.albedo_map = own_size ? albedo_of_own_size(surface, matcher, settings)
-                                 : make_albedo_map(std::move(matches.albedo), coverage_of(matches.known), covered,
-                                                   seams, settings.seams);
+  if (!albedo.is_constant() || !materials.opacity.is_opaque()) {
+    const Extent& own_size = settings.albedo_size;
+    if (own_size.width > 0 && own_size != size) {
+      MatchedTexels own = match_own_size(surface, matcher, own_size, "--albedo-size", settings);
+      make_color_maps(surface, matcher, own.raster, own.matches, materials.opacity, settings.seams, result);
+    } else {
+      make_color_maps(surface, matcher, raster, matches, materials.opacity, settings.seams, result);
+    }
   }
-
   if (settings.normal_size.width > 0 && settings.normal_size != size)
     result.own_normal = normal_of_own_size(surface, matcher, settings);
-  if (!materials.opacity.is_opaque())
-    result.opacity_map = opacity_of(surface, matcher, settings.albedo_size.width > 0 ? settings.albedo_size : size,
-                                    materials.opacity, settings.seams);
 
   // Step 5: make further maps.
   if (!settings.maps.kinds.empty()) {
     const double seconds_before = stopwatch.seconds();
     const std::vector<std::uint8_t> seen = seen_texels(both, matches, ways, settings.maps.occluders);
     std::optional<TexelMeans> means;
-    if (needs_means(settings.maps)) means.emplace(surface, matcher, size.width, size.height);
+    if (needs_means(settings.maps)) means.emplace(surface, matcher, raster, matches.position);
     const Occluder occluder = occluder_of(high, materials.opacity, plan);
     result.maps = make_maps(
         {high, parts, plan, atlas, raster, matches.position, matches.normal_object, seen, seams, settings.seams,

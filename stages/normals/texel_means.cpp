@@ -2,43 +2,49 @@
 #include "normals/texel_means.h"
 
 #include <limits>
-#include <string>
 
-#include "base/errors.h"
 #include "base/parallel.h"
 
 namespace kiln {
 
 namespace {
 
-constexpr std::int64_t most_supersampled_texels = std::int64_t{1024} * 1024;
+constexpr std::int64_t most_supersampled_texels = std::int64_t{2048} * 2048;
 
 }  // namespace
 
-TexelMeans::TexelMeans(const HighSurface& high, const PointMatcher& matcher, int width, int height)
-    : width_(width), height_(height), side_(std::int64_t{width} * height <= most_supersampled_texels ? 2 : 1) {
-  const UvRaster raster = rasterise_uvs(matcher.atlas(), side_ * width, side_ * height);
-  if (raster.covered_texels == 0)
-    throw WrongUsage("the atlas covers no texel of a map of " + std::to_string(width) + " x " + std::to_string(height) +
-                     "; give a larger one");
-  const SurfaceAlbedo none;
-  const TexelMatches matches = match_texels({high.mesh, high.parts, none}, matcher, raster, 1, false, no_progress);
-  points_.resize(raster.texels.size());
-  known_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
-  parallel_for(0, raster.height, [&](int j) {
-    for (int i = 0; i < raster.width; ++i) {
-      if (!raster.at(i, j).covered()) continue;
-      const Eigen::Vector3f position(matches.position.pixel(i, j).data());
-      points_[static_cast<std::size_t>(j) * static_cast<std::size_t>(raster.width) + static_cast<std::size_t>(i)] =
-          high.parts.scene(matcher.plan().part_of_low(raster.at(i, j).triangle))
-              .closest_point(position, std::numeric_limits<float>::infinity());
+TexelMeans::TexelMeans(const HighSurface& high, const PointMatcher& matcher, const UvRaster& raster,
+                       const Image<float>& position)
+    : width_(raster.width),
+      height_(raster.height),
+      side_(std::int64_t{raster.width} * raster.height <= most_supersampled_texels ? 2 : 1) {
+  const TriangleMesh& atlas = matcher.atlas();
+  const UvRaster fine = rasterise_uvs(atlas, side_ * width_, side_ * height_);
+  points_.resize(fine.texels.size());
+  known_.assign(raster.texels.size(), 0);
+  parallel_for(0, height_, [&](int j) {
+    for (int i = 0; i < width_; ++i) {
+      const TexelSource& centre = raster.at(i, j);
+      for (int y = side_ * j; y < side_ * (j + 1); ++y)
+        for (int x = side_ * i; x < side_ * (i + 1); ++x) {
+          const TexelSource& sample = fine.at(x, y);
+          if (!sample.covered()) continue;
+          known_[static_cast<std::size_t>(j) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(i)] = 1;
+          SurfacePoint& point =
+              points_[static_cast<std::size_t>(y) * static_cast<std::size_t>(fine.width) + static_cast<std::size_t>(x)];
+          const Eigen::Vector3f low = interpolate(atlas, atlas.positions, sample);
+          if (!centre.covered()) {
+            point = matcher.match(low, matcher.line(sample), sample).point;
+            continue;
+          }
+          // As far from the centre's point as the low mesh's points are from each other.
+          const Eigen::Vector3f near = Eigen::Map<const Eigen::Vector3f>(position.pixel(i, j).data()) + low -
+                                       interpolate(atlas, atlas.positions, centre);
+          point = high.parts.scene(matcher.plan().part_of_low(sample.triangle))
+                      .closest_point(near, std::numeric_limits<float>::infinity());
+        }
     }
   });
-  for (int j = 0; j < raster.height; ++j)
-    for (int i = 0; i < raster.width; ++i)
-      if (raster.at(i, j).covered())
-        known_[static_cast<std::size_t>(j / side_) * static_cast<std::size_t>(width) +
-               static_cast<std::size_t>(i / side_)] = 1;
 }
 
 Image<float> TexelMeans::of(int channels, const std::function<Eigen::Vector3f(const SurfacePoint&)>& value) const {

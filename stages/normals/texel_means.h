@@ -16,9 +16,10 @@ namespace kiln {
 /// Points of the high mesh under several samples of each texel, for maps that are means of what its materials say.
 class TexelMeans {
  public:
-  /// Matches the samples, four of each texel up to a map of 1024 x 1024, one beyond. Throws WrongUsage where the atlas
-  /// covers no texel of that size.
-  TexelMeans(const HighSurface& high, const PointMatcher& matcher, int width, int height);
+  /// Finds the samples' points, four of each texel up to a map of 2048 x 2048, one beyond. `raster` is that of the
+  /// matcher's atlas, and `position` has the points of its covered texels (match_texels).
+  TexelMeans(const HighSurface& high, const PointMatcher& matcher, const UvRaster& raster,
+             const Image<float>& position);
 
   /// Returns the mean of a value over each texel's samples, of 1 or 3 channels; 0 where there are none.
   Image<float> of(int channels, const std::function<Eigen::Vector3f(const SurfacePoint&)>& value) const;
