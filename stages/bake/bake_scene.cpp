@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/bake_scene.h"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -65,14 +66,21 @@ std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSetti
   };
   for (std::size_t k = 0; k < files.size() && with_albedo; ++k)
     add_albedo(files[k].string(), load_albedo(imported[k], settings.material));
+  std::vector<std::uint8_t> all_sheets;
+  const auto add_sheets = [&](const std::vector<std::uint8_t>& sheets, const TriangleMesh& mesh) {
+    all_sheets.insert(all_sheets.end(), sheets.begin(), sheets.end());
+    if (sheets.empty()) all_sheets.resize(all_sheets.size() + mesh.triangles.size(), 0);
+  };
   for (std::size_t k = 0; k < files.size(); ++k) {
     const LoadedOpacity loaded = load_opacity(imported[k], settings.material);
     scene.add_warnings(loaded.warnings);
     scene.further_files.insert(scene.further_files.end(), loaded.files.begin(), loaded.files.end());
     meshes.push_back(std::move(imported[k].mesh));
     SurfaceAlbedo none;
-    const bool cut = cut_occluder(meshes.back(), with_albedo ? albedos[k] : none, loaded.opacity, files[k].string());
-    if (cut && settings.per_vertex)
+    const std::vector<std::uint8_t> sheets =
+        cut_occluder(meshes.back(), with_albedo ? albedos[k] : none, loaded.opacity, files[k].string());
+    add_sheets(sheets, meshes.back());
+    if (!sheets.empty() && settings.per_vertex)
       scene.add_warnings({"the surface is not opaque everywhere, which an asset baked per vertex does not show"});
   }
 
@@ -83,11 +91,13 @@ std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSetti
   for (PlacedMesh& placed : load_surroundings(settings.surroundings, own, settings.material, with_albedo, frame)) {
     scene.add_warnings(placed.warnings);
     meshes.push_back(std::move(placed.mesh));
+    add_sheets(placed.sheets, meshes.back());
     if (with_albedo) add_albedo(placed.name, placed.material);
     scene.further_files.insert(scene.further_files.end(), placed.opacity_files.begin(), placed.opacity_files.end());
     if (fs::is_regular_file(placed.name)) scene.further_files.emplace_back(placed.name);
   }
   scene.occluders = join_occluders(meshes, std::move(albedos));
+  if (std::ranges::find(all_sheets, 1) != all_sheets.end()) scene.occluders.sheets = std::move(all_sheets);
   return meshes;
 }
 

@@ -7,12 +7,18 @@
 
 namespace kiln {
 
-HighParts::HighParts(const TriangleMesh& high, const MatchPlan& plan)
+HighParts::HighParts(const TriangleMesh& high, const MatchPlan& plan, const SurfaceOpacity& opacity)
     : high_(high), scenes_(scenes_of_parts(high, plan.high_part, plan.count())) {
-  if (plan.high_part.empty())
-    whole_test_ = std::make_unique<BuriedTest>(high.positions, high.triangles, rounding_offset(high.positions));
-  else
-    triangles_ = listed_by_part(plan.high_part, plan.count());
+  if (plan.high_part.empty()) {
+    std::vector<Triangle> enclosing;
+    for (std::uint32_t t = 0; t < high.triangles.size(); ++t)
+      if (!opacity.is_sheet(t)) enclosing.push_back(high.triangles[t]);
+    whole_test_ = std::make_unique<BuriedTest>(high.positions, enclosing, rounding_offset(high.positions));
+    return;
+  }
+  triangles_ = listed_by_part(plan.high_part, plan.count());
+  for (std::vector<std::uint32_t>& part : triangles_)
+    std::erase_if(part, [&](std::uint32_t t) { return opacity.is_sheet(t); });
 }
 
 std::vector<std::uint8_t> HighParts::buried(const Receivers& points, const std::vector<std::uint32_t>& parts) const {

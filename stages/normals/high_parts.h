@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "material/surface_opacity.h"
 #include "mesh/triangle_mesh.h"
 #include "normals/match_plan.h"
 #include "normals/part_scene.h"
@@ -15,8 +16,8 @@ namespace kiln {
 /// Parts of a high mesh that texels are matched to, each on its own; without parts, the whole mesh as one.
 class HighParts {
  public:
-  /// Keeps a reference to `high`.
-  HighParts(const TriangleMesh& high, const MatchPlan& plan);
+  /// Keeps a reference to `high`. Sheets of its `opacity` enclose nothing that could be buried.
+  HighParts(const TriangleMesh& high, const MatchPlan& plan, const SurfaceOpacity& opacity = {});
 
   const PartScene& scene(std::uint32_t part) const { return scenes_[part]; }
 
@@ -27,7 +28,7 @@ class HighParts {
  private:
   const TriangleMesh& high_;
   std::vector<PartScene> scenes_;
-  std::vector<std::vector<std::uint32_t>> triangles_;  ///< by part; empty where all is one
+  std::vector<std::vector<std::uint32_t>> triangles_;  ///< those that enclose, by part; empty where all is one
   std::unique_ptr<BuriedTest> whole_test_;             ///< of that; those of parts are made when they are asked
 };
 

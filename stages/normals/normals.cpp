@@ -54,6 +54,7 @@ struct TwoSurfaces {
   const TriangleMesh& atlas;
   const UvRaster& raster;
   const MatchPlan& plan;
+  const SurfaceOpacity& opacity;  ///< of `high`
 };
 
 /// Measures the largest distance between points of the two surfaces, part by part: texels of the low one, vertices of
@@ -149,8 +150,8 @@ std::vector<std::uint8_t> seen_texels(const TwoSurfaces& of, const TexelMatches&
                                       MapOccluders occluders) {
   if (occluders == MapOccluders::all && !of.plan.parts.empty()) {
     const MatchPlan as_one;
-    const HighParts whole(of.high, as_one);
-    mark_buried({of.high, whole, of.atlas, of.raster, as_one}, matches, ways);
+    const HighParts whole(of.high, as_one, of.opacity);
+    mark_buried({of.high, whole, of.atlas, of.raster, as_one, of.opacity}, matches, ways);
   }
   std::vector<std::uint8_t> seen = coverage_of(of.raster);
   for (std::size_t texel = 0; texel < seen.size(); ++texel)
@@ -308,8 +309,8 @@ NormalsResult make_normals(const TriangleMesh& high, const TriangleMesh& atlas, 
 
   // Step 2: choose how far to look.
   NormalsResult result;
-  const HighParts parts(high, plan);
-  const TwoSurfaces both{high, parts, atlas, raster, plan};
+  const HighParts parts(high, plan, materials.opacity);
+  const TwoSurfaces both{high, parts, atlas, raster, plan, materials.opacity};
   const double diagonal = bounding_box(high).diagonal();
   std::vector<MatchLimits> limits;
   double distance = 0;

@@ -25,24 +25,31 @@ TexelMeans::TexelMeans(const HighSurface& high, const PointMatcher& matcher, con
   parallel_for(0, height_, [&](int j) {
     for (int i = 0; i < width_; ++i) {
       const TexelSource& centre = raster.at(i, j);
+      std::uint8_t& known =
+          known_[static_cast<std::size_t>(j) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(i)];
+      const auto point_at = [&](int x, int y) -> SurfacePoint& {
+        return points_[static_cast<std::size_t>(y) * static_cast<std::size_t>(fine.width) +
+                       static_cast<std::size_t>(x)];
+      };
+      const auto nearest = [&](const Eigen::Vector3f& place, const TexelSource& source) {
+        return high.parts.scene(matcher.plan().part_of_low(source.triangle))
+            .closest_point(place, std::numeric_limits<float>::infinity());
+      };
+      const Eigen::Vector3f centre_point(position.pixel(i, j).data());
       for (int y = side_ * j; y < side_ * (j + 1); ++y)
         for (int x = side_ * i; x < side_ * (i + 1); ++x) {
           const TexelSource& sample = fine.at(x, y);
           if (!sample.covered()) continue;
-          known_[static_cast<std::size_t>(j) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(i)] = 1;
-          SurfacePoint& point =
-              points_[static_cast<std::size_t>(y) * static_cast<std::size_t>(fine.width) + static_cast<std::size_t>(x)];
+          known = 1;
           const Eigen::Vector3f low = interpolate(atlas, atlas.positions, sample);
-          if (!centre.covered()) {
-            point = matcher.match(low, matcher.line(sample), sample).point;
-            continue;
-          }
           // As far from the centre's point as the low mesh's points are from each other.
-          const Eigen::Vector3f near = Eigen::Map<const Eigen::Vector3f>(position.pixel(i, j).data()) + low -
-                                       interpolate(atlas, atlas.positions, centre);
-          point = high.parts.scene(matcher.plan().part_of_low(sample.triangle))
-                      .closest_point(near, std::numeric_limits<float>::infinity());
+          point_at(x, y) = centre.covered()
+                               ? nearest(centre_point + low - interpolate(atlas, atlas.positions, centre), sample)
+                               : matcher.match(low, matcher.line(sample), sample).point;
         }
+      if (known != 0 || !centre.covered()) continue;
+      known = 1;  // a triangle so thin that it passes between the samples
+      point_at(side_ * i, side_ * j) = nearest(centre_point, centre);
     }
   });
 }

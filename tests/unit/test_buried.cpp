@@ -134,6 +134,20 @@ TEST(Buried, UnderASkirtIsDarkNotBuriedAndInAHeadIsBuried) {
   EXPECT_GE(count_buried(head, points_on(head, 0, small.triangles.size(), 1000)), 830u);
 }
 
+TEST(Buried, UnderLeavesThatOpacityCutsNothingIs) {
+  // Leaves bent around a twig hide it from all light with their backs, as the inside of a head does.
+  TriangleMesh leaves = shapes::icosphere(3, 1);
+  std::erase_if(leaves.triangles, [&](const Triangle& t) { return leaves.positions[t[0]].y() < -0.6f; });
+  const Points twig{{{0, 0, 0}}, {Eigen::Vector3f(0.6f, 0.8f, 0)}};
+  Occluders occluders = join_occluders({leaves});
+  const auto is_buried = [&] {
+    return BuriedTest(occluders.mesh.positions, enclosing_triangles(occluders), 1e-5f)(twig.view())[0];
+  };
+  EXPECT_EQ(is_buried(), 1);
+  occluders.sheets.assign(leaves.triangles.size(), 1);
+  EXPECT_EQ(is_buried(), 0);
+}
+
 TEST(Buried, SameForAnyThreads) {
   const TriangleMesh mesh = shapes::joined(shapes::icosphere(4, 0.6f), shapes::cube(3), {0.1f, 0.2f, 0});
   const Points points = points_on(mesh, 0, mesh.triangles.size(), 5000);

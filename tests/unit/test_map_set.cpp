@@ -204,6 +204,41 @@ TEST(MapSet, TexelsInsideOtherPartsTakeTheirNeighboursValues) {
   });
 }
 
+TEST(MapSet, SharesAndEmissionAreWhatMaterialsSay) {
+  const TriangleMesh high = shaded(shapes::plane(4));
+  SurfaceShare::Materials shares;
+  shares.all = {{.factor = 0.25f}, {.factor = 0.75f}};
+  SurfaceAlbedo::Textured light;
+  light.materials = {{.color = {0, 0, 0}, .texture = nullptr}, {.color = {4, 2, 0}, .texture = nullptr}};
+  for (const Triangle& t : high.triangles) {
+    const float x = (high.positions[t[0]] + high.positions[t[1]] + high.positions[t[2]]).x();
+    shares.of_triangle.push_back(x < 0 ? 0 : 1);
+    light.material_of.push_back(x < 0 ? 0 : 1);
+  }
+  HighMaterials materials;
+  materials.roughness = SurfaceShare(shares);
+  materials.emission = SurfaceAlbedo::of_materials(light, SurfaceAlbedo::Source::materials);
+  NormalsSettings settings;
+  settings.size = 64;
+  settings.maps.kinds = parse_map_kinds("roughness,metalness,emission,orm");
+  settings.maps.directions = 64;
+  const NormalsResult result = make_normals(high, high, settings, {}, no_progress, materials);
+  ASSERT_EQ(result.maps.size(), 4u);
+  EXPECT_EQ(result.maps[2].highest, 4);
+  constexpr float texel = 1.f / 48;  // about: a margin is left free
+  for_each_covered(result, [&](int i, int j, const Eigen::Vector3f& p) {
+    if (std::abs(p.x()) < 2 * texel) return;
+    const bool right = p.x() > 0;
+    const float roughness = right ? 0.75f : 0.25f;
+    EXPECT_NEAR(result.maps[0].values.at(i, j), roughness, 1e-5f);
+    EXPECT_NEAR(result.maps[1].values.at(i, j), 0, 1e-5f);
+    EXPECT_NEAR(result.maps[2].values.at(i, j, 1), right ? 2 : 0, 1e-4f);
+    EXPECT_NEAR(result.maps[3].values.at(i, j, 0), 1, 1e-4f);
+    EXPECT_NEAR(result.maps[3].values.at(i, j, 1), roughness, 1e-5f);
+    EXPECT_NEAR(result.maps[3].values.at(i, j, 2), 0, 1e-5f);
+  });
+}
+
 TEST(MapSet, FilesHoldTheValues) {
   const Scratch folder;
   TriangleMesh high = shapes::plane(32, 2);

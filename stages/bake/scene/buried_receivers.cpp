@@ -187,7 +187,7 @@ std::vector<std::uint32_t> places_of(const ReceiverSet& receivers, const std::ve
 
 BuriedReport set_aside_buried(ReceiverSet& receivers, const TriangleMesh& atlas, const Occluders& occluders,
                               float ray_offset) {
-  const BuriedTest is_buried(occluders.mesh.positions, occluders.mesh.triangles, ray_offset);
+  const BuriedTest is_buried(occluders.mesh.positions, enclosing_triangles(occluders), ray_offset);
   std::vector<std::uint8_t> buried = is_buried(receivers.view());
   BuriedReport report;
   report.everything = all_of(buried);
@@ -215,7 +215,7 @@ BuriedReport set_aside_buried(ReceiverSet& receivers, const TriangleMesh& atlas,
 BuriedReport set_aside_buried_vertices(ReceiverSet& receivers, const TriangleMesh& mesh, const Occluders& occluders,
                                        float ray_offset) {
   const std::vector<std::uint8_t> buried =
-      BuriedTest(occluders.mesh.positions, occluders.mesh.triangles, ray_offset)(receivers.view());
+      BuriedTest(occluders.mesh.positions, enclosing_triangles(occluders), ray_offset)(receivers.view());
   BuriedReport report;
   report.everything = all_of(buried);
   if (report.everything || std::find(buried.begin(), buried.end(), 1) == buried.end()) return report;

@@ -46,6 +46,14 @@ void join_corner_normals(const std::vector<TriangleMesh>& parts, TriangleMesh& w
 
 }  // namespace
 
+std::vector<Triangle> enclosing_triangles(const Occluders& occluders) {
+  if (occluders.sheets.empty()) return occluders.mesh.triangles;
+  std::vector<Triangle> triangles;
+  for (std::size_t t = 0; t < occluders.sheets.size(); ++t)
+    if (occluders.sheets[t] == 0) triangles.push_back(occluders.mesh.triangles[t]);
+  return triangles;
+}
+
 Occluders join_occluders(const std::vector<TriangleMesh>& meshes, std::vector<SurfaceAlbedo> albedos) {
   Occluders joined;
   joined.closed = std::all_of(meshes.begin(), meshes.end(), is_closed);

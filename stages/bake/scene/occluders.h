@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "material/scene_mesh.h"
@@ -14,7 +15,12 @@ namespace kiln {
 struct Occluders : SceneMesh {
   std::vector<Eigen::Vector3f> hull;  ///< corners of its convex hull
   bool closed = false;                ///< is_closed of every mesh
+  /// 1 for each triangle of a sheet that opacity cuts, such as a leaf: it encloses nothing; empty where none is.
+  std::vector<std::uint8_t> sheets;
 };
+
+/// Returns the triangles that may enclose something: all but those of sheets.
+std::vector<Triangle> enclosing_triangles(const Occluders& occluders);
 
 /// Joins meshes, at least one, with one albedo each or none.
 Occluders join_occluders(const std::vector<TriangleMesh>& meshes, std::vector<SurfaceAlbedo> albedos = {});

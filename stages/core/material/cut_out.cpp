@@ -25,14 +25,9 @@ class Patterns {
   Patterns(const SurfaceOpacity& opacity, const std::string& name) {
     const SurfaceShare::Materials& materials = opacity.share().materials();
     const auto count = static_cast<std::uint32_t>(materials.of_triangle.size());
-    const auto may_be_cut = [&](std::uint32_t t) {
-      const std::uint32_t m = materials.of_triangle[t];
-      const SurfaceShare::Material& material = materials.all[m];
-      return material.texture != nullptr && material.factor * material.texture->lowest() < opacity.cutoff(m);
-    };
     std::vector<std::uint32_t> triangles;
     for (std::uint32_t t = 0; t < count; ++t)
-      if (may_be_cut(t)) triangles.push_back(t);
+      if (opacity.is_sheet(t)) triangles.push_back(t);
     const auto key = [&](std::uint32_t t) {
       const auto& uv = materials.uvs[t];
       return std::tuple(materials.of_triangle[t], uv[0].x(), uv[0].y(), uv[1].x(), uv[1].y(), uv[2].x(), uv[2].y());
@@ -178,13 +173,17 @@ CutOut cut_out(const TriangleMesh& mesh, const SurfaceOpacity& opacity, const st
   return cut;
 }
 
-bool cut_occluder(TriangleMesh& mesh, SurfaceAlbedo& albedo, const SurfaceOpacity& opacity, const std::string& name) {
-  if (opacity.is_opaque()) return false;
+std::vector<std::uint8_t> cut_occluder(TriangleMesh& mesh, SurfaceAlbedo& albedo, const SurfaceOpacity& opacity,
+                                       const std::string& name) {
+  if (opacity.is_opaque()) return {};
   CutOut cut = cut_out(mesh, opacity, name);
-  if (!cut.has_cuts) return false;
+  std::vector<std::uint8_t> sheets(cut.origins.size());
+  std::transform(cut.origins.begin(), cut.origins.end(), sheets.begin(),
+                 [&](std::uint32_t origin) { return opacity.is_sheet(origin) ? 1 : 0; });
+  if (!cut.has_cuts) return sheets;
   albedo = albedo.of_pieces(cut.origins, cut.weights);
   mesh = std::move(cut.mesh);
-  return true;
+  return sheets;
 }
 
 }  // namespace kiln

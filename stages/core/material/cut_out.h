@@ -29,7 +29,9 @@ struct CutOut {
 CutOut cut_out(const TriangleMesh& mesh, const SurfaceOpacity& opacity, const std::string& name);
 
 /// Cuts an occluder, and its albedo with it, where that is of the whole mesh; both stay as they are where nothing is
-/// cut away. Returns whether anything is.
-bool cut_occluder(TriangleMesh& mesh, SurfaceAlbedo& albedo, const SurfaceOpacity& opacity, const std::string& name);
+/// cut away. Returns 1 for each triangle that is now of a sheet (SurfaceOpacity::is_sheet), else 0; empty where none
+/// is.
+std::vector<std::uint8_t> cut_occluder(TriangleMesh& mesh, SurfaceAlbedo& albedo, const SurfaceOpacity& opacity,
+                                       const std::string& name);
 
 }  // namespace kiln

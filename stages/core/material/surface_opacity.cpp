@@ -55,6 +55,13 @@ float SurfaceOpacity::at(std::uint32_t triangle, float u, float v) const {
   return value < cutoff ? 0.5f * value / cutoff : 0.5f + 0.5f * (value - cutoff) / (1 - cutoff);
 }
 
+bool SurfaceOpacity::is_sheet(std::uint32_t triangle) const {
+  if (is_opaque()) return false;
+  const std::uint32_t m = share_.materials().of_triangle[triangle];
+  const SurfaceShare::Material& material = share_.materials().all[m];
+  return material.texture != nullptr && material.factor * material.texture->lowest() < cutoffs_[m];
+}
+
 LoadedOpacity load_opacity(const ImportedMesh& mesh, const MaterialSettings& settings) {
   if (!settings.opacity_texture.empty()) return load_picture(mesh, settings);
   LoadedOpacity loaded;

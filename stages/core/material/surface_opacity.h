@@ -30,6 +30,9 @@ class SurfaceOpacity {
   /// 0.5 everywhere; u is the weight of the second corner, v that of the third.
   float at(std::uint32_t triangle, float u, float v) const;
 
+  /// Tells whether a triangle is of a material that opacity cuts: of a sheet such as a leaf, which encloses nothing.
+  bool is_sheet(std::uint32_t triangle) const;
+
   /// Returns the share that is there of a surface that is not opaque, and the cutoff of one of its materials.
   const SurfaceShare& share() const { return share_; }
   float cutoff(std::uint32_t material) const { return cutoffs_[material]; }

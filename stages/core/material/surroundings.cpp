@@ -108,7 +108,7 @@ std::vector<PlacedMesh> load_surroundings(const Surroundings& surroundings, cons
     mesh.warnings.insert(mesh.warnings.end(), opacity.warnings.begin(), opacity.warnings.end());
     mesh.opacity_files = opacity.files;
     mesh.mesh = std::move(imported.mesh);
-    cut_occluder(mesh.mesh, mesh.material.albedo, opacity.opacity, mesh.name);
+    mesh.sheets = cut_occluder(mesh.mesh, mesh.material.albedo, opacity.opacity, mesh.name);
     move_to_asset(mesh.mesh, neighbour.placement, asset, frame);
   }
   if (!surroundings.ground) return placed;

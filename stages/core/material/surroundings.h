@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -34,6 +35,7 @@ struct PlacedMesh {
   std::vector<std::string> warnings;
   LoadedAlbedo material;
   std::vector<std::filesystem::path> opacity_files;  ///< pictures of opacity that were read
+  std::vector<std::uint8_t> sheets;                  ///< 1 for each triangle that opacity may cut; empty: none
 };
 
 /// Loads the meshes around an asset whose box in its own frame is `own`: the neighbours, in their order, then the

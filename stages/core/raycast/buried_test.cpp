@@ -150,6 +150,7 @@ bool BuriedTest::Implementation::is_buried(const Eigen::Vector3f& origin, const 
 
 BuriedTest::BuriedTest(std::span<const Eigen::Vector3f> positions, std::span<const Triangle> triangles,
                        float ray_offset) {
+  if (triangles.empty()) return;
   TriangleMesh mesh;
   mesh.positions.assign(positions.begin(), positions.end());
   mesh.triangles.assign(triangles.begin(), triangles.end());
@@ -159,8 +160,9 @@ BuriedTest::BuriedTest(std::span<const Eigen::Vector3f> positions, std::span<con
 BuriedTest::~BuriedTest() = default;
 
 std::vector<std::uint8_t> BuriedTest::operator()(const Receivers& points) const {
-  const Implementation& own = *implementation_;
   std::vector<std::uint8_t> buried(points.size(), 0);
+  if (implementation_ == nullptr) return buried;
+  const Implementation& own = *implementation_;
   parallel_for(std::size_t{0}, points.size(), chunk_points, [&](std::size_t k) {
     const Eigen::Vector3f& normal = points.normals[k];
     const Eigen::Vector3f origin = points.positions[k] + own.ray_offset * normal;

@@ -23,7 +23,7 @@ namespace kiln {
 class BuriedTest {
  public:
   /// Keeps no reference. Vertices at the same position are taken as one. `ray_offset` (object units) is the distance
-  /// between a point and the start of its rays.
+  /// between a point and the start of its rays. Without triangles nothing is buried.
   BuriedTest(std::span<const Eigen::Vector3f> positions, std::span<const Triangle> triangles, float ray_offset);
   ~BuriedTest();
 
