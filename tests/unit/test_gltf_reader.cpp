@@ -232,6 +232,35 @@ TEST_F(GltfReader, TakesTheSetOfCoordinatesThatThePictureNames) {
   EXPECT_EQ(mesh.materials[0].diffuse, Eigen::Vector3f::Constant(0.5f));
 }
 
+TEST_F(GltfReader, AlphaModesSayWhetherOpacityCuts) {
+  const auto material = [this](Json extra) {
+    GltfBuilder builder;
+    Json primitive = square(builder);
+    primitive["material"] = 0;
+    builder.mesh(primitive);
+    builder.json["images"] = {{{"uri", "a.png"}}};
+    builder.json["textures"] = {{{"source", 0}}};
+    Json object = {
+        {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}, {"metallicRoughnessTexture", {{"index", 0}}}}},
+        {"emissiveFactor", {1, 0, 2}},
+        {"emissiveTexture", {{"index", 0}, {"texCoord", 1}}}};
+    object.update(extra);
+    builder.json["materials"] = {object};
+    return read(builder).materials.at(0);
+  };
+  EXPECT_FALSE(material(Json::object()).opacity.is_given()) << "alpha of an opaque material says nothing";
+  EXPECT_FALSE(material({{"alphaMode", "MASK"}, {"alphaCutoff", 0}}).opacity.is_given()) << "all of it reaches 0";
+  EXPECT_EQ(material({{"alphaMode", "MASK"}}).opacity_cutoff, 0.5f);
+  const SourceMaterial cut = material({{"alphaMode", "MASK"}, {"alphaCutoff", 0.75}});
+  EXPECT_TRUE(cut.opacity.texture);
+  EXPECT_EQ(cut.opacity_cutoff, 0.75f);
+  EXPECT_EQ(cut.metalness.channel, SourceShare::Channel::blue);
+  EXPECT_EQ(cut.roughness.channel, SourceShare::Channel::green);
+  EXPECT_TRUE(cut.roughness.texture && cut.metalness.texture);
+  EXPECT_EQ(cut.emission, Eigen::Vector3f(1, 0, 2));
+  EXPECT_FALSE(cut.emission_texture) << "of other texture coordinates than the colour's";
+}
+
 TEST_F(GltfReader, ReadsColorsAsLinear) {
   GltfBuilder builder;
   Json primitive = square(builder);

@@ -85,15 +85,14 @@ class MaterialReader {
   /// Takes the base colour's alpha for opacity where the material is not opaque.
   void read_alpha_mode(const GltfJson& object, SourceMaterial& material) const {
     const std::string mode = document_.text(object, "alphaMode", place_);
-    if (mode != "MASK" && mode != "BLEND") {
+    const double cutoff = mode == "MASK" ? document_.number(object, "alphaCutoff", 0.5, place_) : 0.5;
+    if ((mode != "MASK" && mode != "BLEND") || cutoff <= 0) {
       material.opacity = {};
       return;
     }
     material.opacity.texture = material.texture;
     material.opacity.channel = Channel::alpha;
-    if (mode == "MASK")
-      material.opacity_cutoff =
-          std::clamp(static_cast<float>(document_.number(object, "alphaCutoff", 0.5, place_)), 1e-3f, 1 - 1e-3f);
+    material.opacity_cutoff = std::min(static_cast<float>(cutoff), 1 - 1e-3f);
   }
 
   void read_color(const GltfJson& holder, const char* factor_key, const char* texture_key, SourceMaterial& material) {
