@@ -14,6 +14,7 @@
 #include "base/errors.h"
 #include "image/image_file.h"
 #include "material/cut_out.h"
+#include "material/cut_pattern.h"
 #include "material/load_albedo.h"
 #include "material/surface_opacity.h"
 #include "scratch.h"
@@ -138,6 +139,53 @@ TEST_F(Opacity, AgreesWithLookupsUnderEveryWrap) {
       EXPECT_GT(tried, 2000);
       EXPECT_LE(wrong, tried / 500) << options << mirrored;  // cells' outlines are straight, those of lookups are not
     }
+}
+
+TEST_F(Opacity, OutlinesMayRunAlongSidesAndThroughCorners) {
+  // Pictures of 0 and 255, whose outlines lie midway between texels, under triangles whose corners lie there, too.
+  std::mt19937 random(11);
+  const auto whole = [&](int most) { return static_cast<int>(random() % static_cast<unsigned>(most)); };
+  for (int round = 0; round < 60; ++round) {
+    const int width = 1 + whole(17), height = 1 + whole(13);
+    Image<std::uint8_t> picture(width, height, 1);
+    for (std::uint8_t& value : picture.values()) value = static_cast<std::uint8_t>(255 * whole(2));
+    write_png(path("t.png"), picture);
+    SurfaceShare::Material material;
+    material.texture = std::make_shared<const ChannelTexture>(SourcePicture{path("t.png"), nullptr, "t.png"},
+                                                              SourceShare::Channel::grey);
+    material.wrap_u = static_cast<ChannelTexture::Wrap>(whole(3));
+    material.wrap_v = static_cast<ChannelTexture::Wrap>(whole(3));
+    for (int k = 0; k < 20; ++k) {
+      std::array<Eigen::Vector2f, 3> uvs;
+      for (Eigen::Vector2f& uv : uvs)
+        uv = k % 2 == 0 ? Eigen::Vector2f(static_cast<float>(whole(5) - 2), static_cast<float>(whole(5) - 2))
+                        : Eigen::Vector2f((static_cast<float>(whole(40)) + 0.5f) / static_cast<float>(width),
+                                          (static_cast<float>(whole(40)) + 0.5f) / static_cast<float>(height));
+      const CutPattern pattern = cut_pattern(material, 0.5f, uvs);
+      const Eigen::Vector2f ab = uvs[1] - uvs[0], ac = uvs[2] - uvs[0];
+      if (std::abs(ab.x() * ac.y() - ab.y() * ac.x()) < 1e-6f) continue;  // sees a line of the picture alone
+      const auto is_in = [&](float u, float v) {
+        if (pattern.part != CutPattern::Part::pieces) return pattern.part == CutPattern::Part::whole;
+        return std::ranges::any_of(pattern.triangles, [&](const auto& triangle) {
+          for (std::size_t e = 0; e < 3; ++e) {
+            const auto& a = pattern.places[triangle[e]].weights;
+            const auto& b = pattern.places[triangle[(e + 1) % 3]].weights;
+            if ((b[1] - a[1]) * (v - a[2]) - (b[2] - a[2]) * (u - a[1]) < -1e-6f) return false;
+          }
+          return true;
+        });
+      };
+      int wrong = 0;
+      for (int q = 0; q < 60; ++q) {
+        float u = static_cast<float>(whole(1000)) / 1000, v = static_cast<float>(whole(1000)) / 1000;
+        if (u + v > 1) u = 1 - u, v = 1 - v;
+        const Eigen::Vector2f uv = (1 - u - v) * uvs[0] + u * uvs[1] + v * uvs[2];
+        const float value = material.texture->at(uv, material.wrap_u, material.wrap_v);
+        if (std::abs(value - 0.5f) > 0.2f) wrong += is_in(u, v) != (value >= 0.5f);  // outlines are straight in a cell
+      }
+      EXPECT_EQ(wrong, 0) << round << ' ' << k;
+    }
+  }
 }
 
 TEST_F(Opacity, LeavesNoGapsAlongEdges) {

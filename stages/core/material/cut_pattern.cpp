@@ -22,6 +22,9 @@ constexpr double tolerance = 0.1;
 /// there.
 constexpr float least_share_of_edge = 1e-3f;
 
+/// Distance, in texels, from a triangle's side at which a point is on it.
+constexpr double side_width = 1e-6;
+
 using Point = Eigen::Vector2d;  // in texels; texels' centres are at whole numbers
 using Corners = std::array<Point, 3>;
 
@@ -110,8 +113,8 @@ struct Side {
     along = corners[second] - from;
   }
 
-  /// Returns a number that is positive inside, proportional to the distance.
-  double inside(const Point& point) const { return sign * cross(along, point - from); }
+  /// Returns the distance from the side's line, positive inside.
+  double inside(const Point& point) const { return sign * cross(along, point - from) / along.norm(); }
   double place_of(const Point& point) const {
     return std::clamp((point - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
   }
@@ -170,63 +173,95 @@ class Outlines {
     bool upwards;
   };
 
+  /// Point at which lines cross a cell's edge, or a spoke from a corner to its middle, and a number of its own.
+  struct CellPoint {
+    Point point;
+    std::uint64_t key;
+  };
+
   void trace_cell(int i, int j) {
-    const std::array<float, 4> value = {shares_.at(i, j), shares_.at(i + 1, j), shares_.at(i + 1, j + 1),
-                                        shares_.at(i, j + 1)};
+    const std::array<Eigen::Vector2i, 4> corners = {{{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}};
+    std::array<float, 4> value{};
     std::array<bool, 4> is_there{};
     int count = 0;
-    for (std::size_t k = 0; k < 4; ++k) count += is_there[k] = value[k] >= cutoff_;
+    for (std::size_t k = 0; k < 4; ++k) {
+      value[k] = shares_.at(corners[k].x(), corners[k].y());
+      count += is_there[k] = value[k] >= cutoff_;
+    }
     if (count == 0 || count == 4) return;
     const std::array<CellEdge, 4> edges = {{{i, j, false}, {i + 1, j, true}, {i, j + 1, false}, {i, j, true}}};
     // Walk around the cell; a line leaves it where what is there ends, and comes in where it begins.
-    const bool middle = (value[0] + value[1] + value[2] + value[3]) / 4 >= cutoff_;
+    const float middle = (value[0] + value[1] + value[2] + value[3]) / 4;
     for (std::size_t k = 0; k < 4; ++k) {
       if (!is_there[k] || is_there[(k + 1) % 4]) continue;
-      // The line through edge k joins the next edge at which what is there begins, one way around or the other.
+      if (count == 2 && is_there[(k + 2) % 4]) {
+        // A saddle: the line goes around the corner that differs from the middle, by way of the spoke to it.
+        const bool around_next = middle >= cutoff_;
+        const std::size_t corner = around_next ? (k + 1) % 4 : k;
+        const CellPoint turn = on_spoke(corners[corner], {i, j}, corner, value[corner], middle);
+        add(on_edge(edges[k]), turn);
+        add(turn, on_edge(edges[around_next ? (k + 1) % 4 : (k + 3) % 4]));
+        continue;
+      }
       std::size_t other = (k + 1) % 4;
-      if (count == 2 && is_there[(k + 2) % 4])
-        other = middle ? (k + 1) % 4 : (k + 3) % 4;
-      else
-        while (is_there[other] || !is_there[(other + 1) % 4]) other = (other + 1) % 4;
-      add(edges[k], edges[other]);
+      while (is_there[other] || !is_there[(other + 1) % 4]) other = (other + 1) % 4;
+      add(on_edge(edges[k]), on_edge(edges[other]));
     }
   }
 
-  Point crossing(const CellEdge& edge) const {
-    const float a = shares_.at(edge.i, edge.j),
-                b = edge.upwards ? shares_.at(edge.i, edge.j + 1) : shares_.at(edge.i + 1, edge.j);
-    const double share = std::clamp((cutoff_ - a) / (b - a), least_share_of_edge, 1 - least_share_of_edge);
-    const Point start(shares_.first().x() + edge.i, shares_.first().y() + edge.j);
-    return edge.upwards ? Point(start.x(), start.y() + share) : Point(start.x() + share, start.y());
+  /// Returns the place between values a and b at which the cutoff is reached, 0 to 1, off the ends.
+  double crossing(float a, float b) const {
+    return std::clamp((cutoff_ - a) / (b - a), least_share_of_edge, 1 - least_share_of_edge);
   }
 
-  /// Adds the part inside the triangle of a line between two edges of a cell.
-  void add(const CellEdge& from, const CellEdge& to) {
-    const Point a = crossing(from), b = crossing(to);
+  std::uint64_t number_of_cell(int i, int j) const {
+    return static_cast<std::uint64_t>(j) * static_cast<std::uint64_t>(shares_.width()) + static_cast<std::uint64_t>(i);
+  }
+
+  CellPoint on_edge(const CellEdge& edge) const {
+    const double share = crossing(shares_.at(edge.i, edge.j),
+                                  edge.upwards ? shares_.at(edge.i, edge.j + 1) : shares_.at(edge.i + 1, edge.j));
+    const Point start(shares_.first().x() + edge.i, shares_.first().y() + edge.j);
+    return {start + share * (edge.upwards ? Point(0, 1) : Point(1, 0)),
+            8 * number_of_cell(edge.i, edge.j) + (edge.upwards ? 1 : 0)};
+  }
+
+  CellPoint on_spoke(const Eigen::Vector2i& corner, const Eigen::Vector2i& cell, std::size_t number, float value,
+                     float middle) const {
+    const Point from = (shares_.first() + corner).cast<double>();
+    const Point to = (shares_.first() + cell).cast<double>() + Point(0.5, 0.5);
+    return {from + crossing(value, middle) * (to - from), 8 * number_of_cell(cell.x(), cell.y()) + 4 + number};
+  }
+
+  /// Adds the part inside the triangle of a line between two points of a cell.
+  void add(const CellPoint& from, const CellPoint& to) {
+    const Point &a = from.point, &b = to.point;
     double begin = 0, end = 1;
     int begin_side = -1, end_side = -1;
     for (int k = 0; k < 3; ++k) {
       const double at_a = sides_[static_cast<std::size_t>(k)].inside(a),
                    at_b = sides_[static_cast<std::size_t>(k)].inside(b);
-      if (at_a < 0 && at_b < 0) return;
+      if (at_a <= side_width && at_b <= side_width) return;
+      // A point on the side ends a line there: beside it, regions would join through the gap.
       const double share = at_a / (at_a - at_b);
-      if (at_a < 0 && share >= begin) {
-        begin = share;
+      const double entry = at_a < -side_width ? share : 0, exit = at_b < -side_width ? share : 1;
+      if (at_a <= side_width && entry >= begin) {
+        begin = entry;
         begin_side = k;
       }
-      if (at_b < 0 && share <= end) {
-        end = share;
+      if (at_b <= side_width && exit <= end) {
+        end = exit;
         end_side = k;
       }
     }
     if (begin >= end) return;
-    const auto node_at = [&](const CellEdge& edge, const Point& whole, double share, int side) {
-      if (side < 0) return node_of(edge, whole);
+    const auto node_at = [&](const CellPoint& whole, double share, int side) {
+      if (side < 0) return node_of(whole);
       const Point point = a + share * (b - a);
       nodes_.push_back({point, side, sides_[static_cast<std::size_t>(side)].place_of(point)});
       return static_cast<int>(nodes_.size() - 1);
     };
-    const int first = node_at(from, a, begin, begin_side), second = node_at(to, b, end, end_side);
+    const int first = node_at(from, begin, begin_side), second = node_at(to, end, end_side);
     join(first, second);
     join(second, first);
   }
@@ -236,12 +271,9 @@ class Outlines {
     beside[beside[0] < 0 ? 0 : 1] = other;
   }
 
-  int node_of(const CellEdge& edge, const Point& point) {
-    const std::uint64_t key = 2 * (static_cast<std::uint64_t>(edge.j) * static_cast<std::uint64_t>(shares_.width()) +
-                                   static_cast<std::uint64_t>(edge.i)) +
-                              (edge.upwards ? 1 : 0);
-    const auto [found, is_new] = node_of_edge_.try_emplace(key, static_cast<int>(nodes_.size()));
-    if (is_new) nodes_.push_back({point});
+  int node_of(const CellPoint& place) {
+    const auto [found, is_new] = node_of_key_.try_emplace(place.key, static_cast<int>(nodes_.size()));
+    if (is_new) nodes_.push_back({place.point});
     return found->second;
   }
 
@@ -283,7 +315,7 @@ class Outlines {
   float cutoff_;
   std::vector<Side> sides_;
   std::vector<Node> nodes_;
-  std::unordered_map<std::uint64_t, int> node_of_edge_;
+  std::unordered_map<std::uint64_t, int> node_of_key_;
 };
 
 /// Number of a vertex's place; -1 where it has none yet, as where two lines cross.
@@ -355,12 +387,12 @@ class Pieces {
     for (std::size_t k = 0; k < 3; ++k) corner[k] = insert(corners_[k], corner_place(k));
     for (int k = 0; k < 3; ++k) {
       const Side& side = outlines.sides()[static_cast<std::size_t>(k)];
-      std::vector<std::pair<double, std::size_t>> on_side;
+      std::vector<std::pair<double, std::size_t>> nodes;
       for (std::size_t n = 0; n < outlines.nodes().size(); ++n)
-        if (outlines.nodes()[n].side == k) on_side.emplace_back(outlines.nodes()[n].place, n);
-      std::sort(on_side.begin(), on_side.end());
+        if (outlines.nodes()[n].side == k) nodes.emplace_back(outlines.nodes()[n].place, n);
+      std::sort(nodes.begin(), nodes.end());
       Triangulation::Vertex_handle last = corner[side.first];
-      for (const auto& [place, n] : on_side) {
+      for (const auto& [place, n] : nodes) {
         CutPattern::Place weights{};
         weights.weights[side.first] = static_cast<float>(1 - place);
         weights.weights[side.second] = static_cast<float>(place);

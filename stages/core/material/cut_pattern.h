@@ -32,8 +32,8 @@ inline constexpr double most_texels_of_triangle = 1 << 26;
 double texels_under(const SurfaceShare::Material& material, const std::array<Eigen::Vector2f, 3>& uvs);
 
 /// Finds the part of a triangle where a material's share, which has a texture, is at least `cutoff` (cut_out.h). The
-/// outline is traced through the cells between texels' centres [Lorensen 1987], whose saddles go by the mean of their
-/// corners, and simplified [Douglas 1973].
+/// outline is traced through the cells between texels' centres [Lorensen 1987], whose saddles go by their middle,
+/// the mean of their corners, and simplified [Douglas 1973].
 CutPattern cut_pattern(const SurfaceShare::Material& material, float cutoff, const std::array<Eigen::Vector2f, 3>& uvs);
 
 }  // namespace kiln
