@@ -112,7 +112,7 @@ class Chain {
     std::vector<std::uint32_t> concerned = wedges_.neighbours(found->to);
     concerned.push_back(found->to);
     for (const std::uint32_t near : concerned) ++changes_[near];
-    // Those in the queue find their new costs when their turn comes: few costs fall.
+    // Points in the queue find their new costs when their turn comes: few costs fall.
     for (const std::uint32_t near : concerned)
       if (!best_[near].queued) renew(near);
     return true;

@@ -10,7 +10,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Those of albedo where it varies, those of opacity where the surface is not opaque everywhere,
+/// Names of the metrics: those of albedo where it varies, those of opacity where the surface is not opaque everywhere,
 /// those of own_normal where the normal map that ships has a size of its own.
 constexpr const char* metric_names =
     "width height covered_texels found_by_ray_outwards found_by_ray_inwards found_by_nearest_point disagreeing "

@@ -202,7 +202,7 @@ TEST(Lod, AnOutlineThatDipsInwardsKeepsToItsOverhang) {
     return std::count_if(levels[0].mesh.positions.begin(), levels[0].mesh.positions.end(),
                          [](const Eigen::Vector3f& p) { return p.norm() < 0.5f; });
   };
-  // Of its 61 vertices the two at its ends may go, where the outline draws back.
+  // Two of its 61 vertices, those at its ends, may go, where the outline draws back.
   EXPECT_EQ(inner_vertices(0.05), 59);
   EXPECT_LT(inner_vertices(0.1), 59);
   // A chord over an angle a hangs over by 48 (1 - cos(a / 2)): 1 texel takes 23.4 degrees, so eight chords at least.

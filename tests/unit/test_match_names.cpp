@@ -178,7 +178,7 @@ TEST_F(MatchNames, PartsThatTouchKeepTheirTriangles) {
     const float middle =
         (saved.positions[triangle[0]].x() + saved.positions[triangle[1]].x() + saved.positions[triangle[2]].x()) / 3;
     const float side = beside.x() / 2, out = area_normal(saved, triangle).normalized().x();
-    // Of the two faces between the cubes, that of the right cube faces left.
+    // Two faces lie between the cubes; that of the right cube faces left.
     const bool is_right = middle > side + 1e-3f || (middle > side - 1e-3f && out < -0.9f);
     EXPECT_EQ(pairs.low_part[sources[t].triangle], is_right ? 1u : 0u);
     of_right += is_right;

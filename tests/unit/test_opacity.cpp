@@ -281,6 +281,11 @@ TEST_F(Opacity, SettingsAndFilesSayWhatIsCut) {
   for (int i = 0; i < 64; ++i) gradual.values()[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(40 + 3 * i);
   write_png(path("g.png"), gradual);
   ASSERT_EQ(load("map_d g.png").warnings.size(), 1u);
+  EXPECT_EQ(load("Kd 1 1 1", {.opacity_texture = path("g.png").string()}).warnings, load("map_d g.png").warnings);
+  write_png(path("clear.png"), Image<std::uint8_t>(2, 2, 1, 9));
+  EXPECT_THROW(load("Kd 1 1 1", {.opacity_texture = path("clear.png").string()}), BadInput);
+  write_png(path("opaque.png"), Image<std::uint8_t>(2, 2, 1, 255));
+  EXPECT_TRUE(load("Kd 1 1 1", {.opacity_texture = path("opaque.png").string()}).opacity.is_opaque());
   EXPECT_NE(load("map_d g.png").warnings[0].find("gradual"), std::string::npos);
 }
 

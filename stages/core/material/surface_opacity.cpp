@@ -29,6 +29,10 @@ std::string materials_text(std::size_t count, const std::string& what) {
   return std::to_string(count) + (count == 1 ? " material " : " materials ") + what;
 }
 
+std::string gradual_text(std::size_t count) {
+  return materials_text(count, "with a picture of opacity that is gradual, cut at its cutoff (--opacity-cutoff)");
+}
+
 /// Loads the picture that the settings name for all of the surface.
 LoadedOpacity load_picture(const ImportedMesh& mesh, const MaterialSettings& settings) {
   std::error_code error;
@@ -36,14 +40,20 @@ LoadedOpacity load_picture(const ImportedMesh& mesh, const MaterialSettings& set
   if (!std::filesystem::is_regular_file(file, error))
     throw BadInput(file.string(), "does not exist", "a picture for --opacity-texture", "check the path");
   require_uvs_everywhere(mesh, "--opacity-texture");
+  const auto texture = std::make_shared<const ChannelTexture>(SourcePicture{file, nullptr, file.string()},
+                                                              SourceShare::Channel::coverage);
   SurfaceShare::Materials materials;
-  materials.all.push_back({.texture = std::make_shared<const ChannelTexture>(
-                               SourcePicture{file, nullptr, file.string()}, SourceShare::Channel::coverage)});
+  materials.all.push_back({.texture = texture});
   materials.of_triangle.assign(mesh.mesh.triangles.size(), 0);
   materials.uvs = mesh.surface.uvs;
   LoadedOpacity loaded;
   loaded.files = {file};
-  loaded.opacity = {SurfaceShare(std::move(materials)), {static_cast<float>(settings.opacity_cutoff.value_or(0.5))}};
+  const auto cutoff = static_cast<float>(settings.opacity_cutoff.value_or(0.5));
+  if (texture->highest() < cutoff)
+    throw BadInput(file.string(), "is nowhere as opaque as the cutoff", "a picture of what is there",
+                   "give another picture, or a lower --opacity-cutoff");
+  if (is_gradual(*texture)) loaded.warnings.push_back(gradual_text(1));
+  if (texture->lowest() < cutoff) loaded.opacity = {SurfaceShare(std::move(materials)), {cutoff}};
   return loaded;
 }
 
@@ -91,9 +101,7 @@ LoadedOpacity load_opacity(const ImportedMesh& mesh, const MaterialSettings& set
     }
   }
   if (glassy > 0) loaded.warnings.push_back(materials_text(glassy, "not opaque (such as glass), taken for opaque"));
-  if (gradual > 0)
-    loaded.warnings.push_back(
-        materials_text(gradual, "with a picture of opacity that is gradual, cut at its cutoff (--opacity-cutoff)"));
+  if (gradual > 0) loaded.warnings.push_back(gradual_text(gradual));
   if (!cuts) return loaded;
   loaded.opacity = {SurfaceShare(std::move(materials)), std::move(cutoffs)};
   loaded.files = std::move(found.files);

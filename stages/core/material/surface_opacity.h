@@ -51,8 +51,8 @@ struct LoadedOpacity {
 /// Loads the opacity of a mesh. With `settings.opacity` from its file: pictures of its materials (map_d, alpha of
 /// glTF's modes MASK and BLEND, FBX's transparency), each with the file's cutoff unless the settings have one. A
 /// material without a picture that is not opaque throughout, such as glass, is taken for opaque, with a warning:
-/// without it all of its surface would be gone. Throws BadInput for pictures that are missing or not understood, and
-/// for textured faces without texture coordinates.
+/// without it all of its surface would be gone. Throws BadInput for pictures that are missing or not understood, for
+/// one of the settings that is nowhere as opaque as the cutoff, and for textured faces without texture coordinates.
 LoadedOpacity load_opacity(const ImportedMesh& mesh, const MaterialSettings& settings);
 
 }  // namespace kiln
