@@ -8,7 +8,7 @@
 #include "base/json_fwd.h"
 #include "base/outputs.h"
 #include "base/progress.h"
-#include "lod/level_chain.h"
+#include "collapse/level_chain.h"
 #include "lod/lod_settings.h"
 #include "lod/measure.h"
 #include "maps/asset_hints.h"

@@ -68,8 +68,12 @@ DracoQuantisation LowFile::quantisation_for(const TriangleMesh& mesh) {
   return quantisation;
 }
 
-TriangleMesh LowFile::save(const TriangleMesh& mesh, const DracoQuantisation& quantisation) const {
-  save_draco(file_, mesh, quantisation);
+TriangleMesh LowFile::save(const TriangleMesh& mesh, const DracoQuantisation& quantisation,
+                           const std::vector<IntegerAttribute>& attributes) const {
+  if (attributes.empty())
+    save_draco(file_, mesh, quantisation);
+  else
+    save_attributed_draco(file_, mesh, attributes, quantisation);
   TriangleMesh saved = load_draco(file_);
   if (!(surface_area(saved) > 0))
     throw BadInput(source_, "is so thin that no triangle has an area in steps of 24 bits of its longest side",
@@ -89,13 +93,13 @@ TriangleMesh LowFile::write(const TriangleMesh& mesh) {
   return save(low, quantisation);
 }
 
-TriangleMesh LowFile::write_as_it_is(const TriangleMesh& mesh) {
+TriangleMesh LowFile::write_as_it_is(const TriangleMesh& mesh, const std::vector<IntegerAttribute>& attributes) {
   DracoQuantisation quantisation = quantisation_for(mesh);
   quantisation.uv_bits = sufficient_uv_bits(mesh.uvs);
   TriangleMesh low = mesh;
   low.colors.clear();
   if (colored_ != nullptr) low.colors = nearest_colors(*colored_, *colored_surface_, low.positions);
-  low = save(low, quantisation);
+  low = save(low, quantisation, attributes);
   // A file's frame is by its own size.
   if (low.frame != mesh.frame)
     for (Eigen::Vector3f& position : low.positions)

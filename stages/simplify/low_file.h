@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "mesh/draco_file.h"
 #include "mesh/nearest_surface.h"
@@ -29,8 +30,9 @@ class LowFile {
   TriangleMesh write(const TriangleMesh& mesh);
 
   /// Writes a mesh of one normal per vertex as it is, with its normals and uvs, whose steps are at most 1/65,535 of the
-  /// unit square up to a box of 256 squares; otherwise as write(). Returns it in the frame of `mesh`.
-  TriangleMesh write_as_it_is(const TriangleMesh& mesh);
+  /// unit square up to a box of 256 squares, and with `attributes` of its vertices; otherwise as write(). Returns it in
+  /// the frame of `mesh`.
+  TriangleMesh write_as_it_is(const TriangleMesh& mesh, const std::vector<IntegerAttribute>& attributes = {});
 
   /// Returns the bits of positions in the latest write.
   int position_bits() const { return position_bits_; }
@@ -39,7 +41,8 @@ class LowFile {
   double too_few_steps() const { return too_few_steps_; }
 
  private:
-  TriangleMesh save(const TriangleMesh& mesh, const DracoQuantisation& quantisation) const;
+  TriangleMesh save(const TriangleMesh& mesh, const DracoQuantisation& quantisation,
+                    const std::vector<IntegerAttribute>& attributes = {}) const;
   DracoQuantisation quantisation_for(const TriangleMesh& mesh);
 
   std::filesystem::path file_;

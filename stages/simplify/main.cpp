@@ -6,8 +6,8 @@
 #include "base/outputs.h"
 #include "import/import_mesh.h"
 #include "simplify/low_file.h"
+#include "simplify/make_low.h"
 #include "simplify/own_low.h"
-#include "simplify/simplify.h"
 #include "simplify/simplify_report.h"
 
 int main(int argc, char** argv) {
@@ -40,11 +40,11 @@ int main(int argc, char** argv) {
       command.warn(own_low->warnings);
       command.also_read(own_low->files);
     }
-    const WrittenForm written = [&](const TriangleMesh& mesh) {
-      return own_low ? low.write_as_it_is(mesh) : low.write(mesh);
-    };
-    const SimplifyResult result = own_low ? take_low(high, own_low->mesh, written, command.progress("measure"))
-                                          : simplify(high, settings, written, command.progress("simplify"));
+    std::vector<std::string> warnings;
+    const KeepingResult made = make_low(imported, own_low ? &*own_low : nullptr, settings, low, warnings,
+                                        command.progress(own_low ? "measure" : "simplify"));
+    command.warn(warnings);
+    const SimplifyResult& result = made.simplified;
     if (settings.strict && !result.shortfall.empty())
       throw BadInput(high_file.string(), result.shortfall, "a mesh that can have so few",
                      "give more --faces, or leave out --strict");
@@ -52,6 +52,6 @@ int main(int argc, char** argv) {
     // Save.
     command.warn(warnings_of(result, low));
     command.finish(outputs,
-                   command.result(result.seconds, metrics_of(result, imported, low, own_low ? &*own_low : nullptr)));
+                   command.result(result.seconds, metrics_of(made, imported, low, own_low ? &*own_low : nullptr)));
   });
 }

@@ -28,12 +28,15 @@ int times(int factor, int faces) {
 class Reducer {
  public:
   Reducer(const TriangleMesh& manifold, const SimplifySettings& settings, const CandidateDistance& distance,
-          std::span<const double> vertex_weights, std::span<const VertexPair> feature_edges)
+          std::span<const double> vertex_weights, const FeatureLines& lines)
       : manifold_(manifold),
         settings_(settings),
         distance_(distance),
         vertex_weights_(vertex_weights),
-        given_(feature_edges.begin(), feature_edges.end()) {}
+        given_(lines.hard),
+        hard_(lines.hard) {
+    given_.insert(given_.end(), lines.smooth.begin(), lines.smooth.end());
+  }
 
   Reduced to_faces(const ProgressFunction& progress) const {
     if (quality() == SimplifyQuality::best) return best_to_faces(progress);
@@ -131,7 +134,7 @@ class Reducer {
   }
 
   Reduced unfitted(const CollapseSequence& sequence, std::size_t count) const {
-    return {sequence.after(count), surviving_edges(sequence, count, given_), sequence.met_envelope};
+    return {sequence.after(count), surviving_edges(sequence, count, hard_), sequence.met_envelope};
   }
 
   /// Fits the mesh after `count` collapses to the start. Vertices of feature edges stay.
@@ -146,7 +149,7 @@ class Reducer {
     // origins tell which they are.
     std::vector<std::uint8_t> is_fixed;
     for (std::uint32_t origin : origins) is_fixed.push_back(in_feature[origin]);
-    return {fit_to_surface(low, sequence.start, is_fixed, {}, progress), surviving_edges(sequence, count, given_),
+    return {fit_to_surface(low, sequence.start, is_fixed, {}, progress), surviving_edges(sequence, count, hard_),
             false};
   }
 
@@ -200,20 +203,21 @@ class Reducer {
   const CandidateDistance& distance_;
   std::span<const double> vertex_weights_;
   std::vector<VertexPair> given_;  ///< feature edges of the input
+  std::vector<VertexPair> hard_;   ///< those of them that are shaded as edges
 };
 
 }  // namespace
 
 Reduced reduce_to_faces(const TriangleMesh& manifold, const SimplifySettings& settings,
                         const CandidateDistance& distance, std::span<const double> vertex_weights,
-                        std::span<const VertexPair> feature_edges, const ProgressFunction& progress) {
-  return Reducer(manifold, settings, distance, vertex_weights, feature_edges).to_faces(progress);
+                        const FeatureLines& lines, const ProgressFunction& progress) {
+  return Reducer(manifold, settings, distance, vertex_weights, lines).to_faces(progress);
 }
 
 Reduced reduce_to_error(const TriangleMesh& manifold, const SimplifySettings& settings,
                         const CandidateDistance& distance, std::span<const double> vertex_weights,
-                        std::span<const VertexPair> feature_edges, const ProgressFunction& progress) {
-  return Reducer(manifold, settings, distance, vertex_weights, feature_edges).to_error(progress);
+                        const FeatureLines& lines, const ProgressFunction& progress) {
+  return Reducer(manifold, settings, distance, vertex_weights, lines).to_error(progress);
 }
 
 }  // namespace kiln

@@ -13,8 +13,8 @@
 
 namespace kiln {
 
-/// Reduced mesh, and which of the feature edges that were given are left in it: each once, the smaller vertex first,
-/// sorted.
+/// Reduced mesh, and which of the hard feature edges that were given are left in it: each once, the smaller vertex
+/// first, sorted.
 struct Reduced {
   TriangleMesh mesh;
   std::vector<VertexPair> feature_edges;
@@ -26,16 +26,16 @@ struct Reduced {
 using CandidateDistance = std::function<MeshDistance(const TriangleMesh&)>;
 
 /// Reduces an oriented manifold to settings.faces triangles (settings.max_error is not used), of the same topology; to
-/// more where no collapse is left that keeps topology and shape. `vertex_weights` and `feature_edges`: as in
-/// CollapseSettings.
+/// more where no collapse is left that keeps topology and shape. `vertex_weights`: as in
+/// CollapseSettings; `lines` are its feature edges.
 Reduced reduce_to_faces(const TriangleMesh& manifold, const SimplifySettings& settings,
                         const CandidateDistance& distance, std::span<const double> vertex_weights = {},
-                        std::span<const VertexPair> feature_edges = {}, const ProgressFunction& progress = no_progress);
+                        const FeatureLines& lines = {}, const ProgressFunction& progress = no_progress);
 
 /// Reduces it to the fewest triangles, to 1 %, whose Hausdorff distance stays within settings.max_error
 /// (settings.faces is not used); the manifold itself where none does.
 Reduced reduce_to_error(const TriangleMesh& manifold, const SimplifySettings& settings,
                         const CandidateDistance& distance, std::span<const double> vertex_weights = {},
-                        std::span<const VertexPair> feature_edges = {}, const ProgressFunction& progress = no_progress);
+                        const FeatureLines& lines = {}, const ProgressFunction& progress = no_progress);
 
 }  // namespace kiln

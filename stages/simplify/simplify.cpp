@@ -99,18 +99,6 @@ std::string shortfall_of(const Reduced& low, const SimplifySettings& settings, s
   return fmt::format("stopped at {} triangles of {}: {}", triangles, settings.faces, reason);
 }
 
-/// Measures the mesh that was written, result.mesh, against what it stands for, both in `frame`. `is_split` says
-/// whether vertices of one position may be several.
-void measure(SimplifyResult& result, const TriangleMesh& measured, const MeshFrame& frame, bool is_split) {
-  result.distance = mesh_distance(measured, result.mesh);
-  const double hausdorff_distance = result.distance.hausdorff * bounding_box(measured).diagonal();
-  result.hausdorff_distance = hausdorff_distance * frame.unit();
-  result.manifold = is_manifold(result.mesh);
-  result.closed = result.manifold && is_closed(is_split ? join_at_positions(result.mesh) : result.mesh);
-  result.degenerate_triangles = count_degenerate(result.mesh);
-  result.flipped_triangles = count_flipped(result.mesh, measured, flipped_reach(result.mesh, hausdorff_distance));
-}
-
 /// Returns the simplified mesh with normals that are smooth but for its feature edges, in the input's frame.
 TriangleMesh shaded(const Reduced& reduced, const MeshFrame& frame) {
   TriangleMesh mesh = reduced.mesh;
@@ -146,8 +134,18 @@ TriangleMesh with_normals(const TriangleMesh& mesh) {
   return result;
 }
 
+void measure_result(SimplifyResult& result, const TriangleMesh& measured, const MeshFrame& frame, bool is_split) {
+  result.distance = mesh_distance(measured, result.mesh);
+  const double hausdorff_distance = result.distance.hausdorff * bounding_box(measured).diagonal();
+  result.hausdorff_distance = hausdorff_distance * frame.unit();
+  result.manifold = is_manifold(result.mesh);
+  result.closed = result.manifold && is_closed(is_split ? join_at_positions(result.mesh) : result.mesh);
+  result.degenerate_triangles = count_degenerate(result.mesh);
+  result.flipped_triangles = count_flipped(result.mesh, measured, flipped_reach(result.mesh, hausdorff_distance));
+}
+
 SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settings, const WrittenForm& written,
-                        const ProgressFunction& progress) {
+                        const ProgressFunction& progress, const std::vector<VertexPair>& kept_lines) {
   check_distances(settings);
   const bool by_error = settings.max_error > 0;
   const Stopwatch stopwatch;
@@ -156,9 +154,9 @@ SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settin
   result.input_triangles = static_cast<int>(high.triangles.size());
 
   TriangleMesh manifold{high.positions, high.triangles, {}, {}};
-  std::vector<VertexPair> features;
+  FeatureLines lines;
   if (is_manifold(manifold))  // import_mesh gives one
-    features = feature_edges_of(high);
+    lines = {feature_edges_of(high), kept_lines};
   else
     repair_mesh(manifold);
   result.dropped = drop_small_components(manifold, settings);
@@ -171,12 +169,12 @@ SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settin
     return by_error ? distance_within(measured, form, settings.max_error) : mesh_distance(measured, form);
   };
   const auto reduce = by_error ? reduce_to_error : reduce_to_faces;
-  const Reduced low = reduce(manifold, settings, distance, weights, features, part_of(progress, 0, 0.9));
+  const Reduced low = reduce(manifold, settings, distance, weights, lines, part_of(progress, 0, 0.9));
   result.collapse_seconds = reduce_stopwatch.seconds();
   result.mesh = write(shaded(low, high.frame));
 
   progress(0.9);
-  measure(result, measured, high.frame, !features.empty());
+  measure_result(result, measured, high.frame, !lines.hard.empty());
   if (!by_error && result.mesh.triangles.size() > static_cast<std::size_t>(settings.faces))
     result.shortfall =
         shortfall_of(low, settings, result.mesh.triangles.size(), why_no_fewer(result.mesh, settings.faces, manifold));
@@ -193,29 +191,34 @@ SimplifyResult take_low(const TriangleMesh& high, const TriangleMesh& low, const
   result.input_triangles = static_cast<int>(high.triangles.size());
   progress(0);
   result.mesh = write(low);
-  measure(result, high, high.frame, true);
+  measure_result(result, high, high.frame, true);
   progress(1);
   result.seconds = stopwatch.seconds() - write.seconds();
   return result;
 }
 
 Json SimplifyResult::to_json() const {
-  return {{"triangles", mesh.triangles.size()},
-          {"vertices", mesh.positions.size()},
-          {"input_triangles", input_triangles},
-          {"dropped_components", dropped.components},
-          {"dropped_triangles", dropped.triangles},
-          {"dropped_area", dropped.area_share},
-          {"dropped_size", dropped.largest_size},
-          {"hausdorff", distance.hausdorff},
-          {"hausdorff_from_result", distance.hausdorff_from_second},
-          {"rms", distance.rms},
-          {"hausdorff_distance", hausdorff_distance},
-          {"manifold", manifold},
-          {"closed", closed},
-          {"degenerate_triangles", degenerate_triangles},
-          {"flipped_triangles", flipped_triangles},
-          {"collapse_seconds", collapse_seconds}};
+  Json json = {{"triangles", mesh.triangles.size()},
+               {"vertices", mesh.positions.size()},
+               {"input_triangles", input_triangles},
+               {"dropped_components", dropped.components},
+               {"dropped_triangles", dropped.triangles},
+               {"dropped_area", dropped.area_share},
+               {"dropped_size", dropped.largest_size},
+               {"hausdorff", distance.hausdorff},
+               {"hausdorff_from_result", distance.hausdorff_from_second},
+               {"rms", distance.rms},
+               {"hausdorff_distance", hausdorff_distance},
+               {"manifold", manifold},
+               {"closed", closed},
+               {"degenerate_triangles", degenerate_triangles},
+               {"flipped_triangles", flipped_triangles},
+               {"collapse_seconds", collapse_seconds}};
+  if (uv_deviation) {
+    json["uv_deviation"] = uv_deviation->largest;
+    json["uv_deviation_rms"] = uv_deviation->rms;
+  }
+  return json;
 }
 
 }  // namespace kiln

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "base/json_fwd.h"
@@ -9,10 +10,18 @@
 #include "mesh/mesh_distance.h"
 #include "mesh/mesh_repair.h"
 #include "mesh/triangle_mesh.h"
+#include "simplify/feature_edges.h"
 #include "simplify/simplify_settings.h"
 #include "simplify/small_components.h"
 
 namespace kiln {
+
+/// How far textures slide where uvs are kept: distances between where a uv lies on the input and on the result, at the
+/// input's vertices and the middles of its edges, as fractions of its bounding box's diagonal.
+struct UvDeviation {
+  double largest = 0;
+  double rms = 0;  ///< over the surface
+};
 
 /// Simplified mesh, and what was measured of it.
 struct SimplifyResult {
@@ -26,8 +35,9 @@ struct SimplifyResult {
   bool closed = false;           ///< whether it is a manifold without border
   int degenerate_triangles = 0;  ///< count_degenerate
   int flipped_triangles = 0;     ///< count_flipped within flipped_reach of the input
-  double seconds = 0;            ///< time of it all, without `written`
-  double collapse_seconds = 0;   ///< time of the collapses and fits, without repairs and the result's distances
+  std::optional<UvDeviation> uv_deviation;  ///< where uvs are kept
+  double seconds = 0;                       ///< time of it all, without `written`
+  double collapse_seconds = 0;  ///< time of the collapses and fits, without repairs and the result's distances
 
   Json to_json() const;
 };
@@ -56,9 +66,15 @@ TriangleMesh with_normals(const TriangleMesh& mesh);
 /// distance from `high` within settings.max_error. Where that many cannot be had without damage there are more, and
 /// `shortfall` says why; a mesh that has no more to begin with is returned as it is. A manifold stays one, of the same
 /// topology; what is none is split into one. Throws WrongUsage for a max_error or envelope that no file of 16 bits can
-/// keep, and for an envelope of another engine than CGAL's.
+/// keep, and for an envelope of another engine than CGAL's. Edges of `kept_lines` collapse along themselves alone, as
+/// hard edges do, and are shaded smoothly.
 SimplifyResult simplify(const TriangleMesh& high, const SimplifySettings& settings,
-                        const WrittenForm& written = with_normals, const ProgressFunction& progress = no_progress);
+                        const WrittenForm& written = with_normals, const ProgressFunction& progress = no_progress,
+                        const std::vector<VertexPair>& kept_lines = {});
+
+/// Measures result.mesh, as written, against what it stands for, `measured`, both in `frame`. `is_split` says whether
+/// vertices of one position may be several.
+void measure_result(SimplifyResult& result, const TriangleMesh& measured, const MeshFrame& frame, bool is_split);
 
 /// Takes `low` as the low mesh of `high`, both in one frame, and measures it as simplify() does. Nothing is removed.
 SimplifyResult take_low(const TriangleMesh& high, const TriangleMesh& low, const WrittenForm& written = with_normals,

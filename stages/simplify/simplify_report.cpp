@@ -35,15 +35,16 @@ void check_high(const ImportedMesh& high, const SimplifySettings& settings, cons
                    "export them, or leave out --colors");
 }
 
-Json metrics_of(const SimplifyResult& result, const ImportedMesh& high, const LowFile& low, const OwnLow* own_low) {
+Json metrics_of(const KeepingResult& kept, const ImportedMesh& high, const LowFile& low, const OwnLow* own_low) {
   const Eigen::Vector3d& origin = high.mesh.frame.origin;
-  Json metrics = result.to_json();
+  Json metrics = kept.simplified.to_json();
   metrics["position_bits"] = low.position_bits();
   metrics["input_components"] = high.repairs.components;
   metrics["input_border_loops"] = high.repairs.border_loops;
   metrics["repairs"] = repairs_to_json(high.repairs);
   if (own_low != nullptr) metrics["low_repairs"] = repairs_to_json(own_low->repairs);
   metrics["origin"] = {origin.x(), origin.y(), origin.z()};
+  if (!kept.materials.empty()) metrics["materials"] = kept.materials;
   metrics["hard_edges"] = hard_edges_of_normals(high.mesh).size();
   return metrics;
 }

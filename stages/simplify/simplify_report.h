@@ -9,6 +9,7 @@
 #include "simplify/low_file.h"
 #include "simplify/own_low.h"
 #include "simplify/simplify.h"
+#include "simplify/simplify_keeping.h"
 
 namespace kiln {
 
@@ -19,7 +20,7 @@ void check_high(const ImportedMesh& high, const SimplifySettings& settings, cons
 void check_low(const OwnLow& low, const SimplifySettings& settings);
 
 /// Returns the metrics of the stage's record; `own_low` is null where there is none.
-Json metrics_of(const SimplifyResult& result, const ImportedMesh& high, const LowFile& low,
+Json metrics_of(const KeepingResult& kept, const ImportedMesh& high, const LowFile& low,
                 const OwnLow* own_low = nullptr);
 
 /// Returns what a user should know of a result: parts that were dropped, triangles too many, parts too far apart.

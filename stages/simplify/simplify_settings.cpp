@@ -2,12 +2,32 @@
 #include "simplify/simplify_settings.h"
 
 #include <charconv>
+#include <set>
+#include <sstream>
 #include <system_error>
 
 #include "base/errors.h"
 #include "import/low_import.h"
 
 namespace kiln {
+
+namespace {
+
+/// Parses the words of --keep.
+std::set<std::string> kept_things(const std::string& keep) {
+  std::set<std::string> things;
+  std::istringstream words(keep);
+  for (std::string word; std::getline(words, word, ',');) {
+    std::erase(word, ' ');
+    if ((word != "uv" && word != "materials" && word != "none") || !things.insert(word).second)
+      throw WrongUsage("keep: found " + keep + ", expected none, uv, materials or uv,materials");
+  }
+  if (things.empty() || (things.contains("none") && things.size() > 1))
+    throw WrongUsage("keep: found '" + keep + "', expected none, uv, materials or uv,materials");
+  return things;
+}
+
+}  // namespace
 
 std::optional<double> SimplifySettings::drop_size() const {
   if (drop_components == "auto") return {};
@@ -19,13 +39,18 @@ std::optional<double> SimplifySettings::drop_size() const {
   return size;
 }
 
+bool SimplifySettings::keeps_uvs() const { return kept_things(keep).contains("uv"); }
+
+bool SimplifySettings::keeps_materials() const { return kept_things(keep).contains("materials"); }
+
 ImportSettings SimplifySettings::low_import() const {
   return low_import_settings(import, {low_up, low_unit, low_scale});
 }
 
 std::span<const char* const> steering_options() {
   static constexpr const char* names[] = {"faces", "max-error",         "quality",  "aware",  "engine",
-                                          "cost",  "max-normal-change", "envelope", "crease", "drop-components"};
+                                          "cost",  "max-normal-change", "envelope", "crease", "drop-components",
+                                          "keep",  "uv-overhang"};
   return names;
 }
 
@@ -97,6 +122,18 @@ OptionSet simplify_options(SimplifySettings& settings) {
         checked.drop_components = text;
         checked.drop_size();
       });
+  options.checked_text(
+      "keep", settings.keep, "none, uv, materials or uv,materials",
+      "What survives of the input besides its shape: its uvs, so that its textures fit the result, and which material "
+      "each triangle has; seams and borders of materials move along themselves alone",
+      [](const std::string& text) {
+        SimplifySettings checked;
+        checked.keep = text;
+        checked.keeps_uvs();
+      });
+  options.number("uv-overhang", settings.uv_overhang, 0, 1,
+                 "With --keep uv: what charts may hang over their outlines, a fraction of the unit square, where the "
+                 "texture has its gutter");
   add_import_options(options, settings.import);
   options.toggle("colors", settings.colors, "Keep the input's colours, as colours of vertices");
   add_low_options(options, settings);
@@ -116,6 +153,13 @@ void check_options(const SimplifySettings& settings, const std::function<bool(co
     throw WrongUsage("--faces and --max-error are two ways to say where to stop; give one of them");
   if (settings.engine == SimplifyEngine::cgal && is_given("quality"))
     throw WrongUsage("--quality is of --engine kiln; --engine cgal takes --cost instead");
+  if (settings.keeps_uvs())
+    for (const char* option : {"aware", "engine", "cost", "max-normal-change", "envelope", "crease"})
+      if (is_given(option))
+        throw WrongUsage(std::string("--") + option +
+                         " is for simplification without uvs; leave it out, or uv in --keep");
+  if (!settings.keeps_uvs() && is_given("uv-overhang"))
+    throw WrongUsage("--uv-overhang is of kept uvs; give --keep uv, too, or leave it out");
   for (const char* option : {"cost", "max-normal-change", "envelope"})
     if (settings.engine == SimplifyEngine::kiln && is_given(option))
       throw WrongUsage(std::string("--") + option + " is of --engine cgal; give that, too, or leave it out");

@@ -57,6 +57,10 @@ struct SimplifySettings {
   /// Size of components that are left out: the diagonal of the box, up to this fraction of the mesh's; 0 keeps all.
   /// "auto": specks of no size beside the result's triangles, where they would take much of `faces`.
   std::string drop_components = "auto";
+  std::string keep = "none";  ///< what follows the triangles that are left: none, uv, materials or both, "uv,materials"
+  /// Distance that charts of kept uvs may hang over their outlines, as a fraction of the unit square: what lies there
+  /// in a texture is its gutter.
+  double uv_overhang = 0.002;
   bool colors = false;   ///< whether the input's colours are kept at the vertices
   std::string low = {};  ///< file of a low mesh that is taken as it is, instead of simplification; empty: none
   /// Axis, unit and factor of that file, as `import` has them for the high mesh; "same": those of the high mesh.
@@ -64,6 +68,10 @@ struct SimplifySettings {
 
   /// Returns the fraction that drop_components says, or nothing for "auto". Throws WrongUsage for what is neither.
   std::optional<double> drop_size() const;
+
+  /// Tell what `keep` says. Throw WrongUsage for what is none of its words.
+  bool keeps_uvs() const;
+  bool keeps_materials() const;
 
   /// Returns how the file `low` is read: as the high mesh, but for what the settings say, and no hole of it is filled.
   /// Throws WrongUsage for a low_up, low_unit or low_scale that is none.

@@ -26,6 +26,15 @@ constexpr const char* low_repair_names =
     "low_repairs.nonmanifold_vertices low_repairs.unorientable_edges low_repairs.inside_out_components "
     "low_repairs.clamped_colors low_repairs.filled_holes";
 
+constexpr const char* kept_uv_names = "uv_deviation uv_deviation_rms";
+
+bool keeps_uvs(const AssetSettings& settings) {
+  const auto simplify = settings.find("simplify");
+  if (simplify == settings.end()) return false;
+  const auto keep = simplify->second.find("keep");
+  return keep != simplify->second.end() && keep->second.find("uv") != std::string::npos;
+}
+
 bool has_own_low(const AssetSettings& settings) {
   const auto simplify = settings.find("simplify");
   return simplify != settings.end() && simplify->second.contains("low");
@@ -56,12 +65,13 @@ StageRun run(const AssetPlan& plan) {
 }  // namespace
 
 const StageInfo& simplify_stage() {
-  static const StageInfo info = {
-      .name = "simplify",
-      .options = options,
-      .rivals = rivals(),
-      .metrics = {{metric_names}, {low_repair_names, "low_repairs.", "low of simplify", has_own_low}},
-      .run = run};
+  static const StageInfo info = {.name = "simplify",
+                                 .options = options,
+                                 .rivals = rivals(),
+                                 .metrics = {{metric_names},
+                                             {low_repair_names, "low_repairs.", "low of simplify", has_own_low},
+                                             {kept_uv_names, "uv_deviation", "uv for keep of simplify", keeps_uvs}},
+                                 .run = run};
   return info;
 }
 

@@ -214,7 +214,7 @@ TEST(CgalCollapse, KeepsFeatureEdges) {
   const std::vector<VertexPair> edges = find_feature_edges(cube, 45);
   for (const CollapseCost cost : all_costs) {
     SCOPED_TRACE(static_cast<int>(cost));
-    const Reduced low = reduce_to_faces(cube, by_cgal(60, cost), {}, {}, edges);
+    const Reduced low = reduce_to_faces(cube, by_cgal(60, cost), {}, {}, {edges, {}});
     EXPECT_LE(low.mesh.triangles.size(), 60u);
     double length = 0;
     for (const auto& [a, b] : low.feature_edges)

@@ -14,7 +14,7 @@
 #include "base/errors.h"
 #include "base/json.h"
 #include "base/parallel.h"
-#include "lod/level_chain.h"
+#include "collapse/level_chain.h"
 #include "lod/lod.h"
 #include "mesh/hard_edges.h"
 #include "mesh/mesh_components.h"

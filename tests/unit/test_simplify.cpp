@@ -281,7 +281,7 @@ double length_of(const TriangleMesh& mesh, const std::vector<VertexPair>& edges)
 
 Reduced reduced(const TriangleMesh& mesh, const SimplifySettings& settings, const std::vector<VertexPair>& edges) {
   const auto distance = [&](const TriangleMesh& candidate) { return mesh_distance(mesh, candidate); };
-  return reduce_to_faces(mesh, settings, distance, {}, edges);
+  return reduce_to_faces(mesh, settings, distance, {}, {edges, {}});
 }
 
 TEST(SimplifyFeatureEdges, OfACubeComeDownToItsTwelve) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "mesh/mesh_vertices.h"
 
+#include <utility>
+
 #include "mesh/triangle_edges.h"
 
 namespace kiln {
@@ -28,7 +30,8 @@ TriangleMesh with_vertices(const TriangleMesh& mesh, std::span<const std::uint32
   return taken;
 }
 
-TriangleMesh with_triangles(const TriangleMesh& mesh, std::span<const Triangle> triangles) {
+TriangleMesh with_triangles(const TriangleMesh& mesh, std::span<const Triangle> triangles,
+                            std::vector<std::uint32_t>* sources) {
   constexpr std::uint32_t unused = ~0u;
   std::vector<std::uint32_t> number(mesh.positions.size(), unused), vertices;
   for (const Triangle& triangle : triangles)
@@ -40,6 +43,7 @@ TriangleMesh with_triangles(const TriangleMesh& mesh, std::span<const Triangle> 
   }
   TriangleMesh taken = with_vertices(mesh, vertices);
   taken.triangles = renumbered(triangles, number);
+  if (sources != nullptr) *sources = std::move(vertices);
   return taken;
 }
 

@@ -13,6 +13,8 @@ namespace kiln {
 TriangleMesh with_vertices(const TriangleMesh& mesh, std::span<const std::uint32_t> vertices);
 
 /// Returns a mesh of these triangles, which name vertices of another mesh, and of the vertices that they use.
-TriangleMesh with_triangles(const TriangleMesh& mesh, std::span<const Triangle> triangles);
+/// `sources`, if given, becomes the vertex of `mesh` that each vertex was.
+TriangleMesh with_triangles(const TriangleMesh& mesh, std::span<const Triangle> triangles,
+                            std::vector<std::uint32_t>* sources = nullptr);
 
 }  // namespace kiln

@@ -38,6 +38,7 @@ class WedgeMesh {
   /// same positions; where more than two sides are left, its points stay.
   explicit WedgeMesh(const TriangleMesh& mesh);
 
+  std::size_t wedge_count() const { return point_of_.size(); }
   std::size_t point_count() const { return triangles_of_.size(); }
   int triangle_count() const { return triangle_count_; }
 

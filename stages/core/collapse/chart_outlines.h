@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "lod/wedge_mesh.h"
+#include "collapse/wedge_mesh.h"
 
 namespace kiln {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/extent.h"
-#include "lod/wedge_mesh.h"
+#include "collapse/wedge_mesh.h"
 #include "mesh/triangle_mesh.h"
 
 namespace kiln {
@@ -18,6 +18,15 @@ struct DeviationChange {
   /// Largest distance of the samples concerned afterwards, and of new edges from vanishing ones where they cross in the
   /// atlas; in units of the mesh.
   double worst = 0;
+};
+
+/// Sample of the first mesh's surface, and the place of its uv on what the collapse has left.
+struct PlacedSample {
+  Triangle wedges{};                ///< of the triangle that holds the uv, or is nearest to it
+  std::array<double, 3> weights{};  ///< of the wedges at the place; they add up to 1
+  Eigen::Vector3d position;         ///< on the first mesh
+  Eigen::Vector3d normal;           ///< as that mesh is shaded, of any length
+  double area = 0;                  ///< of the first mesh that it stands for
 };
 
 /// Distance between a mesh under collapse and the first one, at places of the same uv: how far what a texel shows has
@@ -33,14 +42,15 @@ class TextureDeviation {
   /// Moves the samples to the triangles that they will be in. To be called before the collapse is applied.
   void apply(const WedgeMesh& wedges, const WedgeCollapse& collapse);
 
-  /// Returns the largest distance of all samples.
-  double largest() const;
+  /// Returns every sample where it is now.
+  std::vector<PlacedSample> placed_samples(const WedgeMesh& wedges) const;
 
  private:
   struct Sample {
     Eigen::Vector2d uv;
     Eigen::Vector3d position;
-    double weight = 0;
+    Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+    double weight = 0;   ///< area
     double squared = 0;  ///< distance to the surface's point of this uv, squared
   };
   struct Move {

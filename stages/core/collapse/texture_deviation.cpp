@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // J. Cohen, M. Olano, D. Manocha: Appearance-Preserving Simplification. SIGGRAPH 1998. Their bound is over all points
 // of the overlay of both meshes in the plane; ours is sampled, and the levels are measured at every texel afterwards.
-#include "lod/texture_deviation.h"
+#include "collapse/texture_deviation.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -84,7 +84,7 @@ TextureDeviation::TextureDeviation(const TriangleMesh& mesh, Extent size) : samp
     uvs_.emplace_back(mesh.uvs[v].x() * size.width, mesh.uvs[v].y() * size.height);
     positions_.emplace_back(mesh.positions[v].cast<double>());
     normals_.emplace_back(mesh.normals.empty() ? Eigen::Vector3d::Zero().eval() : mesh.normals[v].cast<double>());
-    samples_.push_back({uvs_.back(), positions_.back(), 0, 0});
+    samples_.push_back({uvs_.back(), positions_.back(), normals_.back().cast<float>(), 0, 0});
   }
   const BoundingBox box = bounding_box(mesh);
   least_height_ = 2 * box.sides().maxCoeff() / 65'535.0;  // two steps of the file
@@ -95,7 +95,8 @@ TextureDeviation::TextureDeviation(const TriangleMesh& mesh, Extent size) : samp
     for (const std::uint32_t wedge : triangle) samples_[wedge].weight += area_normal(mesh, triangle).norm() / 12;
   TriangleEdges(mesh.triangles).for_each([&](std::span<const std::uint32_t> sides) {
     const std::uint32_t a = vertex_at(mesh.triangles, sides[0]), b = vertex_at(mesh.triangles, next_corner(sides[0]));
-    Sample sample{(uvs_[a] + uvs_[b]) / 2, (positions_[a] + positions_[b]) / 2, 0, 0};
+    Sample sample{(uvs_[a] + uvs_[b]) / 2, (positions_[a] + positions_[b]) / 2,
+                  (normals_[a] + normals_[b]).cast<float>(), 0, 0};
     for (const std::uint32_t side : sides) sample.weight += area_normal(mesh, mesh.triangles[side / 3]).norm() / 12;
     samples_in_[sides[0] / 3].push_back(static_cast<std::uint32_t>(samples_.size()));
     samples_.push_back(sample);
@@ -205,10 +206,30 @@ void TextureDeviation::apply(const WedgeMesh& wedges, const WedgeCollapse& colla
   }
 }
 
-double TextureDeviation::largest() const {
-  double squared = 0;
-  for (const Sample& sample : samples_) squared = std::max(squared, sample.squared);
-  return std::sqrt(squared);
+std::vector<PlacedSample> TextureDeviation::placed_samples(const WedgeMesh& wedges) const {
+  std::vector<PlacedSample> placed;
+  placed.reserve(samples_.size());
+  const auto place = [&](std::uint32_t index, const Triangle& triangle, const std::array<double, 3>& weights) {
+    const Sample& sample = samples_[index];
+    placed.push_back({triangle, weights, sample.position, sample.normal.cast<double>(), sample.weight});
+  };
+  std::vector<std::uint8_t> is_placed(uvs_.size(), 0);
+  for (std::uint32_t t = 0; t < samples_in_.size(); ++t) {
+    if (!wedges.is_there(t)) continue;
+    const Triangle& triangle = wedges.wedges(t);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (is_placed[triangle[k]]++ != 0) continue;
+      std::array<double, 3> own{};
+      own[k] = 1;
+      place(triangle[k], triangle, own);
+    }
+    for (const std::uint32_t index : samples_in_[t]) {
+      double squared = 0;
+      place(index, triangle,
+            nearest_weights(samples_[index].uv, {uvs_[triangle[0]], uvs_[triangle[1]], uvs_[triangle[2]]}, squared));
+    }
+  }
+  return placed;
 }
 
 }  // namespace kiln

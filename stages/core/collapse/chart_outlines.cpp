@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "lod/chart_outlines.h"
+#include "collapse/chart_outlines.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include "collapse/uv_plane.h"
 
 namespace kiln {
 
@@ -14,11 +16,6 @@ constexpr std::uint32_t no_edge = ~0u;
 constexpr double lookup_texels = 0.5;  // that a bilinear lookup reaches beyond its place
 
 std::uint64_t key_of(std::uint32_t high, std::uint32_t low) { return static_cast<std::uint64_t>(high) << 32 | low; }
-
-/// Returns twice the signed area of a triangle; positive where c lies to the left of a to b.
-double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
-  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-}
 
 using Corners = std::array<Eigen::Vector2d, 3>;  // counter-clockwise
 

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "lod/level_chain.h"
+#include "collapse/level_chain.h"
 
 #include <algorithm>
 #include <limits>
 #include <queue>
 
 #include "base/parallel.h"
-#include "lod/chart_outlines.h"
-#include "lod/texture_deviation.h"
-#include "lod/wedge_mesh.h"
+#include "collapse/chart_outlines.h"
+#include "collapse/sample_fit.h"
+#include "collapse/texture_deviation.h"
+#include "collapse/wedge_mesh.h"
 #include "mesh/mesh_vertices.h"
 
 namespace kiln {
@@ -17,10 +18,18 @@ namespace {
 
 constexpr std::uint32_t no_point = ~0u;
 
-std::vector<Eigen::Vector2d> texel_uvs(const TriangleMesh& mesh, Extent size) {
+/// Returns uvs in texels, those of each layer beside those of the one before.
+std::vector<Eigen::Vector2d> outline_uvs(const TriangleMesh& mesh, const LevelLimits& limits) {
   std::vector<Eigen::Vector2d> uvs;
   uvs.reserve(mesh.uvs.size());
-  for (const Eigen::Vector2f& uv : mesh.uvs) uvs.emplace_back(uv.x() * size.width, uv.y() * size.height);
+  double lowest = 0, highest = 0;
+  for (const Eigen::Vector2f& uv : mesh.uvs) {
+    uvs.emplace_back(uv.x() * limits.size.width, uv.y() * limits.size.height);
+    lowest = std::min(lowest, uvs.back().x());
+    highest = std::max(highest, uvs.back().x());
+  }
+  const double width = highest - lowest + 4 * (limits.farthest_overhang + limits.size.width);
+  for (std::size_t v = 0; v < limits.layers.size(); ++v) uvs[v].x() += limits.layers[v] * width;
   return uvs;
 }
 
@@ -30,14 +39,15 @@ class Chain {
   Chain(const TriangleMesh& atlas, const LevelLimits& limits)
       : wedges_(atlas),
         deviation_(atlas, limits.size),
-        outlines_(wedges_, texel_uvs(atlas, limits.size), limits.overhang,
+        outlines_(wedges_, outline_uvs(atlas, limits), limits.overhang,
                   std::max(limits.overhang, limits.farthest_overhang)),
         best_(wedges_.point_count()),
         changes_(wedges_.point_count(), 0) {}
 
   int triangle_count() const { return wedges_.triangle_count(); }
-  double deviation() const { return deviation_.largest(); }
   std::vector<Triangle> triangles() const { return wedges_.triangles(); }
+  std::vector<PlacedSample> samples() const { return deviation_.placed_samples(wedges_); }
+  const WedgeMesh& wedges() const { return wedges_; }
 
   /// Collapses until a goal is reached. Returns false where nothing is left to collapse before.
   bool reach(const LevelGoal& goal, const ProgressFunction& progress) {
@@ -136,8 +146,20 @@ std::vector<Level> make_level_chain(const TriangleMesh& atlas, const std::vector
   for (std::size_t k = 0; k < goals.size(); ++k) {
     Level& level = levels.emplace_back();
     level.reached_goal = chain.reach(goals[k], step_of(progress, k, goals.size()));
-    level.mesh = with_triangles(atlas, chain.triangles());
-    level.deviation = chain.deviation();
+    level.mesh = with_triangles(atlas, chain.triangles(), &level.sources);
+    if (limits.fits) {
+      const FittedLevel fitted = fit_to_samples(chain.wedges(), atlas, chain.samples(), goals[k].error);
+      for (std::size_t v = 0; v < level.sources.size(); ++v) {
+        level.mesh.positions[v] = fitted.positions[level.sources[v]];
+        if (!level.mesh.normals.empty()) level.mesh.normals[v] = fitted.normals[level.sources[v]];
+      }
+      level.deviation = fitted.deviation.largest;
+      level.rms_deviation = fitted.deviation.rms;
+    } else {
+      const SampleDeviation deviation = deviation_of(chain.samples(), atlas.positions);
+      level.deviation = deviation.largest;
+      level.rms_deviation = deviation.rms;
+    }
   }
   return levels;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Wedges are the corners' attributes of [Hoppe 1999]; a collapse keeps to half-edges, so that no vertex moves.
-#include "lod/wedge_mesh.h"
+#include "collapse/wedge_mesh.h"
 
 #include <algorithm>
 #include <span>
