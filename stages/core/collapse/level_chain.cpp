@@ -90,8 +90,9 @@ class Chain {
   Best find_best(std::uint32_t point) const {
     Best best;
     for (const WedgeCollapse& candidate : wedges_.collapses_of(point)) {
-      const DeviationChange change = deviation_.judge(wedges_, candidate);
-      if (!change.allowed || change.worst > largest_ || (best.to != no_point && change.cost >= best.cost)) continue;
+      const double most_cost = best.to != no_point ? best.cost : std::numeric_limits<double>::infinity();
+      const DeviationChange change = deviation_.judge(wedges_, candidate, most_cost);
+      if (!change.allowed || change.worst > largest_) continue;
       if (!outlines_.allow(wedges_, candidate)) continue;
       best = {candidate.to, change.cost, false};
     }

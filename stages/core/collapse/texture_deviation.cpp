@@ -140,66 +140,96 @@ TextureDeviation::Move TextureDeviation::nearest(const Sample& sample,
   return best;
 }
 
-DeviationChange TextureDeviation::follow(const WedgeMesh& wedges, const WedgeCollapse& collapse,
-                                         std::vector<Move>* moves) const {
-  DeviationChange change;
-  double worst = 0;
-  std::vector<NewTriangle> changed;
-  for (const WedgeCollapse::Sector& sector : collapse.sectors) {
-    changed.clear();
-    for (const std::uint32_t t : sector.triangles) {
-      const Triangle& before = wedges.wedges(t);
-      if (wedges.point_of(before[0]) == collapse.to || wedges.point_of(before[1]) == collapse.to ||
-          wedges.point_of(before[2]) == collapse.to)
-        continue;
-      Triangle after = before;
-      after[wedges.corner_at(t, collapse.from)] = sector.to_wedge;
-      NewTriangle& triangle = changed.emplace_back();
-      triangle.triangle = t;
-      for (std::size_t k = 0; k < 3; ++k) {
-        triangle.uvs[k] = uvs_[after[k]];
-        triangle.positions[k] = positions_[after[k]];
-      }
-      if (!shape_is_kept(triangle, after, before)) return change;
+/// Lists the triangles of a sector as the collapse leaves them. Returns false where it may not.
+bool TextureDeviation::make_triangles(const WedgeMesh& wedges, const WedgeCollapse& collapse,
+                                      const WedgeCollapse::Sector& sector, std::vector<NewTriangle>& made) const {
+  made.clear();
+  for (const std::uint32_t t : sector.triangles) {
+    const Triangle& before = wedges.wedges(t);
+    if (wedges.point_of(before[0]) == collapse.to || wedges.point_of(before[1]) == collapse.to ||
+        wedges.point_of(before[2]) == collapse.to)
+      continue;
+    Triangle after = before;
+    after[wedges.corner_at(t, collapse.from)] = sector.to_wedge;
+    NewTriangle& triangle = made.emplace_back();
+    triangle.triangle = t;
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle.uvs[k] = uvs_[after[k]];
+      triangle.positions[k] = positions_[after[k]];
     }
-    if (changed.empty()) return change;
-    // Where a new edge crosses one that vanishes, this collapse alone moves the surface most ([Cohen 1998], section 4).
-    for (const std::uint32_t t : sector.triangles)
-      for (const std::uint32_t wedge : wedges.wedges(t)) {
-        const Edge gone{uvs_[sector.from_wedge], uvs_[wedge], positions_[sector.from_wedge], positions_[wedge]};
-        for (const NewTriangle& made : changed)
-          for (std::size_t k = 0; k < 3; ++k)
-            worst = std::max(
-                worst, squared_distance_at_crossing(
-                           gone, {uvs_[sector.to_wedge], made.uvs[k], positions_[sector.to_wedge], made.positions[k]}));
-      }
-    const auto follow_one = [&](std::uint32_t index) {
-      const Sample& sample = samples_[index];
-      Move move = nearest(sample, changed);
-      move.sample = index;
-      change.cost +=
-          sample.weight * (move.squared * std::sqrt(move.squared) - sample.squared * std::sqrt(sample.squared));
-      worst = std::max(worst, move.squared);
-      if (moves != nullptr) moves->push_back(move);
-    };
-    for (const std::uint32_t t : sector.triangles)
-      for (const std::uint32_t index : samples_in_[t]) follow_one(index);
-    follow_one(sector.from_wedge);
+    if (!shape_is_kept(triangle, after, before)) return false;
   }
+  return !made.empty();
+}
+
+/// Returns the largest squared distance of new edges from vanishing ones where they cross in the atlas: there a
+/// collapse alone moves the surface most ([Cohen 1998], section 4).
+double TextureDeviation::distance_at_crossings(const WedgeMesh& wedges, const WedgeCollapse::Sector& sector,
+                                               const std::vector<NewTriangle>& made) const {
+  double worst = 0;
+  for (const std::uint32_t t : sector.triangles)
+    for (const std::uint32_t wedge : wedges.wedges(t)) {
+      const Edge gone{uvs_[sector.from_wedge], uvs_[wedge], positions_[sector.from_wedge], positions_[wedge]};
+      for (const NewTriangle& triangle : made)
+        for (std::size_t k = 0; k < 3; ++k)
+          worst =
+              std::max(worst, squared_distance_at_crossing(gone, {uvs_[sector.to_wedge], triangle.uvs[k],
+                                                                  positions_[sector.to_wedge], triangle.positions[k]}));
+    }
+  return worst;
+}
+
+DeviationChange TextureDeviation::judge(const WedgeMesh& wedges, const WedgeCollapse& collapse,
+                                        double most_cost) const {
+  const auto cubed = [](double squared) { return squared * std::sqrt(squared); };
+  DeviationChange change;
+  std::vector<std::vector<NewTriangle>> made(collapse.sectors.size());
+  for (std::size_t s = 0; s < made.size(); ++s)
+    if (!make_triangles(wedges, collapse, collapse.sectors[s], made[s])) return change;
+
+  // The cost ends at what all samples take from it where each is as near as can be; stop where that is too much.
+  for (const WedgeCollapse::Sector& sector : collapse.sectors) {
+    for (const std::uint32_t t : sector.triangles)
+      for (const std::uint32_t index : samples_in_[t])
+        change.cost -= samples_[index].weight * cubed(samples_[index].squared);
+    change.cost -= samples_[sector.from_wedge].weight * cubed(samples_[sector.from_wedge].squared);
+  }
+  double worst = 0;
+  for (std::size_t s = 0; s < made.size(); ++s) {
+    const WedgeCollapse::Sector& sector = collapse.sectors[s];
+    const auto add = [&](std::uint32_t index) {
+      const Move move = nearest(samples_[index], made[s]);
+      change.cost += samples_[index].weight * cubed(move.squared);
+      worst = std::max(worst, move.squared);
+      return change.cost < most_cost;
+    };
+    if (!add(sector.from_wedge)) return change;
+    for (const std::uint32_t t : sector.triangles)
+      for (const std::uint32_t index : samples_in_[t])
+        if (!add(index)) return change;
+  }
+  for (std::size_t s = 0; s < made.size(); ++s)
+    worst = std::max(worst, distance_at_crossings(wedges, collapse.sectors[s], made[s]));
   change.allowed = true;
   change.worst = std::sqrt(worst);
   return change;
 }
 
-DeviationChange TextureDeviation::judge(const WedgeMesh& wedges, const WedgeCollapse& collapse) const {
-  return follow(wedges, collapse, nullptr);
-}
-
 void TextureDeviation::apply(const WedgeMesh& wedges, const WedgeCollapse& collapse) {
   std::vector<Move> moves;
-  follow(wedges, collapse, &moves);
-  for (const WedgeCollapse::Sector& sector : collapse.sectors)
-    for (const std::uint32_t t : sector.triangles) samples_in_[t].clear();
+  std::vector<NewTriangle> made;
+  for (const WedgeCollapse::Sector& sector : collapse.sectors) {
+    make_triangles(wedges, collapse, sector, made);
+    const auto move_one = [&](std::uint32_t index) {
+      moves.push_back(nearest(samples_[index], made));
+      moves.back().sample = index;
+    };
+    for (const std::uint32_t t : sector.triangles) {
+      for (const std::uint32_t index : samples_in_[t]) move_one(index);
+      samples_in_[t].clear();
+    }
+    move_one(sector.from_wedge);
+  }
   for (const Move& move : moves) {
     samples_in_[move.triangle].push_back(move.sample);
     samples_[move.sample].squared = move.squared;

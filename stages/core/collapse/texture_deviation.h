@@ -37,7 +37,8 @@ class TextureDeviation {
  public:
   TextureDeviation(const TriangleMesh& mesh, Extent size);
 
-  DeviationChange judge(const WedgeMesh& wedges, const WedgeCollapse& collapse) const;
+  /// Judges a collapse. One that costs `most_cost` or more is not allowed.
+  DeviationChange judge(const WedgeMesh& wedges, const WedgeCollapse& collapse, double most_cost) const;
 
   /// Moves the samples to the triangles that they will be in. To be called before the collapse is applied.
   void apply(const WedgeMesh& wedges, const WedgeCollapse& collapse);
@@ -63,7 +64,10 @@ class TextureDeviation {
     std::array<Eigen::Vector3d, 3> positions;
   };
   bool shape_is_kept(const NewTriangle& changed, const Triangle& wedges, const Triangle& before) const;
-  DeviationChange follow(const WedgeMesh& wedges, const WedgeCollapse& collapse, std::vector<Move>* moves) const;
+  bool make_triangles(const WedgeMesh& wedges, const WedgeCollapse& collapse, const WedgeCollapse::Sector& sector,
+                      std::vector<NewTriangle>& made) const;
+  double distance_at_crossings(const WedgeMesh& wedges, const WedgeCollapse::Sector& sector,
+                               const std::vector<NewTriangle>& made) const;
   Move nearest(const Sample& sample, const std::vector<NewTriangle>& triangles) const;
 
   std::vector<Eigen::Vector2d> uvs_;                    ///< by wedge, texels
