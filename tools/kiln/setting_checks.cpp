@@ -73,10 +73,11 @@ class Checks {
   void check_impossible() const {
     const bool has_low = !text("simplify", "low").empty();
     const bool keeps_uvs = text("simplify", "keep").find("uv") != std::string::npos;
-    require(value("atlas", "uv") != "keep" || has_low || keeps_uvs, "atlas", "uv",
-            "a low mesh of the asset's own beside it, or 'keep: uv' for simplify, since kiln-simplify makes one without "
-            "uvs otherwise",
-            "add 'low: FILE' or 'simplify: {keep: uv}', or leave the line out");
+    require(
+        value("atlas", "uv") != "keep" || has_low || keeps_uvs, "atlas", "uv",
+        "a low mesh of the asset's own beside it, or 'keep: uv' for simplify, since kiln-simplify makes one without "
+        "uvs otherwise",
+        "add 'low: FILE' or 'simplify: {keep: uv}', or leave the line out");
     require(text("normals", "match") != "names" || has_low, "normals", "match",
             "a low mesh of the asset's own beside it, whose parts have names",
             "add 'low: FILE', or leave the line out");
@@ -96,7 +97,8 @@ class Checks {
     if (!given.contains("low"))  // defaults may say how the low meshes of other assets are read
       for (const char* name : {"low-up", "low-unit", "low-scale"}) given.erase(name);
     try_parsing(where("simplify", {"keep", "uv-overhang", "engine"}), "see kiln-simplify --help", [&] {
-      check_options(settings_from(given, simplify_options), [&](const std::string& name) { return given.contains(name); });
+      check_options(settings_from(given, simplify_options),
+                    [&](const std::string& name) { return given.contains(name); });
     });
     const double error = value("simplify", "max-error").get<double>();
     require(error == 0 || error >= 1e-4, "simplify", "max-error", "0, or 0.0001 to 1", "change the line");
