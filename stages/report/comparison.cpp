@@ -11,16 +11,15 @@
 #include "import/import_mesh.h"
 #include "material/cut_out.h"
 #include "material/load_albedo.h"
-#include "material/surroundings.h"
 #include "mesh/camera_record.h"
 #include "mesh/draco_file.h"
 #include "report/pictures.h"
+#include "report/recorded_scene.h"
 #include "report/reference.h"
 #include "report/render_asset.h"
+#include "report/split_asset.h"
 #include "report/transport.h"
 #include "scatter/subsurface_settings.h"
-#include "sh/directions.h"
-#include "sh/light_prior.h"
 #include "sh/light_spec.h"
 
 namespace kiln {
@@ -30,142 +29,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double split_share = 0.3;  // share of the progress
-
-std::vector<LightSpec> parse_lights(const std::string& option, const std::vector<std::string>& texts) {
-  std::vector<LightSpec> specs;
-  specs.reserve(texts.size());
-  for (const std::string& text : texts) specs.push_back(parse_light_spec(text));
-  if (specs.empty()) throw WrongUsage(option + ": found none; expected at least one, as in '45,30; ambient:1'");
-  return specs;
-}
-
-/// Tells whether the normals stage found or was given an albedo, or the bake has a material's.
-bool has_albedo(const AssetFolder& asset) {
-  return asset.record("bake").contains("subsurface") ||
-         asset.record("normals").value("albedo", Json::object()).value("source", "none") != "none";
-}
-
-/// Returns settings as the record of a stage has them; an empty text there is the default. `add_options` makes the
-/// options that hold them.
-template <class Settings>
-Settings settings_of(const Json& record, void (*add_options)(OptionSet&, Settings&)) {
-  Settings settings;
-  OptionSet options;
-  add_options(options, settings);
-  const Json recorded = record.value("settings", Json::object());
-  for (const Option& option : options.options()) {
-    const auto value = recorded.find(option.name);
-    if (value == recorded.end()) continue;
-    const std::string text = value->is_string() ? value->get<std::string>() : value->dump();
-    if (!text.empty()) option.set(text);
-  }
-  return settings;
-}
-
-MaterialSettings material_of(const Json& record) { return settings_of(record, add_material_options); }
-
-/// Returns the high mesh and the bake's surroundings, with the albedos of the bake's settings where light bounces.
-SceneMesh scene_of(const AssetFolder& asset, const ImportedMesh& high, bool bounces) {
-  const Json& bake = asset.record("bake");
-  Surroundings surroundings = settings_of(bake, add_surroundings_options);
-  surroundings.neighbours = bake.value("neighbours", surroundings.neighbours);
-  const MaterialSettings material = material_of(bake);
-  SceneMesh scene;
-  const auto add = [&](const TriangleMesh& mesh, const SurfaceAlbedo& albedo) {
-    if (bounces)
-      scene.add(mesh, albedo);
-    else
-      scene.add(mesh);
-  };
-  TriangleMesh own = high.mesh;
-  SurfaceAlbedo albedo = bounces ? load_albedo(high, material).albedo : SurfaceAlbedo();
-  cut_occluder(own, albedo, load_opacity(high, material).opacity, high.file.string());
-  add(own, albedo);
-  for (const PlacedMesh& placed :
-       load_surroundings(surroundings, bounding_box(high.mesh), material, bounces, high.mesh.frame))
-    add(placed.mesh, placed.material.albedo);
-  return scene;
-}
-
-/// Returns how often light bounces in what the error is measured against.
-int error_bounces(const AssetFolder& asset, const ReportSettings& settings) {
-  return settings.error_bounces.value_or(static_cast<int>(bounces_taken(asset.record("bake"))));
-}
-
-/// Returns why the causes of the error are not measured; empty if they are.
-std::string left_out(const AssetFolder& asset) {
-  const Json& bake = asset.record("bake");
-  const Json settings = bake.value("settings", Json::object());
-  if (bake.contains("subsurface")) return "light scatters beneath the surface, which the split does not follow";
-  if (asset.baked.vertices > 0) return "the asset is baked per vertex";
-  if (settings.value("bake-albedo", false)) return "the transfer has the albedo within";
-  if (settings.value("receiver", std::string("high")) != "high") return "the bake's receivers are on the low mesh";
-  return {};
-}
-
-/// Returns the directions of the bake.
-std::vector<Eigen::Vector3f> directions_of(const Json& bake) {
-  const Json& settings = bake.at("settings");
-  const std::string sampling = settings.value("sampling", std::string("fibonacci"));
-  const bool by_error = settings.value("max-error", std::string("none")) != "none";
-  return sample_directions(by_error                    ? Sampling::progressive
-                           : sampling == "stratified"  ? Sampling::stratified
-                           : sampling == "progressive" ? Sampling::progressive
-                                                       : Sampling::fibonacci,
-                           bake.at("directions").get<int>(), settings.value("seed", std::uint64_t{1}));
-}
-
-/// Returns the moments by band of the light that the error is expected under: of several lights the mean, each scaled
-/// to the same mean square of an unshadowed surface's exit radiance, as lighting_prior's.
-std::vector<double> prior_of(const ReportSettings& settings, int bands) {
-  if (settings.error_lights == "measured") return lighting_prior(bands);
-  std::vector<double> mean(static_cast<std::size_t>(bands));
-  for (const LightSpec& light : parse_lights("error-lights", list_of(settings.error_lights))) {
-    const std::vector<double> moments = band_moments(light_coefficients(light, bands));
-    const double square = unshadowed_exit_square(moments);
-    if (square > 0)
-      for (std::size_t l = 0; l < mean.size(); ++l) mean[l] += moments[l] / square;
-  }
-  if (mean[0] <= 0)
-    throw WrongUsage("error-lights: found '" + settings.error_lights + "', which are dark; expected light");
-  return mean;
-}
-
-/// Cuts away what the map of opacity of an asset does not show of its mesh.
-TriangleMesh cut_by_map(const TriangleMesh& low, const fs::path& opacity_map) {
-  constexpr auto edge = ChannelTexture::Wrap::clamp;
-  const auto texture = std::make_shared<const ChannelTexture>(SourcePicture{opacity_map, nullptr, opacity_map.string()},
-                                                              SourceShare::Channel::grey);
-  SurfaceShare::Materials materials;
-  materials.all.push_back({.texture = texture, .wrap_u = edge, .wrap_v = edge});
-  materials.of_triangle.assign(low.triangles.size(), 0);
-  for (const Triangle& t : low.triangles) materials.uvs.push_back({low.uvs[t[0]], low.uvs[t[1]], low.uvs[t[2]]});
-  return cut_out(low, {SurfaceShare(std::move(materials)), {0.5f}}, opacity_map.string()).mesh;
-}
-
-ErrorSplit split_error(const AssetFolder& asset, const TriangleMesh& low, const TriangleMesh& high,
-                       const SceneMesh& scene, const ReportSettings& settings, const ComparisonRun& run) {
-  const PrtAsset plain = load_prt_asset(asset.prt());
-  std::optional<PrtAsset> compressed;
-  if (!asset.compressed.empty()) compressed = load_prt_asset(asset.compressed);
-  const DetailMaps detail = load_detail_maps(layout::stage_folder(asset.folder, "normals"), low);
-  ErrorSampling sampling;
-  sampling.pixels = static_cast<std::size_t>(settings.error_samples);
-  if (settings.error_pixels > 0) sampling.pixel_size = bounding_box(high).sides().maxCoeff() / settings.error_pixels;
-  sampling.seed = static_cast<std::uint64_t>(run.seed);
-  const TriangleMesh seen_low = plain.opacity_file.empty() ? low : cut_by_map(low, asset.prt() / plain.opacity_file);
-  return error_causes({.high = high,
-                       .low = seen_low,
-                       .scene = scene,
-                       .asset = plain,
-                       .compressed = compressed ? &*compressed : nullptr,
-                       .detail = detail,
-                       .bake_directions = directions_of(asset.record("bake")),
-                       .bounces = error_bounces(asset, settings),
-                       .prior = prior_of(settings, reference_bands(plain.bands)),
-                       .sampling = sampling},
-                      part_of(run.progress, 1 - split_share, 1));
-}
 
 /// A camera, and the lights under which it shows the asset.
 struct CameraView {
@@ -201,7 +64,7 @@ std::vector<CameraView> camera_views(const ReportSettings& settings) {
 Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high_file, const ReportSettings& settings,
                                   const ComparisonRun& run) {
   Comparison comparison;
-  const double albedo = settings.albedo_factor(has_albedo(asset));
+  const double albedo = settings.albedo_factor(asset.baked.albedo.known);
   const std::vector<CameraView> views = camera_views(settings);
 
   // Draw the asset by the program that reads only its files.
@@ -247,7 +110,7 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
     view.scattering = subsurface_profiles(subsurface);  // has the albedo within
     view.mm_per_unit = subsurface.mm_per_unit;
   } else {
-    view.surface_albedo = load_albedo(imported, material_of(asset.record("normals"))).albedo;
+    view.surface_albedo = load_albedo(imported, surface_material(asset)).albedo;
   }
   cut_occluder(high, view.surface_albedo, load_opacity(imported, material_of(asset.record("normals"))).opacity,
                high_file.string());
@@ -272,8 +135,8 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
     }
   }
   comparison.compared_pixels = comparison.lights.front().difference.pixels;
-  comparison.error_left_out = left_out(asset);
-  if (comparison.error_left_out.empty()) comparison.error = split_error(asset, atlas, high, view.scene, settings, run);
+  comparison.error = split_error(asset, atlas, {high, view.surface_albedo, view.scene}, settings, run,
+                                 part_of(run.progress, 1 - split_share, 1));
   comparison.predicted = settings.predictions();
   comparison.reference_seconds = reference_watch.seconds();
   comparison.silhouette_difference =

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,8 +39,7 @@ struct Comparison {
   bool software_renderer = false;
   double render_seconds = 0;
   double reference_seconds = 0;
-  std::optional<ErrorSplit> error;          ///< E of what is seen, and its causes
-  std::string error_left_out;               ///< why that was not measured
+  ErrorSplit error;                         ///< E of what is seen, and its causes
   std::map<std::string, double> predicted;  ///< what a plan predicted, by name
 };
 

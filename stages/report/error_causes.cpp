@@ -3,18 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <deque>
+#include <limits>
 #include <numeric>
-#include <span>
+#include <optional>
 
 #include "base/json.h"
+#include "base/parallel.h"
+#include "image/srgb.h"
 #include "raycast/ray_scene.h"
-#include "raycast/ray_transfer.h"
-#include "report/bounce_paths.h"
+#include "report/split_transport.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 #include "sh/light_prior.h"
-#include "sh/ray_offset.h"
 
 namespace kiln {
 
@@ -23,246 +24,353 @@ namespace {
 constexpr int fewest_reference_directions = 4096;
 constexpr int most_reference_directions = 65536;
 constexpr int fewest_reference_bands = 16;
-constexpr int path_directions = 512;  // of each of two sets, where light bounces
+constexpr int scatter_lines = 512;  // about a point, of each of two sets: their noise counts more than points do
 
-/// Transfer vectors of receivers, one after another.
-struct Vectors {
-  std::size_t length = 0;
-  std::vector<float> values;
-
-  std::span<const float> of(std::size_t k) const { return {values.data() + k * length, length}; }
-};
-
-Vectors in_rows(const TransferVectors& transfer) {
-  Vectors rows{static_cast<std::size_t>(transfer.coefficients), {}};
-  rows.values.resize(transfer.receivers * rows.length);
-  for (std::size_t i = 0; i < rows.length; ++i) {
-    const std::span<const float> plane = transfer.plane(static_cast<int>(i));
-    for (std::size_t r = 0; r < transfer.receivers; ++r) rows.values[r * rows.length + i] = plane[r];
-  }
-  return rows;
-}
-
-/// Looks up vectors of texels at all points. `of_texel` are vectors of `texels`, which are sorted.
-Vectors looked_up(const ErrorSamples& samples, const std::vector<std::uint32_t>& texels, const Vectors& of_texel) {
-  Vectors result{of_texel.length, std::vector<float>(samples.points() * of_texel.length)};
-  for (std::size_t s = 0; s < samples.points(); ++s)
-    for (int k = 0; k < 4; ++k) {
-      const auto at = std::ranges::lower_bound(texels, samples.lookups[s].texels[k]) - texels.begin();
-      const std::span<const float> vector = of_texel.of(static_cast<std::size_t>(at));
-      for (std::size_t i = 0; i < of_texel.length; ++i)
-        result.values[s * of_texel.length + i] += samples.lookups[s].weights[k] * vector[i];
-    }
-  return result;
-}
-
-/// Returns the first coefficients of each vector, once for every channel.
-Vectors in_channels(const Vectors& vectors, int coefficients, int channels) {
-  Vectors result{static_cast<std::size_t>(coefficients) * static_cast<std::size_t>(channels), {}};
-  for (std::size_t k = 0; k * vectors.length < vectors.values.size(); ++k)
-    for (int c = 0; c < channels; ++c) {
-      const std::span<const float> first = vectors.of(k).first(static_cast<std::size_t>(coefficients));
-      result.values.insert(result.values.end(), first.begin(), first.end());
-    }
-  return result;
-}
-
-Vectors sum_of(Vectors a, const Vectors& b) {
-  std::ranges::transform(a.values, b.values, a.values.begin(), std::plus<>());
-  return a;
-}
-
-Vectors stored_vectors(const PrtAsset& asset, const std::vector<std::uint32_t>& texels) {
-  Vectors vectors{asset.vector_length(), {}};
-  vectors.values.resize(texels.size() * vectors.length);
-  decode_transfer(asset, texels, vectors.values);
-  return vectors;
-}
-
-/// Rounds vectors as the planes of an asset store them.
-Vectors rounded_to(const PrtAsset& asset, Vectors vectors) {
-  for (std::size_t k = 0; k < vectors.values.size(); ++k) {
-    const PlaneRange& range = asset.planes[k % vectors.length].range;
-    const double step = range.step(asset.bits);
-    const double steps = std::round((double{vectors.values[k]} - range.lowest) / step);
-    vectors.values[k] = static_cast<float>(step > 0 ? range.lowest + step * steps : range.lowest);
-  }
-  return vectors;
-}
-
-/// Two estimates of the same vectors, alike where there is no noise in them.
-struct Station {
-  Vectors first, second;
-
-  explicit Station(const Vectors& both) : first(both), second(both) {}
-  Station(Vectors one, Vectors other) : first(std::move(one)), second(std::move(other)) {}
-
-  Station operator+(const Station& other) const { return {sum_of(first, other.first), sum_of(second, other.second)}; }
-};
-
-/// Points that count for a step.
-enum class StepPoints { all, inside_charts, at_borders };
-
-/// One thing that changes on the way from what is seen to what is stored.
-struct Step {
-  std::string cause;
-  const Station& from;
-  const Station& to;
-  StepPoints points = StepPoints::all;
-};
-
-/// Squares, weighted by the prior over light.
-struct Squares {
-  BandSquares by_band;           ///< sums over pixels
-  std::vector<double> by_pixel;  ///< sums over bands
-
-  double total() const { return std::accumulate(by_band.begin(), by_band.end(), 0.0); }
-};
-
-/// Returns the half-width of the 95 % confidence interval of sqrt(a / b + more), for sums over pixels as they happened
-/// to fall ([Cochran 1977], section 6.4).
-double uncertainty_of_root(const Squares& a, const Squares& b, double more) {
-  const double norm = b.total(), ratio = a.total() / norm;
-  double sum = 0;
-  for (std::size_t k = 0; k < a.by_pixel.size(); ++k) {
-    const double residual = a.by_pixel[k] - ratio * b.by_pixel[k];
-    sum += residual * residual;
-  }
-  return 1.96 * std::sqrt(sum) / norm / (2 * std::sqrt(ratio + more));
-}
-
-/// Sums squares over pixels.
-class PixelSums {
- public:
-  PixelSums(const ErrorSamples& samples, std::vector<double> prior) : samples_(samples), prior_(std::move(prior)) {}
-
-  /// Returns d' S d by band, in the sum over pixels; d is a step's difference in the mean over a pixel's points, and
-  /// the product is of its two estimates. Vectors hold `bands` bands of each channel.
-  Squares of_step(const Step& step, int bands) const {
-    return sum(bands, step.points, step.from.first.length, [&](std::size_t point, auto& first, auto& second) {
-      first += as_array(step.to.first, point) - as_array(step.from.first, point);
-      second += as_array(step.to.second, point) - as_array(step.from.second, point);
-    });
-  }
-
-  /// Returns t' S t by band, likewise.
-  Squares of_vectors(const Station& vectors, int bands) const {
-    return sum(bands, StepPoints::all, vectors.first.length, [&](std::size_t point, auto& first, auto& second) {
-      first += as_array(vectors.first, point);
-      second += as_array(vectors.second, point);
-    });
-  }
-
- private:
-  static Eigen::ArrayXd as_array(const Vectors& vectors, std::size_t point) {
-    const std::span<const float> values = vectors.of(point);
-    return Eigen::Map<const Eigen::ArrayXf>(values.data(), static_cast<Eigen::Index>(values.size())).cast<double>();
-  }
-
-  bool counts(std::size_t point, StepPoints points) const {
-    return points == StepPoints::all || samples_.lookups[point].at_border == (points == StepPoints::at_borders);
-  }
-
-  template <class AddPoint>
-  Squares sum(int bands, StepPoints points, std::size_t length, const AddPoint& add_point) const {
-    Squares squares{BandSquares(static_cast<std::size_t>(bands)), {}};
-    const auto coefficients = static_cast<std::size_t>(coefficient_count(bands));
-    Eigen::ArrayXd first(length), second(length);
-    std::size_t begin = 0;
-    for (std::size_t pixel = 0; pixel < samples_.pixels(); ++pixel) {
-      const std::size_t end = samples_.pixel_ends[pixel];
-      first.setZero();
-      second.setZero();
-      for (std::size_t point = begin; point < end; ++point)
-        if (counts(point, points)) add_point(point, first, second);
-      const double share = 1 / static_cast<double>(end - begin);
-      const double weight = samples_.pixel_weights[pixel] * share * share;
-      double of_pixel = 0;
-      for (std::size_t i = 0; i < length; ++i) {
-        const auto band = static_cast<std::size_t>(band_of(static_cast<int>(i % coefficients)));
-        const auto at = static_cast<Eigen::Index>(i);
-        const double square = weight * prior_[band] * first[at] * second[at];
-        squares.by_band[band] += square;
-        of_pixel += square;
-      }
-      squares.by_pixel.push_back(of_pixel);
-      begin = end;
-    }
-    return squares;
-  }
-
-  const ErrorSamples& samples_;
-  const std::vector<double> prior_;
-};
-
-/// Computes transfer at points of the scene, by rays and, of light that bounces, by paths.
-class Transport {
- public:
-  Transport(const SplitInput& input, int directions)
-      : input_(input),
-        scene_(input.scene.mesh),
-        offset_(rounding_offset(input.scene.mesh.positions)),
-        directions_(sample_directions(Sampling::fibonacci, directions, input.sampling.seed + 1)) {}
-
-  Vectors direct(const Receivers& receivers, int bands) const { return direct(receivers, bands, directions_); }
-
-  Vectors direct(const Receivers& receivers, int bands, std::span<const Eigen::Vector3f> directions) const {
-    return in_rows(transfer_by_rays(scene_, receivers, directions, bands, offset_));
-  }
-
-  /// Returns the transfer of bounced light alone, in the asset's bands and channels; zeros where light does not bounce.
-  Station bounced(const Receivers& receivers) const { return {by_paths(receivers, 0), by_paths(receivers, 1)}; }
-
- private:
-  /// Returns that by one of two sets of paths.
-  Vectors by_paths(const Receivers& receivers, int set) const {
-    Vectors result{input_.asset.vector_length(), {}};
-    if (input_.bounces == 0) {
-      result.values.assign(receivers.size() * result.length, 0.f);
-      return result;
-    }
-    const int coefficients = coefficient_count(input_.asset.bands);
-    std::vector<TransferVectors> colors(3, TransferVectors(receivers.size(), coefficients));
-    const std::uint64_t seed = input_.sampling.seed + 2 + static_cast<std::uint64_t>(set);
-    const BouncePaths paths(scene_, input_.scene, input_.bounces, offset_);
-    paths.add(receivers, sample_directions(Sampling::fibonacci, path_directions, seed), seed << 32, colors);
-    result.values.reserve(receivers.size() * result.length);
-    if (input_.asset.channels == 1) {
-      // A single channel stands for all colours.
-      for (std::size_t k = 0; k < colors[0].values.size(); ++k)
-        colors[0].values[k] = (colors[0].values[k] + colors[1].values[k] + colors[2].values[k]) / 3;
-    }
-    for (std::size_t r = 0; r < receivers.size(); ++r)
-      for (std::size_t c = 0; c < static_cast<std::size_t>(input_.asset.channels); ++c)
-        for (int i = 0; i < coefficients; ++i) result.values.push_back(colors[c].plane(i)[r]);
-    return result;
-  }
-
-  const SplitInput& input_;
-  const RayScene scene_;
-  const float offset_;
-  const std::vector<Eigen::Vector3f> directions_;
-};
-
-/// Points that texels stand for.
-struct TexelPoints {
+/// Points with their normals.
+struct PointList {
   std::vector<Eigen::Vector3f> positions, normals;
 
-  TexelPoints(const std::vector<std::uint32_t>& texels, const DetailMaps& detail) {
-    for (const std::uint32_t texel : texels) {
-      const int i = static_cast<int>(texel) % detail.width, j = static_cast<int>(texel) / detail.width;
-      const std::span<const float> p = detail.position.pixel(i, j), n = detail.normal_object.pixel(i, j);
-      positions.emplace_back(p[0], p[1], p[2]);
-      normals.emplace_back(n[0], n[1], n[2]);
-    }
-  }
+  Receivers receivers() const { return {positions, normals}; }
 };
+
+/// Returns points of texels.
+PointList points_of(const DetailMaps& detail, const std::vector<std::uint32_t>& texels) {
+  PointList points;
+  for (const std::uint32_t texel : texels) {
+    const int i = static_cast<int>(texel) % detail.width, j = static_cast<int>(texel) / detail.width;
+    const std::span<const float> p = detail.position.pixel(i, j), n = detail.normal_object.pixel(i, j);
+    points.positions.emplace_back(p[0], p[1], p[2]);
+    points.normals.emplace_back(n[0], n[1], n[2]);
+  }
+  return points;
+}
+
+/// Returns the points of the high mesh that slots stand for.
+PointList points_on_high(const SplitInput& input, const std::vector<std::uint32_t>& slots) {
+  if (input.detail != nullptr) return points_of(*input.detail, slots);
+  PointList points;
+  const RayScene high(input.high);
+  for (const std::uint32_t vertex : slots) {
+    // Normals of the file are those of the receivers.
+    const Eigen::Vector3f &position = input.low.positions[vertex], &normal = input.low.normals[vertex];
+    const SurfacePoint found = high.closest_facing_point(position, normal, std::numeric_limits<float>::infinity());
+    points.positions.push_back(found.found() ? position_at(input.high, found) : position);
+    points.normals.push_back(normal);
+  }
+  return points;
+}
+
+/// Returns the points of the bake's receivers, where those are on the low mesh.
+PointList points_on_low(const SplitInput& input, const std::vector<std::uint32_t>& slots) {
+  if (input.on_low == nullptr) return {};
+  if (input.on_low->detail != nullptr) return points_of(*input.on_low->detail, slots);
+  PointList points;
+  for (const std::uint32_t vertex : slots) {
+    points.positions.push_back(input.low.positions[vertex]);
+    points.normals.push_back(input.low.normals[vertex]);
+  }
+  return points;
+}
 
 ErrorSampling sampling_of(const SplitInput& input) {
   ErrorSampling sampling = input.sampling;
-  if (input.bounces > 0 || sampling.pixel_size > 0) sampling.pixels = std::max<std::size_t>(1, sampling.pixels / 2);
+  const std::size_t share = !input.scattering.empty() ? 4 : input.bounces > 0 || sampling.pixel_size > 0 ? 2 : 1;
+  sampling.pixels = std::max<std::size_t>(1, sampling.pixels / share);
   return sampling;
 }
+
+using Colors = std::vector<Eigen::Vector3f>;
+
+/// What albedo does to transfer: nothing, or what the high mesh's own and the asset's make of it.
+class Paint {
+ public:
+  Paint(const SplitInput& input, const ErrorSamples& samples, const std::vector<std::uint32_t>& slots,
+        const PointList& slot_points)
+      : within_(input.albedo != nullptr && input.albedo_within),
+        in_map_(input.albedo != nullptr && !within_ && input.asset.albedo.picture.width() > 0),
+        baked_channels_(input.asset.channels),
+        channels_(in_map_ ? 3 : input.asset.channels) {
+    if (!within_ && !in_map_) return;
+    const auto color_at = [&](const SurfacePoint& point) { return input.albedo->at(point.triangle, point.u, point.v); };
+    std::ranges::transform(samples.seen, std::back_inserter(seen_), color_at);
+    std::ranges::transform(samples.stood, std::back_inserter(stood_), color_at);
+    if (in_map_) {
+      for (const Eigen::Vector2f& uv : samples.uvs) shown_.push_back(color_in_map(input.asset.albedo.picture, uv));
+      return;
+    }
+    slots_.resize(slots.size());
+    const RayScene high(input.high);
+    parallel_for(std::size_t{0}, slots.size(), 256, [&](std::size_t k) {
+      slots_[k] = color_at(high.closest_point(slot_points.positions[k], std::numeric_limits<float>::infinity()));
+    });
+    baked_ = slots_;
+    if (input.detail == nullptr || !input.map_albedo) return;
+    const auto width = static_cast<std::uint32_t>(input.detail->width);
+    std::ranges::transform(slots, baked_.begin(), [&](std::uint32_t texel) {
+      return input.detail->albedo_at(static_cast<int>(texel % width), static_cast<int>(texel / width));
+    });
+  }
+
+  bool within() const { return within_; }
+  bool in_map() const { return in_map_; }
+  int channels() const { return channels_; }  ///< of painted vectors
+
+  /// Paints vectors of the asset's channels: as the high mesh's points have it, as the asset's map has it, or, only
+  /// where the albedo is within, slots as the high mesh and as the bake have them.
+  TransferRows seen(const TransferRows& vectors) const { return painted(vectors, seen_); }
+  TransferRows stood(const TransferRows& vectors) const { return painted(vectors, stood_); }
+  TransferRows shown(const TransferRows& vectors) const { return painted(vectors, shown_); }
+  TransferRows slots(const TransferRows& vectors) const { return within_ ? painted(vectors, slots_) : vectors; }
+  TransferRows baked(const TransferRows& vectors) const { return within_ ? painted(vectors, baked_) : vectors; }
+
+  /// Paints what is looked up in the asset: by the high mesh, where its transfer is without albedo.
+  TransferRows looked_up(const TransferRows& vectors) const { return in_map_ ? painted(vectors, stood_) : vectors; }
+
+ private:
+  TransferRows painted(const TransferRows& vectors, const Colors& colors) const {
+    if (!within_ && !in_map_) return vectors;
+    if (channels_ == baked_channels_) return times(vectors, colors, channels_);
+    return times(in_channels(vectors, static_cast<int>(vectors.length), channels_), colors, channels_);
+  }
+
+  /// Looks up a picture of sRGB bytes bilinearly, as a GPU does.
+  static Eigen::Vector3f color_in_map(const Image<std::uint8_t>& picture, const Eigen::Vector2f& uv) {
+    const float x = uv.x() * static_cast<float>(picture.width()) - 0.5f,
+                y = uv.y() * static_cast<float>(picture.height()) - 0.5f;
+    const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
+    const float s = x - static_cast<float>(i), t = y - static_cast<float>(j);
+    Eigen::Vector3f color = Eigen::Vector3f::Zero();
+    for (int k = 0; k < 4; ++k) {
+      const auto texel =
+          picture.pixel(std::clamp(i + k % 2, 0, picture.width() - 1), std::clamp(j + k / 2, 0, picture.height() - 1));
+      const float weight = (k % 2 == 0 ? 1 - s : s) * (k / 2 == 0 ? 1 - t : t);
+      for (int c = 0; c < 3; ++c)
+        color[c] += weight * linear_from_srgb(static_cast<float>(texel[static_cast<std::size_t>(c)]) / 255);
+    }
+    return color;
+  }
+
+  const bool within_, in_map_;
+  const int baked_channels_, channels_;
+  Colors seen_, stood_, shown_, slots_, baked_;
+};
+
+/// Way from what a viewer should see to what the asset shows.
+class SplitWay {
+ public:
+  SplitWay(const SplitInput& input, const ProgressFunction& progress)
+      : input_(input),
+        progress_(progress),
+        samples_(make_error_samples(input.high, input.low, input.detail, sampling_of(input))),
+        slots_(samples_.slots()),
+        high_points_(points_on_high(input, slots_)),
+        low_points_(points_on_low(input, slots_)),
+        paint_(input, samples_, slots_, high_points_),
+        light_{.bounces = input.bounces,
+               .scattering = input.scattering,
+               .mm_per_unit = input.mm_per_unit,
+               // A pixel's points have noise of their own.
+               .lines = input.sampling.pixel_size > 0 ? scatter_lines / 4 : scatter_lines,
+               .channels = input.asset.channels,
+               .seed = input.sampling.seed},
+        transport_(input.scene, input.high, light_) {
+    if (input.on_low != nullptr) low_transport_.emplace(input.on_low->shadows, input.low, light_);
+    split_.samples = samples_.pixels();
+    split_.directions = std::clamp(4 * static_cast<int>(input.bake_directions.size()), fewest_reference_directions,
+                                   most_reference_directions);
+    split_.bands = reference_bands(input.asset.bands);
+  }
+
+  ErrorSplit measure() {
+    // Step 1: compute what stands at each station, from the viewer's surface to the stored planes.
+    if (input_.scattering.empty())
+      add_surface_steps();
+    else
+      add_scattered_steps();
+    const Station& stored = *stored_;
+    const Station& compressed =
+        input_.compressed == nullptr ? stored : add(Station(paint_.looked_up(looked_up_in(*input_.compressed))));
+    steps_.push_back({"compression", stored, compressed});
+    const Station* shown = &compressed;
+    if (paint_.in_map()) {
+      shown =
+          &add(Station(paint_.shown(looked_up_in(input_.compressed == nullptr ? input_.asset : *input_.compressed))));
+      steps_.push_back({"albedo", compressed, *shown});
+    }
+    progress_(0.97);
+
+    // Step 2: add up the differences from station to station.
+    const PixelSums sums(samples_, input_.prior.empty() ? lighting_prior(split_.bands) : input_.prior);
+    const int bands = input_.asset.bands;
+    const WeightedSquares cut = sums.of_vectors(*seen_, bands);
+    WeightedSquares all = sums.of_vectors(*seen_in_all_bands_, split_.bands);
+    std::ranges::copy(cut.by_band, all.by_band.begin());
+    const double norm = cut.total(), tail = (all.total() - norm) / norm;
+    // Without a sample, or without any light, the error is not a number, which keeps no budget.
+    const auto error = [](double square) { return std::sqrt(square < 0 ? 0 : square); };
+    const auto relative = [&](BandSquares squares) {
+      for (double& square : squares) square /= norm;
+      return squares;
+    };
+    const WeightedSquares whole = sums.of_step({"total", *seen_, *shown}, bands);
+    split_.seen = relative(all.by_band);
+    split_.total = error(whole.total() / norm + tail);
+    split_.squares = relative(whole.by_band);
+    split_.uncertainty = uncertainty_of_root(whole, cut, tail);
+    for (const CauseStep& step : steps_) {
+      if (step.cause == "compression" && input_.compressed == nullptr) continue;
+      BandSquares squares = relative(sums.of_step(step, bands).by_band);
+      if (!step.without.empty()) {
+        const auto part = std::ranges::find(split_.causes, step.without, &ErrorCause::name);
+        std::ranges::transform(squares, part->squares, squares.begin(), std::minus<>());
+      }
+      split_.causes.push_back({step.cause, error(std::accumulate(squares.begin(), squares.end(), 0.0)), squares});
+    }
+    if (std::ranges::find(split_.causes, "albedo", &ErrorCause::name) == split_.causes.end())
+      split_.causes.push_back({"albedo", 0, BandSquares(static_cast<std::size_t>(bands))});
+    split_.causes.push_back({"bands", error(tail), {}});
+    return std::move(split_);
+  }
+
+ private:
+  const Station& add(Station station) { return stations_.emplace_back(std::move(station)); }
+
+  Receivers at_seen() const { return {samples_.seen_positions, samples_.seen_normals}; }
+  Receivers at_stood() const { return {samples_.stood_positions, samples_.stood_normals}; }
+
+  TransferRows looked_up_in(const PrtAsset& asset) const {
+    return looked_up(samples_, slots_, stored_rows(asset, slots_));
+  }
+
+  std::string lookups_cause() const { return input_.detail != nullptr ? "texels" : "vertices"; }
+
+  /// Adds the steps of light that leaves the surface where it arrives.
+  void add_surface_steps() {
+    const int bands = input_.asset.bands, coefficients = coefficient_count(bands), channels = input_.asset.channels;
+    const std::vector<Eigen::Vector3f> directions =
+        sample_directions(Sampling::fibonacci, split_.directions, input_.sampling.seed + 1);
+    const auto in_all_channels = [&](const TransferRows& direct) {
+      return in_channels(direct, coefficients, channels);
+    };
+    const auto seen = [&](const TransferRows& vectors) { return paint_.seen(vectors); };
+    const auto stood = [&](const TransferRows& vectors) { return paint_.stood(vectors); };
+
+    const TransferRows in_all_bands = transport_.direct(at_seen(), split_.bands, directions);
+    seen_in_all_bands_ = &add(Station(seen(in_channels(in_all_bands, coefficient_count(split_.bands), channels))));
+    const Station& direct_seen = add(Station(seen(in_all_channels(in_all_bands))));
+    progress_(0.3);
+    const Station& direct_stood =
+        add(Station(stood(in_all_channels(transport_.direct(at_stood(), bands, directions)))));
+    steps_.push_back({"geometry", direct_seen, direct_stood});
+    const Station bounced = transport_.bounced(at_seen(), bands);
+    seen_ = &add(direct_seen + bounced.through(seen));
+    progress_(0.6);
+
+    const auto by_bake = [&](const SplitTransport& transport, const Receivers& receivers) {
+      return in_all_channels(transport.direct(receivers, bands, input_.bake_directions));
+    };
+    const Station& sampled = add(Station(stood(by_bake(transport_, at_stood()))));
+    steps_.push_back({"directions", direct_stood, sampled});
+    TransferRows at_slots = by_bake(transport_, high_points_.receivers());
+    progress_(0.8);
+    const auto of_slots = [&](const TransferRows& vectors) {
+      return paint_.looked_up(looked_up(samples_, slots_, vectors));
+    };
+    const auto bounced_at = [&](const SplitTransport& transport, const Receivers& receivers) {
+      return transport.bounced(receivers, bands);
+    };
+    const auto inside = StepPoints::inside_charts;
+    const Station* filtered = &add(Station(of_slots(paint_.slots(at_slots))));
+    steps_.push_back({lookups_cause(), sampled, *filtered, inside});
+    const auto in_slots_color = [&](const TransferRows& vectors) { return of_slots(paint_.slots(vectors)); };
+    Station bounced_at_slots = bounced_at(transport_, high_points_.receivers());
+    if (low_transport_) {
+      const Station& on_high = add(*filtered + bounced_at_slots.through(in_slots_color));
+      at_slots = by_bake(*low_transport_, low_points_.receivers());
+      bounced_at_slots = bounced_at(*low_transport_, low_points_.receivers());
+      filtered = &add(Station(of_slots(paint_.slots(at_slots))));
+      steps_.push_back({"receivers", on_high, add(*filtered + bounced_at_slots.through(in_slots_color)), inside});
+    }
+    if (paint_.within()) {
+      const Station& colored = add(Station(of_slots(paint_.baked(at_slots))));
+      steps_.push_back({"albedo", *filtered, colored, inside});
+      filtered = &colored;
+    }
+    const Station& rounded = add(Station(of_slots(rounded_to(input_.asset, paint_.baked(at_slots)))));
+    steps_.push_back({"bits", *filtered, rounded, inside});
+    stored_ = &add(Station(paint_.looked_up(looked_up_in(input_.asset))));
+    const Station& with_paths = add(rounded + bounced_at_slots.through([&](const TransferRows& vectors) {
+      return of_slots(paint_.baked(vectors));
+    }));
+    steps_.push_back({input_.bounces > 0 ? "bounces" : "visibility", with_paths, *stored_, inside});
+    // Bounced light is smooth: what arrives at the point seen arrives at the one near it, too.
+    const Station& sampled_with_paths = add(sampled + bounced.through(stood));
+    // Gutters are filled and both sides made equal, which mends part of what the texels there cost.
+    steps_.push_back({"seams", sampled_with_paths, *stored_, StepPoints::at_borders});
+    progress_(0.9);
+  }
+
+  /// Lists the points of the slots that each point of the samples looks up, four for each.
+  PointList of_each_point(const PointList& of_slots) const {
+    PointList points;
+    for (const Lookup& lookup : samples_.lookups)
+      for (const std::uint32_t slot : lookup.slots) {
+        const auto at = static_cast<std::size_t>(std::ranges::lower_bound(slots_, slot) - slots_.begin());
+        points.positions.push_back(of_slots.positions[at]);
+        points.normals.push_back(of_slots.normals[at]);
+      }
+    return points;
+  }
+
+  /// Adds the steps of light that scatters beneath the surface.
+  void add_scattered_steps() {
+    const int bands = input_.asset.bands, coefficients = coefficient_count(bands), channels = input_.asset.channels;
+    std::vector<std::uint64_t> numbers(samples_.points()), of_points;
+    std::iota(numbers.begin(), numbers.end(), 0);
+    for (std::size_t point = 0; point < samples_.points(); ++point) of_points.insert(of_points.end(), 4, point);
+
+    seen_in_all_bands_ = &add(transport_.beneath(at_seen(), split_.bands, numbers));
+    seen_ = &add(seen_in_all_bands_->through(
+        [&](const TransferRows& vectors) { return cut_to(vectors, coefficients, channels); }));
+    progress_(0.25);
+    const Station& stood = add(transport_.beneath(at_stood(), bands, numbers));
+    steps_.push_back({"geometry", *seen_, stood});
+    progress_(0.4);
+    const auto inside = StepPoints::inside_charts;
+    const auto at_points = [&](const TransferRows& vectors) { return looked_up(samples_, vectors); };
+    Station of_slots = transport_.beneath(of_each_point(high_points_).receivers(), bands, of_points);
+    const Station* filtered = &add(of_slots.through(at_points));
+    steps_.push_back({lookups_cause(), stood, *filtered, inside});
+    if (low_transport_) {
+      of_slots = low_transport_->beneath(of_each_point(low_points_).receivers(), bands, of_points);
+      const Station& on_low = add(of_slots.through(at_points));
+      steps_.push_back({"receivers", *filtered, on_low, inside});
+      filtered = &on_low;
+    }
+    // Round one estimate alone: what rounds two has nothing in common.
+    const Station &exact = add(Station(at_points(of_slots.first))),
+                  &rounded = add(Station(at_points(rounded_to(input_.asset, of_slots.first))));
+    steps_.push_back({"bits", exact, rounded, inside});
+    stored_ = &add(Station(looked_up_in(input_.asset)));
+    steps_.push_back({"subsurface", *filtered, *stored_, inside, "bits"});
+    steps_.push_back({"seams", stood, *stored_, StepPoints::at_borders});
+    progress_(0.9);
+  }
+
+  const SplitInput& input_;
+  const ProgressFunction& progress_;
+  const ErrorSamples samples_;
+  const std::vector<std::uint32_t> slots_;
+  const PointList high_points_, low_points_;  // of the slots
+  const Paint paint_;
+  const SplitLight light_;
+  const SplitTransport transport_;
+  std::optional<SplitTransport> low_transport_;  ///< where the bake's receivers are on the low mesh
+  std::deque<Station> stations_;                 ///< whose addresses stay
+  std::vector<CauseStep> steps_;
+  const Station *seen_in_all_bands_ = nullptr, *seen_ = nullptr, *stored_ = nullptr;
+  ErrorSplit split_;
+};
 
 }  // namespace
 
@@ -275,79 +383,7 @@ double ErrorSplit::root_sum() const {
 int reference_bands(int asset_bands) { return std::max(fewest_reference_bands, 2 * asset_bands); }
 
 ErrorSplit error_causes(const SplitInput& input, const ProgressFunction& progress) {
-  const ErrorSamples samples = make_error_samples(input.high, input.low, input.detail, sampling_of(input));
-  const std::vector<std::uint32_t> texels = samples.texels();
-  const TexelPoints points(texels, input.detail);
-  const Receivers at_texels{points.positions, points.normals}, at_seen{samples.seen_positions, samples.seen_normals},
-      at_stood{samples.stood_positions, samples.stood_normals};
-  const int bands = input.asset.bands, channels = input.asset.channels, coefficients = coefficient_count(bands);
-  ErrorSplit split;
-  split.samples = samples.pixels();
-  split.directions = std::clamp(4 * static_cast<int>(input.bake_directions.size()), fewest_reference_directions,
-                                most_reference_directions);
-  split.bands = reference_bands(bands);
-
-  // Step 1: compute what stands at each station of the way from the viewer's surface to the stored planes.
-  const Transport transport(input, split.directions);
-  const auto in_all_channels = [&](const Vectors& direct) { return in_channels(direct, coefficients, channels); };
-  const Vectors seen_in_all_bands = transport.direct(at_seen, split.bands);
-  progress(0.3);
-  const Station direct_seen(in_all_channels(seen_in_all_bands));
-  const Station direct_stood(in_all_channels(transport.direct(at_stood, bands)));
-  progress(0.6);
-  const Station sampled(in_all_channels(transport.direct(at_stood, bands, input.bake_directions)));
-  const Vectors by_bake = in_all_channels(transport.direct(at_texels, bands, input.bake_directions));
-  progress(0.8);
-  const Station filtered(looked_up(samples, texels, by_bake));
-  const Station rounded(looked_up(samples, texels, rounded_to(input.asset, by_bake)));
-  const Station stored(looked_up(samples, texels, stored_vectors(input.asset, texels)));
-  const Station compressed(input.compressed != nullptr
-                               ? looked_up(samples, texels, stored_vectors(*input.compressed, texels))
-                               : stored.first);
-  const Station bounced_seen = transport.bounced(at_seen);
-  const Station seen = direct_seen + bounced_seen;
-  progress(0.9);
-  // Bounced light is smooth: what arrives at the point seen arrives at the one near it, too.
-  const Station sampled_with_paths = sampled + bounced_seen;
-  const Station bounced_at_texels = transport.bounced(at_texels);
-  const Station with_paths = rounded + Station(looked_up(samples, texels, bounced_at_texels.first),
-                                               looked_up(samples, texels, bounced_at_texels.second));
-  progress(0.97);
-
-  // Step 2: add up the differences from station to station.
-  const PixelSums sums(samples, input.prior.empty() ? lighting_prior(split.bands) : input.prior);
-  const auto inside = StepPoints::inside_charts;
-  const Step steps[] = {{"geometry", direct_seen, direct_stood},
-                        {"directions", direct_stood, sampled},
-                        {"texels", sampled, filtered, inside},
-                        {"bits", filtered, rounded, inside},
-                        {input.bounces > 0 ? "bounces" : "visibility", with_paths, stored, inside},
-                        // Gutters are filled and both sides made equal, which mends part of what the texels there cost.
-                        {"seams", sampled_with_paths, stored, StepPoints::at_borders},
-                        {"compression", stored, compressed}};
-  const Squares cut = sums.of_vectors(seen, bands);
-  Squares all =
-      sums.of_vectors(Station(in_channels(seen_in_all_bands, coefficient_count(split.bands), channels)), split.bands);
-  std::ranges::copy(cut.by_band, all.by_band.begin());
-  const double norm = cut.total(), tail = (all.total() - norm) / norm;
-  // Without a sample, or without any light, the error is not a number, which keeps no budget.
-  const auto error = [](double square) { return std::sqrt(square < 0 ? 0 : square); };
-  const auto relative = [&](BandSquares squares) {
-    for (double& square : squares) square /= norm;
-    return squares;
-  };
-  const Squares whole = sums.of_step({"total", seen, compressed}, bands);
-  split.seen = relative(all.by_band);
-  split.total = error(whole.total() / norm + tail);
-  split.squares = relative(whole.by_band);
-  split.uncertainty = uncertainty_of_root(whole, cut, tail);
-  for (const Step& step : steps) {
-    if (step.cause == "compression" && input.compressed == nullptr) continue;
-    const Squares squares = sums.of_step(step, bands);
-    split.causes.push_back({step.cause, error(squares.total() / norm), relative(squares.by_band)});
-  }
-  split.causes.push_back({"bands", error(tail), {}});
-  return split;
+  return SplitWay(input, progress).measure();
 }
 
 Json to_json(const ErrorSplit& split) {

@@ -8,7 +8,6 @@
 #include <random>
 
 #include "base/parallel.h"
-#include "mesh/surface_point.h"
 #include "raycast/ray_scene.h"
 #include "report/bounce_paths.h"
 
@@ -21,7 +20,9 @@ constexpr std::size_t candidates_per_pixel = 16;
 constexpr std::size_t fewest_candidates = 16384;
 
 /// Marks the texels that no chart covers, and those beside one: the ones that gutters and seams change.
-std::vector<std::uint8_t> border_texels(const DetailMaps& detail) {
+std::vector<std::uint8_t> border_texels(const DetailMaps* maps) {
+  if (maps == nullptr) return {};
+  const DetailMaps& detail = *maps;
   std::vector<std::uint8_t> border(detail.covered.size());
   for (int j = 0; j < detail.height; ++j)
     for (int i = 0; i < detail.width; ++i)
@@ -76,7 +77,7 @@ std::vector<Draw> draw_places(const TriangleMesh& mesh, std::size_t count, std::
 /// Makes the samples of one asset.
 class Sampler {
  public:
-  Sampler(const TriangleMesh& high, const TriangleMesh& low, const DetailMaps& detail, const ErrorSampling& sampling)
+  Sampler(const TriangleMesh& high, const TriangleMesh& low, const DetailMaps* detail, const ErrorSampling& sampling)
       : high_(high),
         low_(low),
         detail_(detail),
@@ -172,18 +173,23 @@ class Sampler {
     return rays.first_hit(position + distance_ * view, -view, 0, infinity);
   }
 
-  Lookup lookup_at(const Eigen::Vector2f& uv) const {
-    const float x = uv.x() * static_cast<float>(detail_.width) - 0.5f,
-                y = uv.y() * static_cast<float>(detail_.height) - 0.5f;
+  Lookup lookup_at(const SurfacePoint& low) const {
+    if (detail_ == nullptr) {
+      const Triangle& t = low_.triangles[low.triangle];
+      return {{t[0], t[1], t[2], t[2]}, {1 - low.u - low.v, low.u, low.v, 0}};
+    }
+    const int width = detail_->width, height = detail_->height;
+    const Eigen::Vector2f uv = interpolate(low_, low_.uvs, low);
+    const float x = uv.x() * static_cast<float>(width) - 0.5f, y = uv.y() * static_cast<float>(height) - 0.5f;
     const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
     const float s = x - static_cast<float>(i), t = y - static_cast<float>(j);
     Lookup lookup;
-    for (int k = 0; k < 4; ++k) {
-      const int column = std::clamp(i + k % 2, 0, detail_.width - 1),
-                row = std::clamp(j + k / 2, 0, detail_.height - 1);
-      lookup.texels[k] = static_cast<std::uint32_t>(row * detail_.width + column);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const int column = std::clamp(i + static_cast<int>(k % 2), 0, width - 1),
+                row = std::clamp(j + static_cast<int>(k / 2), 0, height - 1);
+      lookup.slots[k] = static_cast<std::uint32_t>(row * width + column);
       lookup.weights[k] = (k % 2 == 0 ? 1 - s : s) * (k / 2 == 0 ? 1 - t : t);
-      lookup.at_border = lookup.at_border || border_[lookup.texels[k]] != 0;
+      lookup.at_border = lookup.at_border || border_[lookup.slots[k]] != 0;
     }
     return lookup;
   }
@@ -195,7 +201,10 @@ class Sampler {
       samples_.seen_normals.push_back(normal_at(high_, seen));
       samples_.stood_positions.push_back(position_at(high_, stood));
       samples_.stood_normals.push_back(normal_at(high_, stood));
-      samples_.lookups.push_back(lookup_at(interpolate(low_, low_.uvs, low)));
+      samples_.seen.push_back(seen);
+      samples_.stood.push_back(stood);
+      if (!low_.uvs.empty()) samples_.uvs.push_back(interpolate(low_, low_.uvs, low));
+      samples_.lookups.push_back(lookup_at(low));
     }
     samples_.pixel_ends.push_back(samples_.points());
   }
@@ -204,7 +213,7 @@ class Sampler {
 
   const TriangleMesh& high_;
   const TriangleMesh& low_;
-  const DetailMaps& detail_;
+  const DetailMaps* const detail_;
   const ErrorSampling& sampling_;
   const RayScene high_rays_, low_rays_;
   const std::vector<std::uint8_t> border_;
@@ -217,15 +226,15 @@ class Sampler {
 
 }  // namespace
 
-std::vector<std::uint32_t> ErrorSamples::texels() const {
+std::vector<std::uint32_t> ErrorSamples::slots() const {
   std::vector<std::uint32_t> all;
-  for (const Lookup& lookup : lookups) all.insert(all.end(), lookup.texels.begin(), lookup.texels.end());
+  for (const Lookup& lookup : lookups) all.insert(all.end(), lookup.slots.begin(), lookup.slots.end());
   std::ranges::sort(all);
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }
 
-ErrorSamples make_error_samples(const TriangleMesh& high, const TriangleMesh& low, const DetailMaps& detail,
+ErrorSamples make_error_samples(const TriangleMesh& high, const TriangleMesh& low, const DetailMaps* detail,
                                 const ErrorSampling& sampling) {
   return Sampler(high, low, detail, sampling).make();
 }

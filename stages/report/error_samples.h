@@ -7,30 +7,34 @@
 #include <vector>
 
 #include "maps/detail_maps.h"
+#include "mesh/surface_point.h"
 #include "mesh/triangle_mesh.h"
 
 namespace kiln {
 
-/// Texels around a place of the texture, with their weights in a bilinear lookup.
+/// Slots around a place of the low mesh, with their weights in a lookup: texels, bilinearly, or the vertices of a
+/// triangle, the fourth of weight 0.
 struct Lookup {
-  std::array<std::uint32_t, 4> texels;
+  std::array<std::uint32_t, 4> slots;
   std::array<float, 4> weights;
-  bool at_border = false;  ///< whether one of them, or a neighbour of one, is covered by no chart
+  bool at_border = false;  ///< whether a texel, or a neighbour of one, is covered by no chart
 };
 
 /// Points of an asset as viewers see them, pixel after pixel.
 struct ErrorSamples {
   std::vector<Eigen::Vector3f> seen_positions, seen_normals;    ///< where the viewer's ray meets the high mesh
   std::vector<Eigen::Vector3f> stood_positions, stood_normals;  ///< points that those of the low mesh stand for
-  std::vector<Lookup> lookups;                                  ///< in the low mesh's texture
+  std::vector<SurfacePoint> seen, stood;                        ///< both, in the high mesh
+  std::vector<Eigen::Vector2f> uvs;                             ///< of the low mesh's points; empty where it has none
+  std::vector<Lookup> lookups;                                  ///< in the low mesh's texture, or of its vertices
   std::vector<std::size_t> pixel_ends;                          ///< for each pixel the index after its last point
   std::vector<double> pixel_weights;                            ///< candidates that each pixel stands for
 
   std::size_t points() const { return lookups.size(); }
   std::size_t pixels() const { return pixel_ends.size(); }
 
-  /// Lists the texels that are looked up, each once, sorted.
-  std::vector<std::uint32_t> texels() const;
+  /// Lists the slots that are looked up, each once, sorted.
+  std::vector<std::uint32_t> slots() const;
 };
 
 /// Wishes for samples.
@@ -47,7 +51,9 @@ struct ErrorSampling {
 /// Pixels along outlines within the picture, where the high mesh shows another part than the low one, are one in a
 /// thousand and decide the error of a good asset. So rays look at many candidates, and a pixel is chosen with a
 /// probability proportional to a guess of its error, and counts as the inverse of it: [Cochran 1977], chapter 9A.
-ErrorSamples make_error_samples(const TriangleMesh& high, const TriangleMesh& low, const DetailMaps& detail,
+///
+/// Without `detail` the vertices of the low mesh are looked up.
+ErrorSamples make_error_samples(const TriangleMesh& high, const TriangleMesh& low, const DetailMaps* detail,
                                 const ErrorSampling& sampling);
 
 }  // namespace kiln

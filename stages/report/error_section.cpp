@@ -21,12 +21,19 @@ struct CauseText {
 
 constexpr CauseText texts[] = {
     {"geometry", "Geometry: another point of the scan is seen", "more triangles"},
+    {"receivers", "Receivers: on the low mesh, in the shadows that the bake saw there", "receiver: high"},
     {"texels", "Texels: looked up between their points", "a larger atlas"},
+    {"vertices", "Vertices: looked up between them", "more triangles"},
+    {"albedo", "Albedo: looked up in a map, or within the transfer", "a larger atlas or albedo-size"},
     {"bands", "Bands: what the asset's are too few for", "more bands"},
     {"directions", "Directions: the sky is sampled", "more directions"},
     {"bits", "Bits: values are rounded", "16 bits"},
     {"visibility", "Visibility: what the bake's engine sees", "another backend, larger depth maps"},
     {"bounces", "Bounces and visibility: light that bounces, and what the bake's engine sees", "a smaller bounce-edge"},
+    {"subsurface",
+     "Light beneath the surface, as the bake sums it over texels: its directions, what its engine sees and bounces are "
+     "in it, since the paths that it is measured by do not tell them apart",
+     "more directions, a larger atlas, a smaller subsurface-solid-angle"},
     {"seams", "Seams: both sides are made equal", "fewer charts, a larger atlas"},
     {"compression", "Compression", "a smaller max-error of compress"},
 };
@@ -78,9 +85,7 @@ std::string promise(const std::map<std::string, double>& predicted, double measu
 
 std::string error_section(const Comparison& comparison) {
   std::string html = "<section><h2>Where the error comes from</h2>\n";
-  if (!comparison.error)
-    return html + "<p class=note>Not measured: " + html_escaped(comparison.error_left_out) + ".</p></section>\n";
-  const ErrorSplit& split = *comparison.error;
+  const ErrorSplit& split = comparison.error;
   html += fmt::format(
       "<p class=note>The expected relighting error of what a viewer sees against the high mesh, at {} points of the "
       "surface, each seen from a direction of its own; {} directions by rays. Each cause is measured by changing one "
@@ -93,6 +98,7 @@ std::string error_section(const Comparison& comparison) {
   std::vector<ErrorCause> causes = split.causes;
   std::ranges::stable_sort(causes, std::greater<>(), &ErrorCause::error);
   for (const ErrorCause& cause : causes) {
+    if (cause.name == "albedo" && cause.error == 0) continue;  // one colour: there is nothing to be wrong
     const auto* text = std::ranges::find_if(texts, [&](const CauseText& each) { return cause.name == each.name; });
     html += text == std::end(texts) ? rows.row(cause.name, html_escaped(cause.name), cause.error, "")
                                     : rows.row(cause.name, text->label, cause.error, text->remedy);

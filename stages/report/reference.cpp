@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include "base/parallel.h"
@@ -130,10 +131,12 @@ class Shader {
     const Receivers receivers{std::span(points.positions).subspan(begin, size),
                               std::span(points.normals).subspan(begin, size)};
     std::optional<ScatterEntries> entries;
+    std::vector<std::uint64_t> numbers(size);
+    std::iota(numbers.begin(), numbers.end(), first);
     if (beneath_)
-      entries = beneath_->entries(receivers, std::max(1, static_cast<int>(directions.size()) / line_step), first);
+      entries = beneath_->entries(receivers, std::max(1, static_cast<int>(directions.size()) / line_step), numbers);
     const PointTransfer transfer =
-        entries ? scattered_transfer(*entries, first) : surface_transfer(receivers, directions, first);
+        entries ? scattered_transfer(*entries, numbers) : surface_transfer(receivers, directions, first);
     for (std::size_t light = 0; light < lights_.size(); ++light) {
       const std::vector<Eigen::Vector3f> in_bands = radiance_of(transfer.all, lights_[light], view_, receivers);
       std::vector<Eigen::Vector3f> in_full = in_bands;
@@ -163,10 +166,10 @@ class Shader {
   }
 
   /// Computes the transfer of light that enters at `entries`.
-  PointTransfer scattered_transfer(const ScatterEntries& entries, std::uint64_t first) const {
+  PointTransfer scattered_transfer(const ScatterEntries& entries, std::span<const std::uint64_t> numbers) const {
     const std::vector<TransferVectors> dark(3, TransferVectors(entries.ends.size(), coefficient_count(view_.bands)));
     PointTransfer transfer{dark, dark};
-    add_scattered(entries, walker_, first, transfer.all, transfer.direct);
+    add_scattered(entries, walker_, numbers, transfer.all, transfer.direct);
     return transfer;
   }
 

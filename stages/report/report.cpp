@@ -54,10 +54,8 @@ Json Report::to_json() const {
   put_verdicts(json, budgets);
   if (is_compressed) json["compressed_relative_l2"] = compressed_relative_l2;
   if (!comparison.levels.empty()) json["levels"] = kiln::to_json(comparison.levels);
-  if (comparison.error) {
-    json["error"] = kiln::to_json(*comparison.error);
-    if (!comparison.predicted.empty()) json["error"]["predicted"] = comparison.predicted;
-  }
+  json["error"] = kiln::to_json(comparison.error);
+  if (!comparison.predicted.empty()) json["error"]["predicted"] = comparison.predicted;
   return json;
 }
 

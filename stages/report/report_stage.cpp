@@ -20,7 +20,7 @@ constexpr const char* metric_names =
 constexpr const char* error_names =
     "error.total error.uncertainty error.root_sum_of_causes error.samples error.reference_directions "
     "error.reference_bands "
-    "error.causes.geometry error.causes.texels error.causes.bands error.causes.directions error.causes.bits "
+    "error.causes.geometry error.causes.texels error.causes.albedo error.causes.bands error.causes.bits "
     "error.causes.seams";
 
 /// Tells whether a setting of the bake is left at one value.
@@ -29,12 +29,6 @@ bool bake_has(const AssetSettings& all, const char* name, const char* value) {
   if (bake == all.end()) return true;
   const auto found = bake->second.find(name);
   return found == bake->second.end() || found->second == value;
-}
-
-/// Tells whether the report splits the error: of textures, on the high mesh's points.
-bool splits_error(const AssetSettings& all) {
-  return bake_has(all, "subsurface", "none") && bake_has(all, "receiver", "high") &&
-         bake_has(all, "bake-albedo", "false");
 }
 
 StageOptions options() { return StageOptions::of(report_options); }
@@ -69,13 +63,23 @@ const StageInfo& report_stage() {
       .name = "report",
       .options = options,
       .metrics = {{metric_names},
-                  {error_names, "error.", "subsurface of bake", splits_error},
-                  {"error.causes.visibility", "error.causes.visibility", "bounces of bake",
-                   [](const AssetSettings& all) { return splits_error(all) && bake_has(all, "bounces", "0"); }},
-                  {"error.causes.bounces", "error.causes.bounces", "bounces of bake",
-                   [](const AssetSettings& all) { return splits_error(all) && !bake_has(all, "bounces", "0"); }},
+                  {error_names},
+                  {"error.causes.directions", "error.causes.directions", "subsurface of bake",
+                   [](const AssetSettings& all) { return bake_has(all, "subsurface", "none"); }},
+                  {"error.causes.visibility", "error.causes.visibility", "bounces or subsurface of bake",
+                   [](const AssetSettings& all) {
+                     return bake_has(all, "subsurface", "none") && bake_has(all, "bounces", "0");
+                   }},
+                  {"error.causes.bounces", "error.causes.bounces", "bounces or subsurface of bake",
+                   [](const AssetSettings& all) {
+                     return bake_has(all, "subsurface", "none") && !bake_has(all, "bounces", "0");
+                   }},
+                  {"error.causes.subsurface", "error.causes.subsurface", "subsurface of bake",
+                   [](const AssetSettings& all) { return !bake_has(all, "subsurface", "none"); }},
+                  {"error.causes.receivers", "error.causes.receivers", "receiver: low of bake",
+                   [](const AssetSettings& all) { return !bake_has(all, "receiver", "high"); }},
                   {"error.causes.compression", "error.causes.compression", "compress",
-                   [](const AssetSettings& all) { return splits_error(all) && all.contains("compress"); }},
+                   [](const AssetSettings& all) { return all.contains("compress"); }},
                   {"levels.relative_l2 levels.silhouette_difference levels.popping levels.popping_inside", "levels.",
                    "lod", [](const AssetSettings& all) { return all.contains("lod"); }},
                   {"compressed_relative_l2", "compressed_", "compress",

@@ -176,14 +176,15 @@ void ScatterPaths::enter(const Eigen::Vector3f& position, const Eigen::Vector3f&
   }
 }
 
-ScatterEntries ScatterPaths::entries(const Receivers& receivers, int lines, std::uint64_t first) const {
+ScatterEntries ScatterPaths::entries(const Receivers& receivers, int lines,
+                                     std::span<const std::uint64_t> numbers) const {
   ScatterEntries all;
   const std::size_t blocks = (receivers.size() + block_receivers - 1) / block_receivers;
   std::vector<ScatterEntries> parts(blocks);
   parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
     const std::size_t end = std::min(receivers.size(), (block + 1) * block_receivers);
     for (std::size_t r = block * block_receivers; r < end; ++r) {
-      PathRandom random(2 * (first + r));
+      PathRandom random(2 * numbers[r]);
       enter(receivers.positions[r], receivers.normals[r], lines, random, parts[block]);
       parts[block].ends.push_back(parts[block].positions.size());
     }
@@ -198,7 +199,7 @@ ScatterEntries ScatterPaths::entries(const Receivers& receivers, int lines, std:
   return all;
 }
 
-void add_scattered(const ScatterEntries& entries, const PathWalker& walker, std::uint64_t first,
+void add_scattered(const ScatterEntries& entries, const PathWalker& walker, std::span<const std::uint64_t> numbers,
                    std::vector<TransferVectors>& channels, std::vector<TransferVectors>& direct) {
   const int coefficients = channels.front().coefficients;
   const ShBasis basis(band_of(coefficients - 1) + 1);
@@ -206,7 +207,7 @@ void add_scattered(const ScatterEntries& entries, const PathWalker& walker, std:
     std::vector<float> row(static_cast<std::size_t>(coefficients));
     Eigen::ArrayXXd all(coefficients, 3), unbounced(coefficients, 3);
     for (std::size_t r = begin; r != end; ++r) {
-      PathRandom random(2 * (first + r) + 1);
+      PathRandom random(2 * numbers[r] + 1);
       const ShiftedSequence<2> sequence(random);
       all.setZero();
       unbounced.setZero();

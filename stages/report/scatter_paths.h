@@ -37,9 +37,9 @@ class ScatterPaths {
   /// Keeps a reference to `mesh`, which has normals. One profile serves for all colours, or there are three.
   ScatterPaths(const TriangleMesh& mesh, std::span<const ScatterProfile> profiles, double mm_per_unit);
 
-  /// Casts `lines` lines about every receiver. `first` numbers the receivers among all of the picture, whose lines
-  /// differ; the same number gives the same lines.
-  ScatterEntries entries(const Receivers& receivers, int lines, std::uint64_t first) const;
+  /// Casts `lines` lines about every receiver. Receivers of different `numbers`, one for each, have different lines;
+  /// the same number gives the same lines.
+  ScatterEntries entries(const Receivers& receivers, int lines, std::span<const std::uint64_t> numbers) const;
 
  private:
   /// A colour's distances from the axis: bins of equal probability between `radii` (object units), even within each.
@@ -67,8 +67,9 @@ class ScatterPaths {
 };
 
 /// Adds to `channels`, three of them, the transfer at receivers of light that enters at `entries`: by one path from
-/// each into the sky, which starts by the cosine; to `direct` that of paths that do not bounce.
-void add_scattered(const ScatterEntries& entries, const PathWalker& walker, std::uint64_t first,
+/// each into the sky, which starts by the cosine; to `direct` that of paths that do not bounce. `numbers` are those of
+/// the receivers.
+void add_scattered(const ScatterEntries& entries, const PathWalker& walker, std::span<const std::uint64_t> numbers,
                    std::vector<TransferVectors>& channels, std::vector<TransferVectors>& direct);
 
 }  // namespace kiln

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <random>
 
+#include "image/srgb.h"
 #include "mesh/uv_raster.h"
 #include "raycast/ray_transfer.h"
 #include "report/error_causes.h"
@@ -57,15 +58,20 @@ struct Floor {
   }
 
   /// Bakes the planes over some directions.
-  void store(const std::vector<Eigen::Vector3f>& over, int bits) {
+  void store(const std::vector<Eigen::Vector3f>& over, int bits) { store(over, bits, scene, detail, 1); }
+
+  /// Bakes the planes at the points of `maps` under the shadows of `shadows`, times `factor`.
+  void store(const std::vector<Eigen::Vector3f>& over, int bits, const SceneMesh& shadows, const DetailMaps& maps,
+             float factor) {
     std::vector<Eigen::Vector3f> positions, normals(std::size_t{size} * size, Eigen::Vector3f::UnitY());
     for (int k = 0; k < size * size; ++k) {
-      const auto p = detail.position.pixel(k % size, k / size);
+      const auto p = maps.position.pixel(k % size, k / size);
       positions.emplace_back(p[0], p[1], p[2]);
     }
-    const RayScene rays(scene.mesh);
-    const TransferVectors transfer =
-        transfer_by_rays(rays, {positions, normals}, over, bands, rounding_offset(scene.mesh.positions));
+    const RayScene rays(shadows.mesh);
+    TransferVectors transfer =
+        transfer_by_rays(rays, {positions, normals}, over, bands, rounding_offset(shadows.mesh.positions));
+    for (float& value : transfer.values) value *= factor;
     asset.bands = bands;
     asset.channels = 1;
     asset.bits = bits;
@@ -94,15 +100,24 @@ struct Floor {
       asset.pictures = std::move(narrow);
   }
 
-  ErrorSplit split(const PrtAsset* compressed = nullptr) const {
-    return error_causes({.high = high,
-                         .low = low,
-                         .scene = scene,
-                         .asset = asset,
-                         .compressed = compressed,
-                         .detail = detail,
-                         .bake_directions = directions});
+  SplitInput input(const PrtAsset* compressed = nullptr) const {
+    return {.high = high,
+            .low = low,
+            .scene = scene,
+            .asset = asset,
+            .compressed = compressed,
+            .detail = &detail,
+            .bake_directions = directions};
   }
+
+  /// Returns an input of fewer pixels, where those need not be many.
+  SplitInput coarse_input() const {
+    SplitInput coarse = input();
+    coarse.sampling.pixels = 1000;
+    return coarse;
+  }
+
+  ErrorSplit split(const PrtAsset* compressed = nullptr) const { return error_causes(input(compressed)); }
 };
 
 double cause(const ErrorSplit& split, const std::string& name) {
@@ -186,6 +201,159 @@ TEST(ErrorCauses, CompressionIsWhatCompressionChanges) {
   EXPECT_NEAR(cause(split, "compression"), 0.02, 0.001);  // everything is 2 % too long
 }
 
+TEST(ErrorCauses, OneColorWithinCancels) {
+  Floor floor(256, 8, 0.02f);
+  const ErrorSplit white = error_causes(floor.coarse_input());
+  EXPECT_EQ(cause(white, "albedo"), 0);
+  floor.store(floor.directions, 8, floor.scene, floor.detail, 0.4f);
+  const SurfaceAlbedo grey = SurfaceAlbedo::constant(Eigen::Vector3f::Constant(0.4f));
+  floor.detail.constant_albedo = Eigen::Vector3f::Constant(0.4f);
+  SplitInput input = floor.coarse_input();
+  input.albedo = &grey;
+  input.albedo_within = true;
+  const ErrorSplit split = error_causes(input);
+  EXPECT_LT(cause(split, "albedo"), 1e-6);
+  EXPECT_NEAR(split.total, white.total, 1e-3 * white.total);
+  EXPECT_NEAR(cause(split, "bits"), cause(white, "bits"), 0.02 * cause(white, "bits"));
+}
+
+TEST(ErrorCauses, AlbedoWithinIsThatOfTheMaps) {
+  Floor floor(256, 16);
+  floor.store(floor.directions, 16, floor.scene, floor.detail, 0.44f);
+  const SurfaceAlbedo grey = SurfaceAlbedo::constant(Eigen::Vector3f::Constant(0.4f));
+  floor.detail.constant_albedo = Eigen::Vector3f::Constant(0.44f);  // a tenth too bright
+  SplitInput input = floor.coarse_input();
+  input.albedo = &grey;
+  input.albedo_within = true;
+  const ErrorSplit split = error_causes(input);
+  EXPECT_NEAR(cause(split, "albedo"), 0.1, 0.006) << "of the points inside the chart, which are most";
+  EXPECT_LT(cause(split, "visibility"), 1e-6);
+  EXPECT_NEAR(split.root_sum(), split.total, 0.1 * split.total);
+}
+
+TEST(ErrorCauses, AlbedoInAMapIsLookedUpInColor) {
+  Floor floor(256, 16);
+  // Red falls from one side to the other, linearly: bytes of sRGB round it, and the lookup between them is exact.
+  const float green = linear_from_srgb(188 / 255.f);  // a whole byte
+  std::vector<Eigen::Vector3f> corners = {{0.9f, green, 0}, {0.1f, green, 0}, {0.1f, green, 0}, {0.9f, green, 0}};
+  const SurfaceAlbedo albedo = SurfaceAlbedo::of_vertices(corners, floor.high.triangles);
+  Image<float> picture(size, size, 3);
+  for (int k = 0; k < size * size; ++k) {
+    const float x = (static_cast<float>(k % size) + 0.5f) / size;
+    picture.at(k % size, k / size, 0) = 0.9f - 0.8f * x;
+    picture.at(k % size, k / size, 1) = green;
+  }
+  floor.asset.albedo = PrtAlbedo::of_picture("albedo.png");
+  floor.asset.albedo.picture = srgb_bytes(picture);
+  SplitInput input = floor.coarse_input();
+  input.albedo = &albedo;
+  const ErrorSplit exact = error_causes(input);
+  EXPECT_LT(cause(exact, "albedo"), 0.004) << "a step of a byte is a hundredth of a dark red";
+
+  for (float& value : picture.values()) value *= 0.9f;
+  floor.asset.albedo.picture = srgb_bytes(picture);
+  const ErrorSplit darker = error_causes(input);
+  EXPECT_NEAR(cause(darker, "albedo"), 0.1, 0.003);
+  EXPECT_NEAR(darker.root_sum(), darker.total, 0.1 * darker.total);
+}
+
+TEST(ErrorCauses, ReceiversAreWhatStandsOnTheLowMesh) {
+  Floor floor(1024, 16, 0.05f);
+  DetailMaps on_low = floor.detail;
+  for (int k = 0; k < size * size; ++k) on_low.position.at(k % size, k / size, 1) = 0;
+  const LowReceivers same{floor.scene, &floor.detail}, above{floor.scene, &on_low};
+  SplitInput input = floor.coarse_input();
+  const double without = error_causes(input).total;
+  input.on_low = &same;
+  const ErrorSplit none = error_causes(input);
+  EXPECT_EQ(cause(none, "receivers"), 0);
+  EXPECT_DOUBLE_EQ(none.total, without);
+
+  floor.store(floor.directions, 16, floor.scene, on_low, 1);
+  input.on_low = &above;
+  const ErrorSplit split = error_causes(input);
+  EXPECT_GT(cause(split, "receivers"), 0.005) << "the wall's foot is nearer";
+  EXPECT_LT(cause(split, "visibility"), 1e-6);
+  SceneMesh open;
+  open.add(floor.low);
+  floor.store(floor.directions, 16, open, on_low, 1);
+  const LowReceivers unshadowed{open, &on_low};
+  input.on_low = &unshadowed;
+  const ErrorSplit lit = error_causes(input);
+  EXPECT_GT(cause(lit, "receivers"), 3 * cause(split, "receivers")) << "no wall shadows them";
+  EXPECT_LT(cause(lit, "visibility"), 1e-6);
+}
+
+TEST(ErrorCauses, LightBeneathTheSurfaceIsThatOfPaths) {
+  // Light scatters less far than a texel, so the transfer is the reflectance of a plane times that of light that
+  // arrives.
+  const ScatterProfile profile = ScatterProfile::diffusion(0.6, 1);
+  Floor floor(1024, 16);
+  const auto reflectance = static_cast<float>(profile.total());
+  SplitInput input = floor.coarse_input();
+  input.scattering = {profile};
+  input.sampling.pixels = 2048;  // a quarter of them is taken
+  floor.store(floor.directions, 16, floor.scene, floor.detail, reflectance);
+  const ErrorSplit exact = error_causes(input);
+  EXPECT_LT(cause(exact, "subsurface"), 0.02) << "what is left is noise";
+  EXPECT_LT(cause(exact, "bits"), 2e-5);
+  floor.store(floor.directions, 16, floor.scene, floor.detail, 1.2f * reflectance);
+  const ErrorSplit brighter = error_causes(input);
+  EXPECT_NEAR(cause(brighter, "subsurface"), 0.2, 0.02);
+  EXPECT_NEAR(brighter.root_sum(), brighter.total, 0.1 * brighter.total);
+}
+
+/// Bakes a floor of so many vertices along a side under the wall of Floor, and splits its error.
+ErrorSplit split_of_vertices(int side) {
+  Floor floor(1024, 16);
+  TriangleMesh grid;
+  for (int j = 0; j < side; ++j)
+    for (int i = 0; i < side; ++i)
+      grid.positions.emplace_back(-1 + 2.f * static_cast<float>(i) / static_cast<float>(side - 1), 0.f,
+                                  1 - 2.f * static_cast<float>(j) / static_cast<float>(side - 1));
+  const auto vertex = [&](int i, int j) { return static_cast<std::uint32_t>(j * side + i); };
+  for (int j = 0; j + 1 < side; ++j)
+    for (int i = 0; i + 1 < side; ++i) {
+      grid.triangles.push_back({vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1)});
+      grid.triangles.push_back({vertex(i, j), vertex(i + 1, j + 1), vertex(i, j + 1)});
+    }
+  grid.normals.assign(grid.positions.size(), Eigen::Vector3f::UnitY());
+  const TransferVectors transfer =
+      transfer_by_rays(RayScene(floor.scene.mesh), {grid.positions, grid.normals}, floor.directions, bands,
+                       rounding_offset(floor.scene.mesh.positions));
+  PrtAsset asset;
+  asset.bands = bands;
+  asset.channels = 1;
+  asset.bits = 16;
+  asset.vertices = side * side;
+  asset.vertex_transfer.resize(transfer.values.size());
+  for (int i = 0; i < transfer.coefficients; ++i) {
+    const auto [least, most] = std::ranges::minmax(transfer.plane(i));
+    PrtPlane plane;
+    plane.coefficient = i;
+    plane.bits = 16;
+    plane.range = {least, most};
+    asset.planes.push_back(plane);
+    for (std::size_t r = 0; r < transfer.receivers; ++r)
+      asset.vertex_transfer[r * static_cast<std::size_t>(transfer.coefficients) + static_cast<std::size_t>(i)] =
+          transfer.plane(i)[r];
+  }
+  return error_causes({.high = floor.high,
+                       .low = grid,
+                       .scene = floor.scene,
+                       .asset = asset,
+                       .bake_directions = floor.directions,
+                       .sampling = {.pixels = 1000}});
+}
+
+TEST(ErrorCauses, VerticesAreLookedUpInPlaceOfTexels) {
+  const ErrorSplit coarse = split_of_vertices(9), fine = split_of_vertices(33);
+  EXPECT_LT(cause(coarse, "visibility"), 2e-5) << "what is stored was made by the same rays, not rounded";
+  EXPECT_EQ(cause(coarse, "seams"), 0);
+  EXPECT_GT(cause(coarse, "vertices"), 2 * cause(fine, "vertices"));
+  EXPECT_NEAR(coarse.root_sum(), coarse.total, 0.1 * coarse.total);
+}
+
 /// Returns a floor of 2 x 2 under a plate of so many across, with uvs.
 TriangleMesh floor_under_plate(float plate) {
   TriangleMesh mesh;
@@ -203,7 +371,7 @@ TEST(ErrorSamples, ShowOutlinesAsOftenAsAViewerSeesThem) {
   DetailMaps detail;
   detail.width = detail.height = size;
   detail.covered.assign(std::size_t{size} * size, 1);
-  const ErrorSamples samples = make_error_samples(high, low, detail, {.pixels = 2000});
+  const ErrorSamples samples = make_error_samples(high, low, &detail, {.pixels = 2000});
   double outline = 0, all = 0;
   int found = 0;
   for (std::size_t k = 0; k < samples.pixels(); ++k) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
+#include <numeric>
 #include <random>
 
 #include "mesh/surface_point.h"
@@ -304,6 +305,13 @@ TriangleMesh square(float side, float height, bool up) {
   return mesh;
 }
 
+/// Returns the numbers of receivers from the `first` on.
+std::vector<std::uint64_t> numbers_from(std::uint64_t first, std::size_t count) {
+  std::vector<std::uint64_t> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), first);
+  return numbers;
+}
+
 TEST(ScatterPaths, PlateHasTheIntegralsOfItsProfile) {
   // Through a plate light leaves on the upper side that entered there, the total of the profile, and that entered
   // below: the integral of 2 pi r R(sqrt(r^2 + h^2)).
@@ -318,7 +326,7 @@ TEST(ScatterPaths, PlateHasTheIntegralsOfItsProfile) {
   const ScatterPaths paths(plate.mesh, profiles, mm_per_unit);
   const std::vector<Eigen::Vector3f> positions(500, Eigen::Vector3f::Zero());
   const std::vector<Eigen::Vector3f> normals(500, Eigen::Vector3f::UnitY());
-  const ScatterEntries entries = paths.entries({positions, normals}, 256, 0);
+  const ScatterEntries entries = paths.entries({positions, normals}, 256, numbers_from(0, 500));
   ASSERT_EQ(entries.ends.size(), 500u);
   Eigen::Vector3d above = Eigen::Vector3d::Zero(), below = above;
   for (std::size_t k = 0; k < entries.positions.size(); ++k)
@@ -342,9 +350,11 @@ TEST(ScatterPaths, PlaneInTheOpenHasThatMuchOfItsTransfer) {
   const ScatterProfile profile = ScatterProfile::diffusion(0.5, 2);
   const std::vector<Eigen::Vector3f> positions(400, Eigen::Vector3f::Zero());
   const std::vector<Eigen::Vector3f> normals(400, Eigen::Vector3f::UnitY());
-  const ScatterEntries entries = ScatterPaths(plane, std::span(&profile, 1), 10).entries({positions, normals}, 64, 3);
+  const std::vector<std::uint64_t> numbers = numbers_from(3, 400);
+  const ScatterEntries entries =
+      ScatterPaths(plane, std::span(&profile, 1), 10).entries({positions, normals}, 64, numbers);
   std::vector<TransferVectors> all(3, TransferVectors(400, 9)), direct = all;
-  add_scattered(entries, PathWalker(scene, surface, 0, 1e-4f), 3, all, direct);
+  add_scattered(entries, PathWalker(scene, surface, 0, 1e-4f), numbers, all, direct);
   const std::vector<float> expected = unoccluded_transfer(ShBasis(3), Eigen::Vector3f::UnitY());
   for (int i = 0; i < 9; ++i)
     for (std::size_t c = 0; c < 3; ++c) {
@@ -360,7 +370,8 @@ TEST(ScatterPaths, DarkMaterialSendsNothing) {
   const TriangleMesh plane = square(1, 0, true);
   const ScatterProfile profile = ScatterProfile::diffusion(0, 2);
   const std::vector<Eigen::Vector3f> positions(3, Eigen::Vector3f::Zero()), normals(3, Eigen::Vector3f::UnitY());
-  const ScatterEntries entries = ScatterPaths(plane, std::span(&profile, 1), 10).entries({positions, normals}, 8, 0);
+  const ScatterEntries entries =
+      ScatterPaths(plane, std::span(&profile, 1), 10).entries({positions, normals}, 8, numbers_from(0, 3));
   EXPECT_EQ(entries.ends, std::vector<std::size_t>(3, 0));
 }
 

@@ -72,9 +72,11 @@ Prediction AssetModel::predict(const Choice& choice) const {
   // share of points near a jump, as does a quadrature's with the power 3/4 of its directions [Beck 1984]; seams
   // are points at borders, whose share falls likewise, but never as fast as where every texel is at one.
   follow("geometry", &PilotBuild::triangles, choice.triangles, 1.5);
+  if (fine.squares.contains("receivers")) follow("receivers", &PilotBuild::triangles, choice.triangles, 1.5);
   if (choice.triangles >= pilot_.input_triangles) squares["geometry"] = 0;
   const double covered = texels(choice.size);
   follow("texels", &PilotBuild::texels, covered, 1.5);
+  if (square_of(fine, "albedo", bands) > 0) follow("albedo", &PilotBuild::texels, covered, 1.5);
   follow("seams", &PilotBuild::texels, covered, 1);
   follow("directions", &PilotBuild::directions, choice.directions, 1.5);
   squares["bits"] = square_of(fine, "bits", bands) * std::pow(0.25, choice.bits - pilot_bits);

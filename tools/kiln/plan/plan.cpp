@@ -10,7 +10,6 @@
 
 #include "base/errors.h"
 #include "base/json.h"
-#include "kiln/metrics.h"
 #include "kiln/overrides.h"
 #include "kiln/plan/pilot.h"
 #include "kiln/plan/plan_file.h"
@@ -44,9 +43,8 @@ double asked_of(const Asset& asset, const PlanSettings& settings) {
 
 /// Returns why nothing can be planned for an asset; empty if something can.
 std::string reason_to_leave(const Asset& asset) {
-  const std::vector<std::string> metrics = metrics_of(asset.settings);
-  if (std::ranges::find(metrics, error_metric) == metrics.end())
-    return "its error cannot be split (subsurface, receivers on the low mesh, or albedo within the transfer)";
+  if (effective_setting(asset.settings, "bake", "subsurface") != "none")
+    return "subsurface: light scatters beneath its surface, and how much of its error is from directions is not known";
   return {};
 }
 
