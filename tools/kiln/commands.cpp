@@ -288,12 +288,16 @@ Commands::Commands(CLI::App& app) : values_(std::make_unique<Values>()) {
                  v.file == "pipeline.yaml" ? "" : (" " + shell_quoted(v.file.string())).c_str());
   });
 
-  // kiln-check is a program of its own because it links readers of pictures and meshes, and every step of a build
-  // starts this one.
-  CLI::App& check = *app.add_subcommand("check", "Hold assets' folders against the format (kiln-check)");
-  check.set_help_flag();
-  check.prefix_command();
-  check.callback([&v, &check] { v.status = run_sibling("kiln-check", check.remaining()); });
+  // These are programs of their own because they link readers of pictures and meshes, and every step of a build starts
+  // this one.
+  const auto add_sibling = [&](const std::string& name, const std::string& purpose) {
+    CLI::App& command = *app.add_subcommand(name, fmt::format("{} (kiln-{})", purpose, name));
+    command.set_help_flag();
+    command.prefix_command();
+    command.callback([&v, &command, name] { v.status = run_sibling("kiln-" + name, command.remaining()); });
+  };
+  add_sibling("check", "Hold assets' folders against the format");
+  add_sibling("export", "Write an asset as a glTF file");
 
   // `kiln schema` makes docs/schema/pipeline.schema.json.
   app.add_subcommand("schema", "Print the JSON Schema of pipeline.yaml")->group("")->callback([] {
