@@ -17,8 +17,8 @@ class OutputSet {
   OutputSet(const OutputSet&) = delete;
   OutputSet& operator=(const OutputSet&) = delete;
 
-  /// Returns the temporary path of the file that will be `folder/name`, where `name` may have folders in it. Files become visible in the order they were
-  /// added, so add the one that describes the others last.
+  /// Returns the temporary path of the file that will be `folder/name`, where `name` may have folders in it. Files
+  /// become visible in the order they were added, so add the one that describes the others last.
   std::filesystem::path add(const std::string& name);
 
   /// Writes a text file.
