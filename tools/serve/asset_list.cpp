@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <charconv>
 #include <cstdint>
+#include <fmt/format.h>
 #include <fstream>
 #include <system_error>
 
@@ -86,9 +89,32 @@ std::vector<ListedAsset> list_assets(const fs::path& folder, const fs::path& but
   return found;
 }
 
+std::string url_of_path(const std::string& path) {
+  std::string url;
+  for (const char letter : path) {
+    const bool is_plain = std::isalnum(static_cast<unsigned char>(letter)) != 0 ||
+                          std::string_view("-._~/").find(letter) != std::string_view::npos;
+    url += is_plain ? std::string(1, letter) : fmt::format("%{:02X}", static_cast<unsigned char>(letter));
+  }
+  return url;
+}
+
+std::string path_of_url(std::string_view url) {
+  std::string path;
+  for (std::size_t k = 0; k < url.size(); ++k) {
+    unsigned char byte = 0;
+    const std::string_view digits = url.substr(k + 1, 2);
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), byte, 16);
+    const bool is_escape = url[k] == '%' && digits.size() == 2 && error == std::errc() && end == digits.data() + 2;
+    path += is_escape ? static_cast<char>(byte) : url[k];
+    if (is_escape) k += 2;
+  }
+  return path;
+}
+
 std::string asset_list_text(const std::vector<ListedAsset>& assets) {
   Json list = Json::array();
-  for (const ListedAsset& asset : assets) list.push_back({{"name", asset.name}, {"path", asset.path}});
+  for (const ListedAsset& asset : assets) list.push_back({{"name", asset.name}, {"path", url_of_path(asset.path)}});
   return json_text({{"assets", list}}, 2) + "\n";
 }
 

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace kiln {
@@ -23,7 +24,11 @@ inline constexpr const char* asset_list_name = "assets.json";
 /// are names that are not UTF-8, which no address can have. Throws BadInput where `folder` is no folder.
 std::vector<ListedAsset> list_assets(const std::filesystem::path& folder, const std::filesystem::path& but_not = {});
 
-/// Makes assets.json: {"assets": [{"name": "bunny", "path": "bunny/prt"}]}.
+/// Escapes a path for an address, bytes but letters, digits and -._~/ as %XX; and resolves escapes.
+std::string url_of_path(const std::string& path);
+std::string path_of_url(std::string_view url);
+
+/// Makes assets.json: {"assets": [{"name": "bunny", "path": "bunny/prt"}]}, with paths as relative addresses.
 std::string asset_list_text(const std::vector<ListedAsset>& assets);
 
 }  // namespace kiln

@@ -49,7 +49,7 @@ std::vector<std::string> earlier_paths(const fs::path& site) {
   if (!list.is_object() || !list.contains("assets") || !list["assets"].is_array()) return paths;
   for (const Json& entry : list["assets"]) {
     if (!entry.is_object() || !entry.contains("path") || !entry["path"].is_string()) continue;
-    const ListedAsset asset{"", entry["path"]};
+    const ListedAsset asset{"", path_of_url(entry["path"].get<std::string>())};
     if (!stays_inside(asset.path)) continue;
     try {
       for (const std::string& path : shipped_paths(site, asset)) paths.push_back(path);
