@@ -70,7 +70,7 @@ with tempfile.TemporaryDirectory() as outer:
         expect("by its name", ask(port, "/index.html")[2], body)
         listed = json.loads(ask(port, "/assets.json")[2])
         expect("assets", listed, {"assets": [{"name": "bunny", "path": "bunny/prt"}, {"name": "bunny/prt2/deeper", "path": "bunny/prt2/deeper"},
-                                             {"name": "bäume 100%", "path": "b%C3%A4ume%20100%25/prt"}, {"name": "post", "path": "post.glb"}]})
+                                             {"name": "bäume 100%", "path": "b%C3%A4ume%20100%25/prt"}, {"name": "post.glb", "path": "post.glb"}]})
         for name in ("script", "default", "object", "frame-ancestors"):
             policy = headers["content-security-policy"]
             expect(f"policy of {name}", bool(re.search(r"\*|https?:|'unsafe-eval'|script-src[^;]*'unsafe-inline'", policy)), False)

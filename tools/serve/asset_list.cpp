@@ -71,7 +71,7 @@ void search(const fs::path& root, const fs::path& relative, const fs::path& but_
         search(root, relative / name, but_not, levels_left - 1, found);
     } else if (name.extension() == ".glb" && entry.is_regular_file(error) && is_relightable_glb(entry.path())) {
       const std::string path = (relative / name).generic_string();
-      found.push_back({path.substr(0, path.size() - 4), path});
+      found.push_back({path, path});
     }
   }
 }
