@@ -15,9 +15,7 @@
 #include "export/export_asset.h"
 #include "export/sky_pictures.h"
 #include "export/surface_textures.h"
-#include "gpu/egl_context.h"
-#include "gpu/gl_objects.h"
-#include "gpu/program.h"
+#include "export_samples.h"
 #include "image/image_file.h"
 #include "image/png_file.h"
 #include "image/srgb.h"
@@ -33,47 +31,10 @@ namespace kiln {
 
 namespace test_export {
 
+using test::Sample;
+using test::write;
+
 constexpr GlbMeshForm all_forms[] = {GlbMeshForm::draco, GlbMeshForm::meshopt, GlbMeshForm::plain};
-
-/// An asset whose transfer is that of an open surface, times `open`.
-struct Sample {
-  TriangleMesh mesh;
-  int side = 32, bands = 2, bits = 8;
-  std::vector<float> open = {1};  ///< per channel
-  PrtDescription description = {};
-};
-
-Image<float> constant_plane(const Sample& sample, float value) { return {sample.side, sample.side, 1, value}; }
-
-/// Writes the asset without what only `description` has; pictures beside planes are the caller's.
-void write(const std::filesystem::path& folder, Sample sample) {
-  OutputSet outputs(folder);
-  PrtDescription& asset = sample.description;
-  asset.bands = sample.bands;
-  asset.channels = static_cast<int>(sample.open.size());
-  asset.bits = sample.bits;
-  asset.width = asset.height = sample.side;
-  asset.mesh_file = atlas_mesh_name;
-  asset.origin = sample.mesh.frame.origin;
-  save_draco(outputs.add(atlas_mesh_name), sample.mesh);
-  const TriangleMesh stored = load_draco(outputs.staging() / atlas_mesh_name);
-  const UvRaster raster = rasterise_uvs(stored, sample.side, sample.side);
-  const ShBasis basis(sample.bands);
-  for (int c = 0; c < asset.channels; ++c)
-    for (int i = 0; i < basis.size(); ++i) {
-      Image<float> plane = constant_plane(sample, 0);
-      for (std::size_t k = 0; k < raster.texels.size(); ++k)
-        if (raster.texels[k].covered())
-          plane.values()[k] =
-              sample.open[static_cast<std::size_t>(c)] *
-              unoccluded_transfer(
-                  basis,
-                  interpolate(stored, stored.normals, raster.texels[k]).normalized())[static_cast<std::size_t>(i)];
-      asset.planes.push_back(write_plane(outputs, c, i, plane, range_of(plane.values()), sample.bits));
-    }
-  write_description(outputs, asset);
-  outputs.commit();
-}
 
 /// Splits a glb into its JSON and its bytes.
 std::pair<Json, std::string> parts_of(const std::string& glb) {
@@ -347,110 +308,6 @@ TEST(Export, RoughnessIsThatOfTheMapsThatShip) {
   EXPECT_EQ(map.at(3, 3, 2), 0);
 }
 
-/// Returns the shader that docs/engines.md prints.
-std::string documented_shader() {
-  std::ifstream page(std::string(KILN_SOURCE_FOLDER) + "/docs/engines.md");
-  std::string text;
-  bool is_inside = false;
-  for (std::string line; std::getline(page, line);) {
-    is_inside = is_inside || line == "    vec3 relit(vec2 uv, vec3 albedo, vec3 L[4]) {";
-    if (is_inside) text += line + "\n";
-    if (line == "    }") is_inside = false;
-  }
-  return text;
-}
-
-GlTexture texture_of(const Image<std::uint8_t>& picture) {
-  GLuint name = 0;
-  glCreateTextures(GL_TEXTURE_2D, 1, &name);
-  const bool is_grey = picture.channels() == 1;
-  glTextureStorage2D(name, 1, is_grey ? GL_R8 : GL_RGB8, picture.width(), picture.height());
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTextureSubImage2D(name, 0, 0, 0, picture.width(), picture.height(), is_grey ? GL_RED : GL_RGB, GL_UNSIGNED_BYTE,
-                      picture.values().data());
-  // Grey pictures have all colours alike.
-  if (is_grey)
-    for (const GLenum channel : {GL_TEXTURE_SWIZZLE_G, GL_TEXTURE_SWIZZLE_B})
-      glTextureParameteri(name, channel, GL_RED);
-  glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  return GlTexture(name);
-}
-
-/// Compiles a compute shader that calls relit() for every texel.
-GlProgram relight_program() {
-  const std::string text =
-      "#version 450\n"
-      "layout(local_size_x = 1) in;\n"
-      "layout(binding = 0) uniform sampler2D sh1_w;\n"
-      "layout(binding = 1) uniform sampler2D sh1_x;\n"
-      "layout(binding = 2) uniform sampler2D sh1_y;\n"
-      "layout(binding = 3) uniform sampler2D sh1_z;\n"
-      "layout(location = 0) uniform vec3 light[4];\n"
-      "layout(std430, binding = 0) buffer Out { vec4 shown[]; };\n" +
-      documented_shader() +
-      "void main() {\n"
-      "  ivec2 size = textureSize(sh1_w, 0);\n"
-      "  vec2 uv = (vec2(gl_GlobalInvocationID.xy) + 0.5) / vec2(size);\n"
-      "  shown[gl_GlobalInvocationID.y * size.x + gl_GlobalInvocationID.x] =\n"
-      "      vec4(relit(uv, vec3(0.8, 0.5, 0.2), light), 1.0);\n"
-      "}\n";
-  const char* source = text.c_str();
-  GlProgram program(glCreateShaderProgramv(GL_COMPUTE_SHADER, 1, &source));
-  GLint is_linked = 0;
-  glGetProgramiv(program.name(), GL_LINK_STATUS, &is_linked);
-  std::array<char, 2000> log{};
-  glGetProgramInfoLog(program.name(), log.size(), nullptr, log.data());
-  EXPECT_EQ(is_linked, GL_TRUE) << log.data();
-  return program;
-}
-
-TEST(Export, ShaderOfEnginesRuns) {
-  Scratch scratch;
-  Sample sample{shapes::cube_sphere(12)};
-  sample.side = 64;
-  sample.bits = 16;
-  sample.open = {1, 0.5f, 0.25f};
-  write(scratch.folder(), sample);
-  const PrtAsset asset = load_prt_asset(scratch.folder());
-  const SkyPictures sky = sky_pictures(sky_transfer(asset));
-  const UvRaster raster = rasterise_uvs(asset.mesh, asset.width, asset.height);
-
-  const EglContext context("software");
-  const GlProgram program = relight_program();
-  std::vector<GlTexture> textures;
-  for (const Image<std::uint8_t>& picture : sky.pictures) {
-    textures.push_back(texture_of(picture));
-    glBindTextureUnit(static_cast<GLuint>(textures.size() - 1), textures.back().name());
-  }
-  const Eigen::Vector3f d = Eigen::Vector3f(1, 2, 3).normalized();
-  const ShBasis basis(2);
-  std::array<float, 4> coefficients{};
-  basis.evaluate<float>(d, coefficients);
-  std::array<float, 12> light{};
-  for (std::size_t k = 0; k < light.size(); ++k) light[k] = std::numbers::pi_v<float> * coefficients[k / 3];
-  std::vector<Eigen::Vector4f> shown(raster.texels.size(), Eigen::Vector4f::Zero());
-  const GlBuffer buffer = make_zero_buffer(static_cast<GLsizeiptr>(shown.size() * sizeof shown[0]));
-  glUseProgram(program.name());
-  glUniform3fv(0, 4, light.data());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffer.name());
-  glDispatchCompute(static_cast<GLuint>(sample.side), static_cast<GLuint>(sample.side), 1);
-  glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  glGetNamedBufferSubData(buffer.name(), 0, static_cast<GLsizeiptr>(shown.size() * sizeof shown[0]), shown.data());
-  check_gl("relit");
-
-  const Eigen::Vector3f albedo(0.8f, 0.5f, 0.2f);
-  std::size_t dark = 0;
-  for (std::size_t k = 0; k < shown.size(); ++k) {
-    if (!raster.texels[k].covered()) continue;
-    const Eigen::Vector3f n = interpolate(asset.mesh, asset.mesh.normals, raster.texels[k]).normalized();
-    const float open = std::max(0.0f, 0.25f + 0.5f * n.dot(d));  // the closed form, as above
-    dark += open == 0 ? 1 : 0;
-    for (int c = 0; c < 3; ++c)
-      ASSERT_NEAR(shown[k][c], albedo[c] * sample.open[static_cast<std::size_t>(c)] * open, 0.01f) << "texel " << k;
-  }
-  EXPECT_GT(dark, 100u);  // those that face away
-}
-
 /// Reads a file back by the importer and holds it against the mesh that was exported.
 void expect_same_shape(const std::string& glb, const TriangleMesh& mesh, const Scratch& scratch, double step,
                        float uv_step) {
@@ -549,6 +406,19 @@ TEST(Export, PlanesAndManifestAreTheFolders) {
     ASSERT_TRUE(exported.sky_pictures);
     EXPECT_EQ(exported.glb, export_asset(scratch.folder(), scratch / "web/asset.glb", {GlbMeshForm::plain, true}).glb);
   }
+}
+
+TEST(Export, SaysWhatStaysInTheFolder) {
+  Scratch scratch;
+  Sample sample{shapes::plane(2)};
+  sample.description.levels = {{"lod_1.drc", 4, 0.1, 3}, {"lod_2.drc", 2, 0.2, 6}};
+  sample.description.maps = {{"ao", "ao.png", PlaneRange{0, 1}}, {"height", "height.exr", {}}};
+  write(scratch.folder(), sample);
+  const ExportedAsset exported = export_asset(scratch.folder(), scratch / "a.glb", {});
+  ASSERT_EQ(exported.warnings.size(), 2u);
+  EXPECT_EQ(exported.warnings[0], "2 levels of detail stay in the folder: the file holds the finest mesh");
+  EXPECT_EQ(exported.warnings[1], "further maps stay in the folder: ao, height");
+  EXPECT_EQ(exported.metrics["left_out"].size(), 2u);
 }
 
 TEST(Export, VerticesKeepTheirTransfer) {
