@@ -87,7 +87,14 @@ with tempfile.TemporaryDirectory() as folder:
     run("kiln-lod", "fine/atlas.drc", "-o", "fine/lod", "--levels", "0.7", "--quiet")
     run("kiln-bake", "fine/atlas.drc", "--receiver", "low", "--levels", "fine/lod", "-o", "levels", "--bands", "2",
         "--directions", "64", "--quiet")
+    for asset in ("out/post/prt", "vertices", "pca"):
+        run("kiln-export", asset, "-o", asset.split("/")[-1] + ".glb", "--quiet")
     read = lambda name: json.loads(pathlib.Path(name).read_text())
+
+    def extension(name):
+        """Returns KILN_prt of the only material of a glb."""
+        data = pathlib.Path(name).read_bytes()
+        return json.loads(data[20:20 + int.from_bytes(data[12:16], "little")])["materials"][0]["extensions"]["KILN_prt"]
 
     # Written files conform to the schemas.
     for name, files in {
@@ -103,6 +110,9 @@ with tempfile.TemporaryDirectory() as folder:
             fits(name, read(file), file)
     for form in ("textured", "tangent", "vertices"):
         fits("ranges", json.loads((sources / f"tests/data/version1/{form}/ranges.json").read_text()), f"version 1, {form}")
+    for file in ("prt.glb", "vertices.glb", "pca.glb"):
+        fits("KILN_prt", extension(file), file)
+        fits("pca" if file == "pca.glb" else "ranges", extension(file)["manifest"], f"manifest of {file}")
     fits("check", json.loads(run("kiln", "check", "--json", "out/post", "vertices", "hollow", "pca", "probes")), "kiln check")
     pathlib.Path("pca/weight_00.png").unlink()
     told = json.loads(run("kiln", "check", "--json", "pca", "nowhere", status=3))
@@ -125,6 +135,11 @@ with tempfile.TemporaryDirectory() as folder:
         (("levels", 0, "mesh"), "../lod_1.drc"), (("levels", 0, "triangles"), 0), (("levels", 0, "error"), -1),
         (("levels", 0, "distance"), DROP), (("levels",), {})])
     refuses("ranges", read("hollow/ranges.json"), [(("requires",), []), (("normal_space",), "world")])
+    refuses("KILN_prt", extension("prt.glb"), [
+        (("version",), 2), (("manifest",), DROP), (("manifest",), "ranges.json"), (("manifest", "format"), "kiln-probes"),
+        (("pictures",), DROP), (("pictures",), {}), (("pictures", "coeff_0_00.png"), 3), (("pictures", "coeff_0_00.png", "index"), -1),
+        (("attributes",), {"kiln-prt-0-0": "_KILN_PRT_0_0"}), (("manifest", "vertices"), 8)])
+    refuses("KILN_prt", extension("vertices.glb"), [(("attributes",), DROP), (("attributes", "kiln-prt-0-0"), "COLOR_0")])
     refuses("pca", read("pca/pca.json"), [
         (("requires",), ["vertices"]), (("clusters",), 257), (("cluster_ids",), DROP), (("planes", 0, "bits"), 9),
         (("vector_ranges", 0, "max"), None)])

@@ -2,10 +2,13 @@
 #include "kiln/commands.h"
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <stdexcept>
+#include <unistd.h>
 
 #include "base/errors.h"
 #include "base/file_names.h"
@@ -142,14 +145,15 @@ void add_words(CLI::App& command, std::vector<std::string>& words, const std::st
       ->option_text("[pipeline.yaml] [asset...]");
 }
 
-/// Runs a program of the same folder as this one; returns its exit status.
-int run_sibling(const std::string& name, const std::vector<std::string>& words) {
+/// Becomes a program of the same folder as this one, which ends as it does when it is called by its own name.
+[[noreturn]] void become_sibling(const std::string& name, const std::vector<std::string>& words) {
   std::vector<std::string> arguments = {(program_folder() / name).string()};
   arguments.insert(arguments.end(), words.begin(), words.end());
-  const ProcessEnd end = run_process(arguments);
-  throw_if_interrupted();
-  if (end.signal != 0) throw std::runtime_error(fmt::format("{} ended by signal {}", name, end.signal));
-  return end.exit_status;
+  std::vector<char*> pointers;
+  for (std::string& argument : arguments) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  execv(pointers.front(), pointers.data());
+  throw MachineLacks(arguments.front() + " cannot be started (" + std::strerror(errno) + "); install Kiln again");
 }
 
 }  // namespace
@@ -288,12 +292,18 @@ Commands::Commands(CLI::App& app) : values_(std::make_unique<Values>()) {
                  v.file == "pipeline.yaml" ? "" : (" " + shell_quoted(v.file.string())).c_str());
   });
 
-  // kiln-check is a program of its own because it links readers of pictures and meshes, and every step of a build
-  // starts this one.
-  CLI::App& check = *app.add_subcommand("check", "Hold assets' folders against the format (kiln-check)");
-  check.set_help_flag();
-  check.prefix_command();
-  check.callback([&v, &check] { v.status = run_sibling("kiln-check", check.remaining()); });
+  // These are programs of their own because they link readers of pictures and meshes, and every step of a build starts
+  // this one.
+  const auto add_sibling = [&](const std::string& name, const std::string& purpose) {
+    CLI::App& command = *app.add_subcommand(name, fmt::format("{} (kiln-{})", purpose, name));
+    command.set_help_flag();
+    command.prefix_command();
+    command.callback([&command, name] { become_sibling("kiln-" + name, command.remaining()); });
+  };
+  add_sibling("check", "Hold assets' folders against the format");
+  add_sibling("export", "Write an asset as a glTF file");
+  add_sibling("serve", "Show a folder of assets in a browser");
+  add_sibling("web-export", "Write a folder of assets as a web site");
 
   // `kiln schema` makes docs/schema/pipeline.schema.json.
   app.add_subcommand("schema", "Print the JSON Schema of pipeline.yaml")->group("")->callback([] {

@@ -241,6 +241,18 @@ std::string remedy_for(const PrtDescription& asset) {
   return asset.vertices > 0 ? std::string(bake_again) + " --per-vertex" : bake_again;
 }
 
+std::vector<std::string> named_files(const PrtDescription& asset) {
+  std::vector<std::string> files = {asset.mesh_file, asset.normals_file, asset.albedo.file, asset.opacity_file};
+  for (const PrtLevel& level : asset.levels) files.push_back(level.mesh_file);
+  for (const PrtMap& map : asset.maps) files.push_back(map.file);
+  for (const PrtPlane& plane : asset.planes) files.push_back(plane.file);
+  if (asset.pca) files.insert(files.end(), {asset.pca->vectors_file, asset.pca->ids_file});
+  std::ranges::sort(files);
+  files.erase(std::unique(files.begin(), files.end()), files.end());
+  std::erase(files, "");
+  return files;
+}
+
 fs::path description_file(const fs::path& folder) {
   std::error_code error;
   for (const char* name : {pca_name, ranges_name})

@@ -37,6 +37,9 @@ std::vector<std::string> requirements(const PrtDescription& asset);
 /// Suggests what to do about a fault of such a folder.
 std::string remedy_for(const PrtDescription& asset);
 
+/// Lists the files of a folder that its description names, each once: meshes, pictures, tables, further maps.
+std::vector<std::string> named_files(const PrtDescription& asset);
+
 /// Finds the file that describes a folder: pca.json or, without it, ranges.json. Throws BadInput if there is neither.
 std::filesystem::path description_file(const std::filesystem::path& folder);
 

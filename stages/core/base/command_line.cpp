@@ -79,6 +79,11 @@ void CommandLine::input(const std::string& name, fs::path& path, const std::stri
   inputs_.push_back(&path);
 }
 
+void CommandLine::optional_input(const std::string& name, fs::path& path, const std::string& help) {
+  app_->add_option(name, path, help);
+  inputs_.push_back(&path);
+}
+
 void CommandLine::inputs(const std::string& name, std::vector<fs::path>& paths, const std::string& help) {
   app_->add_option(name, paths, help)->required();
   input_lists_.push_back(&paths);

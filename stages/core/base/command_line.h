@@ -30,6 +30,9 @@ class CommandLine {
   /// Adds a positional input, an existing file or folder; the hash of a file goes into the result.
   void input(const std::string& name, std::filesystem::path& path, const std::string& help);
 
+  /// Adds a positional input that may be left out; `path` is what it is then.
+  void optional_input(const std::string& name, std::filesystem::path& path, const std::string& help);
+
   /// Adds one or more positional inputs.
   void inputs(const std::string& name, std::vector<std::filesystem::path>& paths, const std::string& help);
 

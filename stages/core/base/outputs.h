@@ -17,8 +17,8 @@ class OutputSet {
   OutputSet(const OutputSet&) = delete;
   OutputSet& operator=(const OutputSet&) = delete;
 
-  /// Returns the temporary path of the file that will be `folder/name`. Files become visible in the order they were
-  /// added, so add the one that describes the others last.
+  /// Returns the temporary path of the file that will be `folder/name`, where `name` may have folders in it. Files
+  /// become visible in the order they were added, so add the one that describes the others last.
   std::filesystem::path add(const std::string& name);
 
   /// Writes a text file.
@@ -40,6 +40,9 @@ class OutputSet {
   const std::filesystem::path& staging() const { return staging_; }
 
  private:
+  /// Makes a folder and its parents if needed, and notes those that were not there.
+  void make_folder(const std::filesystem::path& folder);
+
   std::filesystem::path folder_;
   std::filesystem::path staging_;
   std::vector<std::filesystem::path> made_folders_;

@@ -11,12 +11,14 @@
 #include <fstream>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "base/errors.h"
 #include "base/files.h"
 #include "mesh/draco_decode.h"
+#include "mesh/draco_stream.h"
 
 namespace kiln {
 
@@ -131,6 +133,20 @@ void add_integers(draco::Mesh& encoded, const std::string& name, std::size_t com
   encoded.AddAttributeMetadata(id, std::move(metadata));
 }
 
+/// Adds integer attributes, each of 1 to 4 components of 8 or 16 bits per vertex.
+void add_all_integers(draco::Mesh& encoded, const std::vector<IntegerAttribute>& attributes) {
+  for (const IntegerAttribute& attribute : attributes) {
+    const auto components = static_cast<std::size_t>(attribute.components);
+    if (attribute.components < 1 || attribute.components > 4 || (attribute.bits != 8 && attribute.bits != 16) ||
+        attribute.values.size() != encoded.num_points() * components)
+      throw std::invalid_argument("Draco attributes need 1 to 4 components of 8 or 16 bits per vertex");
+    if (attribute.bits == 8)
+      add_integers<std::uint8_t>(encoded, attribute.name, components, draco::DT_UINT8, attribute.values);
+    else
+      add_integers<std::uint16_t>(encoded, attribute.name, components, draco::DT_UINT16, attribute.values);
+  }
+}
+
 std::string encode(const draco::Mesh& encoded, const std::vector<std::pair<int, int>>& attribute_bits) {
   draco::ExpertEncoder encoder(encoded);
   encoder.SetSpeedOptions(0, 0);  // smallest file
@@ -153,7 +169,8 @@ std::unique_ptr<draco::Mesh> decode(const std::string& bytes, const std::string&
   return decode_draco({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, name, write_again);
 }
 
-TriangleMesh mesh_of(const draco::Mesh& source, const std::string& name) {
+/// Returns what the file has, as it has it.
+TriangleMesh stored_mesh(const draco::Mesh& source) {
   TriangleMesh mesh;
   mesh.positions = read_attribute<Eigen::Vector3f>(source, draco::GeometryAttribute::POSITION);
   mesh.normals = read_attribute<Eigen::Vector3f>(source, draco::GeometryAttribute::NORMAL);
@@ -164,6 +181,11 @@ TriangleMesh mesh_of(const draco::Mesh& source, const std::string& name) {
   for (std::uint32_t i = 0; i < source.num_faces(); ++i)
     for (int corner = 0; corner < 3; ++corner)
       mesh.triangles[i][corner] = source.face(draco::FaceIndex(i))[corner].value();
+  return mesh;
+}
+
+TriangleMesh mesh_of(const draco::Mesh& source, const std::string& name) {
+  TriangleMesh mesh = stored_mesh(source);
   if (mesh.triangles.empty() || mesh.positions.empty())
     throw BadInput(name, "has no faces", "a Draco mesh of triangles", write_again);
   for (const Eigen::Vector3f& position : mesh.positions)
@@ -174,6 +196,26 @@ TriangleMesh mesh_of(const draco::Mesh& source, const std::string& name) {
   for (Eigen::Vector3f& normal : mesh.normals)
     normal = normal.squaredNorm() > 0 ? Eigen::Vector3f(normal.normalized()) : Eigen::Vector3f::UnitY();
   return mesh;
+}
+
+/// Reads the generic attribute of number `id`; none where it has no name or is not of 1 to 4 unsigned integers.
+std::optional<IntegerAttribute> integer_attribute(const draco::Mesh& decoded, int id) {
+  const draco::PointAttribute& source = *decoded.attribute(id);
+  const draco::AttributeMetadata* metadata = decoded.GetAttributeMetadataByAttributeId(id);
+  const bool is_integer = source.data_type() == draco::DT_UINT8 || source.data_type() == draco::DT_UINT16;
+  IntegerAttribute attribute;
+  if (metadata == nullptr || !metadata->GetEntryString(name_entry, &attribute.name) || !is_integer ||
+      source.num_components() > 4)
+    return std::nullopt;
+  attribute.components = source.num_components();
+  attribute.bits = source.data_type() == draco::DT_UINT8 ? 8 : 16;
+  attribute.unique_id = source.unique_id();
+  const auto components = static_cast<std::size_t>(attribute.components);
+  attribute.values.resize(decoded.num_points() * components);
+  for (std::uint32_t i = 0; i < decoded.num_points(); ++i)
+    source.ConvertValue<std::uint16_t>(source.mapped_index(draco::PointIndex(i)), static_cast<std::int8_t>(components),
+                                       &attribute.values[i * components]);
+  return attribute;
 }
 
 /// Finds, for each vertex of `written` (a file of `mesh`), the vertex of `mesh` that it is. Draco orders vertices by a
@@ -226,16 +268,7 @@ std::vector<std::uint32_t> save_attributed_draco(const std::filesystem::path& fi
   draco::Mesh encoded;
   std::vector<std::pair<int, int>> attribute_bits;
   add_mesh(encoded, mesh, quantisation, attribute_bits);
-  for (const IntegerAttribute& attribute : attributes) {
-    const auto components = static_cast<std::size_t>(attribute.components);
-    if (attribute.components < 1 || attribute.components > 4 || (attribute.bits != 8 && attribute.bits != 16) ||
-        attribute.values.size() != mesh.positions.size() * components)
-      throw std::invalid_argument("save_attributed_draco: 1 to 4 components of 8 or 16 bits are needed per vertex");
-    if (attribute.bits == 8)
-      add_integers<std::uint8_t>(encoded, attribute.name, components, draco::DT_UINT8, attribute.values);
-    else
-      add_integers<std::uint16_t>(encoded, attribute.name, components, draco::DT_UINT16, attribute.values);
-  }
+  add_all_integers(encoded, attributes);
   const std::string bytes = encode(encoded, attribute_bits);
   write_bytes(file, bytes);
   const std::string name = file.string();
@@ -246,26 +279,53 @@ AttributedMesh load_attributed_draco(const std::filesystem::path& file) {
   const std::unique_ptr<draco::Mesh> decoded = decode(read_text(file), file.string());
   AttributedMesh result{mesh_of(*decoded, file.string()), {}};
   for (int id = 0; id < decoded->num_attributes(); ++id) {
-    const draco::PointAttribute& source = *decoded->attribute(id);
-    if (source.attribute_type() != draco::GeometryAttribute::GENERIC) continue;
-    IntegerAttribute attribute;
-    const draco::AttributeMetadata* metadata = decoded->GetAttributeMetadataByAttributeId(id);
-    const bool is_integer = source.data_type() == draco::DT_UINT8 || source.data_type() == draco::DT_UINT16;
-    if (metadata == nullptr || !metadata->GetEntryString(name_entry, &attribute.name) || !is_integer ||
-        source.num_components() > 4)
+    if (decoded->attribute(id)->attribute_type() != draco::GeometryAttribute::GENERIC) continue;
+    std::optional<IntegerAttribute> attribute = integer_attribute(*decoded, id);
+    if (!attribute)
       throw BadInput(file.string(), "has a generic attribute without a name or not of unsigned integers",
                      "a mesh of kiln-bake --per-vertex", write_again);
-    attribute.components = source.num_components();
-    attribute.bits = source.data_type() == draco::DT_UINT8 ? 8 : 16;
-    attribute.unique_id = source.unique_id();
-    const auto components = static_cast<std::size_t>(attribute.components);
-    attribute.values.resize(decoded->num_points() * components);
-    for (std::uint32_t i = 0; i < decoded->num_points(); ++i)
-      source.ConvertValue<std::uint16_t>(source.mapped_index(draco::PointIndex(i)),
-                                         static_cast<std::int8_t>(components), &attribute.values[i * components]);
-    result.attributes.push_back(std::move(attribute));
+    result.attributes.push_back(std::move(*attribute));
   }
   return result;
+}
+
+DracoStream encode_draco(const AttributedMesh& mesh, const std::vector<Eigen::Vector4f>& tangents,
+                         const DracoQuantisation& quantisation) {
+  if (mesh.mesh.frame.exponent != 0 || (!tangents.empty() && tangents.size() != mesh.mesh.positions.size()))
+    throw std::invalid_argument("encode_draco: positions in the file's units and a tangent per vertex are needed");
+  draco::Mesh encoded;
+  std::vector<std::pair<int, int>> attribute_bits;
+  TriangleMesh placed = mesh.mesh;
+  placed.frame = {};
+  add_mesh(encoded, placed, quantisation, attribute_bits);
+  add_all_integers(encoded, mesh.attributes);
+  // Tangents are not quantised: their sign must stay exactly 1 or -1.
+  if (!tangents.empty()) add_attribute(encoded, draco::GeometryAttribute::GENERIC, tangents);
+
+  DracoStream stream;
+  stream.bytes = encode(encoded, attribute_bits);
+  const std::unique_ptr<draco::Mesh> decoded = decode(stream.bytes, "the mesh that was just encoded");
+  stream.decoded.mesh = stored_mesh(*decoded);
+  const auto id_of = [&](draco::GeometryAttribute::Type type, int set = 0) -> std::optional<std::uint32_t> {
+    const draco::PointAttribute* attribute = decoded->GetNamedAttribute(type, set);
+    return attribute == nullptr ? std::nullopt : std::optional(attribute->unique_id());
+  };
+  stream.position_id = id_of(draco::GeometryAttribute::POSITION);
+  stream.normal_id = id_of(draco::GeometryAttribute::NORMAL);
+  stream.uv_id = id_of(draco::GeometryAttribute::TEX_COORD);
+  stream.texture_uv_id = id_of(draco::GeometryAttribute::TEX_COORD, 1);
+  int generic = 0;
+  for (int id = 0; id < decoded->num_attributes(); ++id) {
+    if (decoded->attribute(id)->attribute_type() != draco::GeometryAttribute::GENERIC) continue;
+    if (std::optional<IntegerAttribute> attribute = integer_attribute(*decoded, id)) {
+      stream.decoded.attributes.push_back(std::move(*attribute));
+    } else {
+      stream.tangent_id = decoded->attribute(id)->unique_id();
+      stream.tangents = read_attribute<Eigen::Vector4f>(*decoded, draco::GeometryAttribute::GENERIC, generic);
+    }
+    ++generic;
+  }
+  return stream;
 }
 
 bool is_draco_file(const std::filesystem::path& file) {
