@@ -59,6 +59,12 @@ std::vector<CameraView> camera_views(const ReportSettings& settings) {
   return views;
 }
 
+/// Returns the memory of one asset that kiln-render drew.
+std::uint64_t gpu_bytes_of(const Json& drawn) {
+  const auto bytes = [&](const char* name) { return drawn.at(name).get<std::uint64_t>(); };
+  return bytes("gpu_bytes_per_mesh") + bytes("gpu_bytes_per_vertex") * bytes("vertices") + bytes("gpu_bytes_indices");
+}
+
 }  // namespace
 
 Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high_file, const ReportSettings& settings,
@@ -81,6 +87,9 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
     Rendered rendered = render_asset(asset, drawn, view.lights, run);
     comparison.renderer = rendered.said.at("renderer").get<std::string>();
     comparison.software_renderer = rendered.said.at("software_renderer").get<bool>();
+    const Json& drawn_assets = rendered.said.at("assets");
+    comparison.gpu_bytes = gpu_bytes_of(drawn_assets.at(0));
+    if (drawn_assets.size() > 1) comparison.compressed_gpu_bytes = gpu_bytes_of(drawn_assets.at(1));
     cameras.push_back(camera_of_json(rendered.said.at("camera")));
     for (std::size_t k = 0; k < view.lights.size(); ++k) {
       LightComparison& light = comparison.lights.emplace_back();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -34,8 +35,10 @@ struct Comparison {
   std::size_t compared_pixels = 0;      ///< number of pixels covered wholly by both, of the first
   double silhouette_difference =
       0;  ///< share of the pixels in either silhouette that lie (by half or more) in only one
-  std::vector<LevelComparison> levels;  ///< levels of detail, the finest first
-  std::string renderer;                 ///< renderer that drew the asset
+  std::vector<LevelComparison> levels;     ///< levels of detail, the finest first
+  std::string renderer;                    ///< renderer that drew the asset
+  std::uint64_t gpu_bytes = 0;             ///< that the asset takes there: mesh, textures and light
+  std::uint64_t compressed_gpu_bytes = 0;  ///< that its compressed form takes; 0 where there is none
   bool software_renderer = false;
   double render_seconds = 0;
   double reference_seconds = 0;

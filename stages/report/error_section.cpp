@@ -6,37 +6,12 @@
 #include <map>
 
 #include "base/html.h"
+#include "report/cause_texts.h"
 #include "report/labels.h"
 
 namespace kiln {
 
 namespace {
-
-/// Names and explanations of the causes, in the words of settings that change them.
-struct CauseText {
-  const char* name;
-  const char* label;
-  const char* remedy;
-};
-
-constexpr CauseText texts[] = {
-    {"geometry", "Geometry: another point of the scan is seen", "more triangles"},
-    {"receivers", "Receivers: on the low mesh, in the shadows that the bake saw there", "receiver: high"},
-    {"texels", "Texels: looked up between their points", "a larger atlas"},
-    {"vertices", "Vertices: looked up between them", "more triangles"},
-    {"albedo", "Albedo: looked up in a map, or within the transfer", "a larger atlas or albedo-size"},
-    {"bands", "Bands: what the asset's are too few for", "more bands"},
-    {"directions", "Directions: the sky is sampled", "more directions"},
-    {"bits", "Bits: values are rounded", "16 bits"},
-    {"visibility", "Visibility: what the bake's engine sees", "another backend, larger depth maps"},
-    {"bounces", "Bounces and visibility: light that bounces, and what the bake's engine sees", "a smaller bounce-edge"},
-    {"subsurface",
-     "Light beneath the surface, as the bake sums it over texels: its directions, what its engine sees and bounces are "
-     "in it, since the paths that it is measured by do not tell them apart",
-     "more directions, a larger atlas, a smaller subsurface-solid-angle"},
-    {"seams", "Seams: both sides are made equal", "fewer charts, a larger atlas"},
-    {"compression", "Compression", "a smaller max-error of compress"},
-};
 
 /// Writes the rows of the table, with what a plan predicted where there is one.
 class Rows {
@@ -50,12 +25,15 @@ class Rows {
 
   std::string row(const std::string& name, const std::string& label, double error, const std::string& remedy) const {
     const auto predicted = predicted_.find(name);
-    std::string html = fmt::format("<tr><td>{}<td class=number>{}", label, metric_value("relighting_error", error));
+    std::string html =
+        fmt::format("<tr><td>{}<td class=number data-label=Error>{}", label, metric_value("relighting_error", error));
     if (!predicted_.empty())
-      html += "<td class=number>" +
+      html += "<td class=number data-label=Predicted>" +
               (predicted == predicted_.end() ? "" : metric_value("relighting_error", predicted->second));
-    return html + fmt::format("<td><div class='meter good'><i style='width:{:.1f}%'></i></div><td>{}\n",
-                              largest_ > 0 ? 100 * std::min(1.0, error / largest_) : 0, remedy);
+    return html +
+           fmt::format(
+               "<td><div class='meter good'><i style='width:{:.1f}%'></i></div><td data-label='Made less by'>{}\n",
+               largest_ > 0 ? 100 * std::min(1.0, error / largest_) : 0, remedy);
   }
 
  private:
@@ -93,15 +71,15 @@ std::string error_section(const Comparison& comparison) {
       metric_value("samples", split.samples), metric_value("directions", split.directions),
       metric_value("relighting_error", split.root_sum()));
   const Rows rows(split.total, comparison.predicted);
-  html += promise(comparison.predicted, split.total) + "<table><thead>" + rows.head() + "</thead><tbody>\n" +
-          rows.row("total", "<b>All together</b>", split.total, "");
+  html += promise(comparison.predicted, split.total) + "<table class='folding sortable'><thead>" + rows.head() +
+          "</thead><tbody>\n" + rows.row("total", "<b>All together</b>", split.total, "");
   std::vector<ErrorCause> causes = split.causes;
   std::ranges::stable_sort(causes, std::greater<>(), &ErrorCause::error);
   for (const ErrorCause& cause : causes) {
     if (cause.name == "albedo" && cause.error == 0) continue;  // one colour: there is nothing to be wrong
-    const auto* text = std::ranges::find_if(texts, [&](const CauseText& each) { return cause.name == each.name; });
-    html += text == std::end(texts) ? rows.row(cause.name, html_escaped(cause.name), cause.error, "")
-                                    : rows.row(cause.name, text->label, cause.error, text->remedy);
+    const CauseText* text = find_cause_text(cause.name);
+    html += text == nullptr ? rows.row(cause.name, html_escaped(cause.name), cause.error, "")
+                            : rows.row(cause.name, text->label, cause.error, text->remedy);
   }
   return html + "</tbody></table></section>\n";
 }

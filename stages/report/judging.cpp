@@ -35,7 +35,7 @@ Json save_judged(OutputSet& outputs, const std::string& page_name, EarlierReport
   const std::vector<BudgetVerdict> verdicts = judge_budgets(budgets, earlier.metrics);
   put_verdicts(result, verdicts);
   earlier.metrics["report"] = result;
-  outputs.add_text(page_name, page_judged_again(earlier.page, verdicts));
+  outputs.add_text(page_name, page_judged_again(earlier.page, verdicts, earlier.metrics));
   fs::copy_file(outputs.folder() / report_cover, outputs.add(report_cover));
   outputs.add_text(report_metrics, json_text(earlier.metrics, 2) + "\n");
   return result;

@@ -86,7 +86,9 @@ constexpr Known known_metrics[] = {
     {"compress.error", "expected relighting error against the baked planes", Unit::share, Better::lower},
     {"target_error", "error asked for, expected relighting error", Unit::share},
     {"bytes_in", "bytes that ship of the baked folder", Unit::plain, Better::lower},
-    {"bytes_out", "bytes that ship", Unit::plain, Better::lower},
+    {"bytes_out", "bytes that ship", Unit::bytes, Better::lower},
+    {"gpu_bytes", "bytes on the GPU", Unit::bytes, Better::lower},
+    {"compressed_gpu_bytes", "bytes on the GPU, compressed", Unit::bytes, Better::lower},
     {"bytes_per_texel_in", "bytes of coefficients per covered texel, baked", Unit::plain, Better::lower},
     {"bytes_per_texel_out", "bytes of coefficients per covered texel", Unit::plain, Better::lower},
     {"lookups_in", "texture lookups, baked", Unit::plain, Better::lower},
@@ -113,8 +115,12 @@ constexpr Known known_metrics[] = {
     {"report.error.causes.albedo", "of it: albedo", Unit::share, Better::lower},
     {"report.error.causes.receivers", "of it: receivers on the low mesh", Unit::share, Better::lower},
     {"report.error.causes.subsurface", "of it: light beneath the surface", Unit::share, Better::lower},
+    {"report.error.causes.vertices", "of it: vertices", Unit::share, Better::lower},
+    {"report.error.causes.bounces", "of it: bounces and visibility", Unit::share, Better::lower},
     {"report.error.causes.seams", "of it: seams", Unit::share, Better::lower},
     {"report.error.causes.compression", "of it: compression", Unit::share, Better::lower},
+    {"uv_deviation", "how far textures slide, largest, of diagonal", Unit::share, Better::lower},
+    {"uv_deviation_rms", "how far textures slide, RMS, of diagonal", Unit::share, Better::lower},
     {"popping", "change of a pixel's radiance from level to level, largest", Unit::plain, Better::lower},
     {"popping_inside", "the same inside both silhouettes, largest", Unit::plain, Better::lower},
     {"texel_displacement_mean", "texels' distance from where they were made for, mean, object units", Unit::plain,
@@ -134,9 +140,9 @@ constexpr Known known_metrics[] = {
 
 std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
 
-/// Finds a key with its stage, else by its last part.
+/// Finds a key with its stage, else by its last part. metrics.json has the report's error without its stage, too.
 const Known* find_known(const std::string& key) {
-  for (const std::string& name : {key, last_part(key)})
+  for (const std::string& name : {key, "report." + key, last_part(key)})
     for (const Known& known : known_metrics)
       if (known.key == name) return &known;
   return nullptr;

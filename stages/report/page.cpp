@@ -14,6 +14,7 @@
 #include "report/labels.h"
 #include "report/levels_section.h"
 #include "report/page_style.h"
+#include "report/page_summary.h"
 #include "report/page_tables.h"
 #include "report/pictures.h"
 #include "report/tradeoff.h"
@@ -50,53 +51,6 @@ std::string image(const Image<std::uint8_t>& picture, const std::string& descrip
 
 std::string figure(const std::string& picture, const std::string& caption) {
   return "<figure>" + picture + "<figcaption>" + caption + "</figcaption></figure>\n";
-}
-
-/// Returns a warning if a software renderer was used: its pictures are right, but its timings are slow.
-std::string software_alarm(const AssetFolder& asset, const Report& report) {
-  const Json& bake = asset.record("bake");
-  const bool baked = bake.value("software_renderer", Json(false)) == Json(true);
-  const bool baked_by_gl = bake.value("settings", Json::object()).value("backend", Json()) == Json("egl");
-  std::string who;
-  if (baked && baked_by_gl) who = "The bake ran on " + bake.value("renderer", std::string("a software renderer"));
-  if (report.comparison.software_renderer)
-    who += (who.empty() ? "The pictures were drawn by " : "; the pictures were drawn by ") + report.comparison.renderer;
-  if (who.empty()) return "";
-  return "<div class=alarm><strong>⚠ Software renderer</strong>" + html_escaped(who) +
-         ". The results hold; the timings say nothing of a GPU.</div>\n";
-}
-
-std::string header(const AssetFolder& asset, const Report& report, const Json& metrics) {
-  const Json& simplify = asset.record("simplify");
-  const Json& bake = asset.record("bake");
-  const auto value = [](const Json& record, const char* key) {
-    return record.contains(key) ? metric_value(key, record[key]) : std::string("–");
-  };
-  double seconds = 0;
-  for (const StageRecord& record : asset.records) seconds += record.json.at("seconds").get<double>();
-  seconds += metrics.at("report").at("seconds").get<double>();
-
-  std::string html =
-      fmt::format("<header>\n<p class=overline>Kiln asset report</p>\n<h1>{}</h1>\n", html_escaped(asset.name));
-  html += fmt::format(
-      "<p class=lead>A mesh of {} triangles as {} triangles, a texture atlas, a normal map and {} transfer coefficient "
-      "planes of {} bits.</p>\n",
-      value(simplify, "input_triangles"), value(simplify, "triangles"), asset.baked.planes.size(), asset.baked.bits);
-  html += marked_badge(report.budgets) + "\n" + software_alarm(asset, report);
-  html += "<dl class=figures>\n";
-  const auto figure_of = [&](const std::string& name, const std::string& number, const std::string& more) {
-    html += fmt::format("<div><dt>{}</dt><dd>{}</dd><small>{}</small></div>\n", name, number, more);
-  };
-  figure_of("Triangles", value(simplify, "triangles"), "of " + value(simplify, "input_triangles"));
-  figure_of("Hausdorff distance", value(simplify, "hausdorff"), "of the diagonal");
-  figure_of("Atlas", value(asset.record("atlas"), "utilisation"),
-            "used, " + value(asset.record("atlas"), "charts") + " charts");
-  figure_of("Bake", value(bake, "seconds"), value(bake, "directions") + " directions");
-  figure_of("Difference", metric_value("relative_l2", metrics.at("report").at("relative_l2")),
-            "relative L², worst light" + noise_of(metrics.at("report").at("relative_l2").get<double>(),
-                                                  metrics.at("report").at("relative_l2_uncertainty").get<double>()));
-  figure_of("All stages", metric_value("seconds", seconds), "without file access");
-  return html + "</dl>\n</header>\n";
 }
 
 /// Part of the pictures that is not empty, with a margin.
@@ -158,6 +112,7 @@ std::string relit_section(const AssetFolder& asset, const Report& report, const 
         "down, "
         "stay as they are.</p>\n";
   const double front = comparison.lights.front().camera_azimuth_degrees;
+  html += "<div class=lights>\n";
   for (const LightComparison& light : comparison.lights) {
     const Crop crop = crop_of(light);
     std::string name = light_label(light.light);
@@ -183,7 +138,7 @@ std::string relit_section(const AssetFolder& asset, const Report& report, const 
                            asset.baked.bands, metric_value("relative_l2", light.difference_in_full.relative_l2)));
     html += "</div></div>\n";
   }
-  return html + "</section>\n";
+  return html + "</div></section>\n";
 }
 
 /// Makes the section on compression: the compressed asset beside the plain one under the light that shows the largest
@@ -323,6 +278,7 @@ std::string coefficients_section(const AssetFolder& asset, const fs::path& scrat
     }
     // All rows share the width of one plane, so that they form a pyramid.
     const int longest_row = 2 * asset.baked.bands - 1;
+    html += "<div class=pyramid>\n";
     for (int l = 0; l < asset.baked.bands; ++l) {
       html +=
           fmt::format("<div class=band style='grid-template-columns:repeat({},minmax(0,calc((100% - {}px)/{})))'>\n",
@@ -332,6 +288,7 @@ std::string coefficients_section(const AssetFolder& asset, const fs::path& scrat
           html += plane_figure(asset, plane, pyramid_pixels, scratch);
       html += "</div>\n";
     }
+    html += "</div>\n";
   }
   return html + "</section>\n";
 }
@@ -373,9 +330,10 @@ std::string page_html(const AssetFolder& asset, const Report& report, const Json
   return "<!doctype html>\n<html lang=en>\n<head>\n<meta charset=utf-8>\n<meta name=viewport "
          "content='width=device-width, initial-scale=1'>\n<title>" +
          html_escaped(asset.name) + " · Kiln report</title>\n<style>\n" + page_style() +
-         "</style>\n</head>\n<body><main>\n" + header(asset, report, metrics) +
-         relit_section(asset, report, metrics, scratch) + marked_budgets(report.budgets) +
-         error_section(report.comparison) + compression_section(asset, report, scratch) +
+         "</style>\n</head>\n<body><main>\n" +
+         page_summary(asset, report, metrics, image(cover_picture(report), "The asset, relit", scratch)) +
+         marked_budgets(report.budgets) + error_section(report.comparison) +
+         relit_section(asset, report, metrics, scratch) + compression_section(asset, report, scratch) +
          levels_section(report.comparison.levels, scratch) + transport_section(asset.record("bake")) +
          textures_section(asset, scratch) + coefficients_section(asset, scratch) + verification_section(asset) +
          stages_section(metrics) + footer(metrics) + "</main></body>\n</html>\n";

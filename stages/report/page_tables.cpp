@@ -40,7 +40,7 @@ std::string metric_rows(const std::string& stage, const Json& metrics) {
       continue;
     }
     for (const auto& [inner_key, inner] : value.items())
-      if (!inner.is_number() || inner.get<double>() != 0)
+      if (!inner.is_structured() && (!inner.is_number() || inner.get<double>() != 0))
         html += row(metric_label(key) + ": " + metric_label(inner_key), metric_value(inner_key, inner));
   }
   return html;

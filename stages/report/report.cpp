@@ -50,9 +50,13 @@ Json Report::to_json() const {
                {"software_renderer", comparison.software_renderer},
                {"render_seconds", comparison.render_seconds},
                {"reference_seconds", comparison.reference_seconds},
+               {"gpu_bytes", comparison.gpu_bytes},
                {"lights", lights}};
   put_verdicts(json, budgets);
-  if (is_compressed) json["compressed_relative_l2"] = compressed_relative_l2;
+  if (is_compressed) {
+    json["compressed_relative_l2"] = compressed_relative_l2;
+    json["compressed_gpu_bytes"] = comparison.compressed_gpu_bytes;
+  }
   if (!comparison.levels.empty()) json["levels"] = kiln::to_json(comparison.levels);
   json["error"] = kiln::to_json(comparison.error);
   if (!comparison.predicted.empty()) json["error"]["predicted"] = comparison.predicted;

@@ -15,7 +15,7 @@ namespace {
 constexpr const char* metric_names =
     "relative_l2 relative_l2_uncertainty root_mean_square silhouette_difference compared_pixels software_renderer "
     "render_seconds "
-    "reference_seconds seconds";
+    "reference_seconds gpu_bytes seconds";
 
 constexpr const char* error_names =
     "error.total error.uncertainty error.root_sum_of_causes error.samples error.reference_directions "
@@ -82,7 +82,7 @@ const StageInfo& report_stage() {
                    [](const AssetSettings& all) { return all.contains("compress"); }},
                   {"levels.relative_l2 levels.silhouette_difference levels.popping levels.popping_inside", "levels.",
                    "lod", [](const AssetSettings& all) { return all.contains("lod"); }},
-                  {"compressed_relative_l2", "compressed_", "compress",
+                  {"compressed_relative_l2 compressed_gpu_bytes", "compressed_", "compress",
                    [](const AssetSettings& all) { return all.contains("compress"); }}},
       .run = run};
   return info;

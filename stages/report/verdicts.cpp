@@ -7,24 +7,30 @@
 #include <stdexcept>
 
 #include "base/html.h"
+#include "base/json.h"
 #include "report/labels.h"
+#include "report/next_steps.h"
 
 namespace kiln {
 
 namespace {
 
-constexpr const char* badge_mark = "verdict";
+constexpr const char* verdict_mark = "verdict";
 constexpr const char* budgets_mark = "budgets";
 
 const char* plural(std::size_t count) { return count == 1 ? "" : "s"; }
 
-std::string verdict_badge(std::span<const BudgetVerdict> verdicts) {
+std::string badge(std::span<const BudgetVerdict> verdicts) {
   const std::size_t count = verdicts.size(), missed = missed_budgets(verdicts);
   if (count == 0) return "<span class='badge plain'>No budgets set</span>";
   if (missed == 0)
     return fmt::format("<span class='badge good'>✓ {}</span>",
                        count == 1 ? "Budget met" : fmt::format("All {} budgets met", count));
   return fmt::format("<span class='badge bad'>✗ {} of {} budget{} missed</span>", missed, count, plural(count));
+}
+
+std::string verdict(std::span<const BudgetVerdict> verdicts, const Json& metrics) {
+  return badge(verdicts) + "\n" + next_steps(verdicts, metrics);
 }
 
 /// Returns the used share of a budget: 1 is all of it.
@@ -41,16 +47,16 @@ std::string budgets_section(std::span<const BudgetVerdict> verdicts) {
            "<p class=note>None are set for this asset. pipeline.yaml takes them as <code>budgets: {STAGE.METRIC: {max: "
            "…}}</code>.</p></section>\n";
   html +=
-      "<table><thead><tr><th>Metric<th><th class=number>Value<th "
+      "<table class='folding sortable'><thead><tr><th>Metric<th class=number>Value<th "
       "class=number>Limit<th>Used<th>Verdict</thead><tbody>\n";
   for (const BudgetVerdict& verdict : verdicts) {
     const std::string& key = verdict.budget.metric;
     const char* tone = verdict.met ? "good" : "bad";
     html += fmt::format(
-        "<tr><td><code>{}</code><td class=note>{}<td class=number>{}<td class=number>{} {}<td><div class='meter {}'><i "
-        "style='width:{:.0f}%'></i></div>"
-        "<td class='verdict {}'>{}\n",
-        html_escaped(verdict.budget.metric), html_escaped(metric_label(key)), metric_value(key, verdict.value),
+        "<tr><td><b>{}</b> <code>{}</code><td class=number data-label=Value>{}<td class=number data-label=Limit>{} "
+        "{}<td data-label=Used><div class='meter {}'><i style='width:{:.0f}%'></i></div>"
+        "<td class='verdict {}' data-label=Verdict>{}\n",
+        html_escaped(metric_label(key)), html_escaped(key), metric_value(key, verdict.value),
         verdict.budget.is_highest ? "≤" : "≥", metric_value(key, verdict.budget.limit), tone,
         100 * std::min(1.0, budget_use(verdict)), tone, verdict.met ? "met" : "missed");
   }
@@ -72,17 +78,17 @@ void replace(std::string& page, const char* part, const std::string& html) {
 
 }  // namespace
 
-std::string marked_badge(std::span<const BudgetVerdict> verdicts) {
-  return marked(badge_mark, verdict_badge(verdicts));
+std::string marked_verdict(std::span<const BudgetVerdict> verdicts, const Json& metrics) {
+  return marked(verdict_mark, verdict(verdicts, metrics));
 }
 
 std::string marked_budgets(std::span<const BudgetVerdict> verdicts) {
   return marked(budgets_mark, budgets_section(verdicts));
 }
 
-std::string page_judged_again(const std::string& html, std::span<const BudgetVerdict> verdicts) {
+std::string page_judged_again(const std::string& html, std::span<const BudgetVerdict> verdicts, const Json& metrics) {
   std::string page = html;
-  replace(page, badge_mark, verdict_badge(verdicts));
+  replace(page, verdict_mark, verdict(verdicts, metrics));
   replace(page, budgets_mark, budgets_section(verdicts));
   return page;
 }

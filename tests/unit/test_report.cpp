@@ -15,6 +15,7 @@
 #include "image/image_file.h"
 #include "report/budget.h"
 #include "report/labels.h"
+#include "report/next_steps.h"
 #include "report/pictures.h"
 #include "report/report_files.h"
 #include "report/report_settings.h"
@@ -70,13 +71,35 @@ AssetFolder write_report(const fs::path& folder, const std::vector<std::string>&
   put_verdicts(result, verdicts);
   outputs.add_text("report.html", page_judged_again("<p><!--verdict--><!--/verdict--> pictures "
                                                     "<!--budgets--><!--/budgets--></p>",
-                                                    verdicts));
+                                                    verdicts, all_metrics(asset, result)));
   outputs.add_text("report.png", "a picture");
   outputs.add_text("metrics.json", all_metrics(asset, result).dump());
   for (const std::string& name : outputs.names()) result["outputs"][name] = hash_file(outputs.staging() / name);
   outputs.add_text("report.json", result.dump());
   outputs.commit();
   return asset;
+}
+
+TEST(NextSteps, NameWhatIsMissedAndWhatWouldHelp) {
+  const Json metrics = {{"atlas", {{"utilisation", 0.5}}},
+                        {"report", {{"relative_l2", 0.2}}},
+                        {"error", {{"total", 0.1}, {"causes", {{"bands", 0.03}, {"geometry", 0.09}}}}}};
+  const auto steps = [&](const std::vector<std::string>& budgets) {
+    return next_steps(judge_budgets(budgets, metrics), metrics);
+  };
+  const std::string missed = steps({"atlas.utilisation>=0.6", "report.relative_l2<=0.1", "error.causes.bands<=0.02"});
+  EXPECT_NE(missed.find("<b>utilisation</b> is 50.0&#8239;%, below 60.0&#8239;%: try a smaller <code>gutter</code>"),
+            std::string::npos)
+      << missed;
+  // What differs most of all is the shape.
+  EXPECT_NE(missed.find("</b> is 20.0&#8239;%, above 10.0&#8239;%: try more triangles"), std::string::npos) << missed;
+  EXPECT_NE(missed.find("above 2.00&#8239;%: try more bands"), std::string::npos) << missed;
+  EXPECT_EQ(missed.find("Nothing has to be done"), std::string::npos);
+  const std::string met = steps({"atlas.utilisation>=0.4"});
+  EXPECT_NE(met.find("Nothing has to be done. To come nearer to the original, more triangles would help most"),
+            std::string::npos)
+      << met;
+  EXPECT_NE(steps({}).find("No budgets are set"), std::string::npos);
 }
 
 TEST(Judging, OtherBudgetsChangeTheVerdictsAndNothingElse) {
