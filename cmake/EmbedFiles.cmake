@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Writes OUTPUT, a C++ file that holds the bytes of every file in INPUTS, under its path in FOLDER. The assembler
-# includes them, since a literal of their size takes a compiler seconds.
+# Writes OUTPUT, a C++ file that holds the bytes of every file in INPUTS, under its path in FOLDER. FUNCTION, which HEADER
+# declares, returns them as TYPEs of path and bytes. The assembler includes them, since a literal of their size takes a
+# compiler seconds.
 set(declarations "")
 set(includes "")
 set(rows "")
 set(number 0)
 foreach(input ${INPUTS})
   file(RELATIVE_PATH path ${FOLDER} ${input})
-  string(APPEND declarations "extern const char kiln_embedded_${number}[], kiln_embedded_${number}_end[];\n")
-  string(APPEND includes "    \"kiln_embedded_${number}:\\n.incbin \\\"${input}\\\"\\nkiln_embedded_${number}_end:\\n\"\n")
-  string(APPEND rows "      {\"${path}\", {kiln_embedded_${number}, kiln_embedded_${number}_end}},\n")
+  string(APPEND declarations "extern const char kiln_${FUNCTION}_${number}[], kiln_${FUNCTION}_${number}_end[];\n")
+  string(APPEND includes "    \"kiln_${FUNCTION}_${number}:\\n.incbin \\\"${input}\\\"\\nkiln_${FUNCTION}_${number}_end:\\n\"\n")
+  string(APPEND rows "      {\"${path}\", {kiln_${FUNCTION}_${number}, kiln_${FUNCTION}_${number}_end}},\n")
   math(EXPR number "${number} + 1")
 endforeach()
-file(WRITE ${OUTPUT} "#include \"serve/viewer_files.h\"
+file(WRITE ${OUTPUT} "#include \"${HEADER}\"
 
 #include <vector>
 
@@ -24,8 +25,8 @@ ${declarations}}
 
 namespace kiln {
 
-std::span<const ViewerFile> viewer_files() {
-  static const std::vector<ViewerFile> files = {
+std::span<const ${TYPE}> ${FUNCTION}() {
+  static const std::vector<${TYPE}> files = {
 ${rows}  };
   return files;
 }

@@ -13,6 +13,7 @@
 #include "report/error_section.h"
 #include "report/labels.h"
 #include "report/levels_section.h"
+#include "report/page_live.h"
 #include "report/page_style.h"
 #include "report/page_summary.h"
 #include "report/page_tables.h"
@@ -336,7 +337,8 @@ std::string page_html(const AssetFolder& asset, const Report& report, const Json
          relit_section(asset, report, metrics, scratch) + compression_section(asset, report, scratch) +
          levels_section(report.comparison.levels, scratch) + transport_section(asset.record("bake")) +
          textures_section(asset, scratch) + coefficients_section(asset, scratch) + verification_section(asset) +
-         stages_section(metrics) + footer(metrics) + "</main></body>\n</html>\n";
+         stages_section(metrics) + footer(metrics) + "</main>\n" +
+         page_live(asset, report, metrics.at("report").value("settings", Json::object())) + "</body>\n</html>\n";
 }
 
 }  // namespace kiln

@@ -11,8 +11,9 @@
 
 namespace kiln {
 
-/// Makes the report as one self-contained HTML page: style and pictures are embedded, and there is no script. `metrics`
-/// is that of all_metrics; `scratch` a folder for temporary files. Throws BadInput where a picture of the asset cannot
+/// Makes the report as one self-contained HTML page: style, pictures and a script are embedded. The page is whole
+/// without the script, which adds the asset live, pictures to look into and tables that sort. `metrics` is that of
+/// all_metrics; `scratch` a folder for temporary files. Throws BadInput where a picture of the asset cannot
 /// be read.
 std::string page_html(const AssetFolder& asset, const Report& report, const Json& metrics,
                       const std::filesystem::path& scratch);

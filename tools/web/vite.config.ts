@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Builds the viewer (all in one file, three.js included) and, with `--mode library`, the module for three.js programs.
+// Builds by mode: the viewer and the report's script, each one file with three.js in it, and the module for programs of
+// three.js, the library.
 import { readFileSync } from 'node:fs';
 import { defineConfig, type Plugin } from 'vite';
 
@@ -45,6 +46,12 @@ function shortShaders(): Plugin {
   };
 }
 
+const entries: Record<string, { entry: string; file: string }> = {
+  library: { entry: 'src/index.ts', file: 'kiln.js' },
+  viewer: { entry: 'src/viewer/index.ts', file: 'kiln-viewer.js' },
+  report: { entry: 'src/report/index.ts', file: 'kiln-report.js' },
+};
+
 export default defineConfig(({ mode }) => ({
   base: './',
   publicDir: false,
@@ -57,7 +64,7 @@ export default defineConfig(({ mode }) => ({
     modulePreload: false,
     reportCompressedSize: false,
     chunkSizeWarningLimit: 4096,
-    lib: mode === 'library' ? { entry: 'src/index.ts', formats: ['es'], fileName: () => 'kiln.js' } : { entry: 'src/viewer/index.ts', formats: ['es'], fileName: () => 'kiln-viewer.js', cssFileName: 'kiln-viewer' },
+    lib: { entry: entries[mode].entry, formats: ['es'], fileName: () => entries[mode].file, cssFileName: 'kiln-viewer' },
     rollupOptions: { external: mode === 'library' ? [/^three$/] : [], output: { inlineDynamicImports: true } },
   },
 }));
