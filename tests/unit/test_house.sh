@@ -139,7 +139,7 @@ lacking() { # lacking TEXT: those of the files on stdin, NUL-separated, whose fi
 files() { find "$@" -type f -print0; }  # files FOLDERS... TESTS...
 cpp=(-name '*.cpp' -o -name '*.h' -o -name '*.inc')
 glsl=(-name '*.glsl' -o -name '*.comp' -o -name '*.vert' -o -name '*.frag')
-web=(-name '*.ts' -o -name '*.mjs' -o -name '*.css' -o -name '*.js')
+web=(-name '*.ts' -o -name '*.mjs')
 while IFS= read -r file; do
   fault "$file does not say its licence"
 done < <(files stages runtime tools examples shaders tests \( "${cpp[@]}" -o "${glsl[@]}" -o "${web[@]}" -o -name '*.py' -o -name '*.sh' -o -name CMakeLists.txt \) | lacking "")
