@@ -71,14 +71,20 @@ export async function openPage(browser, options = {}) {
   return page;
 }
 
-/** Draws by kiln-render; RGBA of 8 bits, row 0 at the top. */
-export async function render(folder, size, options) {
-  const file = join(temporary, `render${Math.random()}.png`);
-  await promisify(execFile)(join(programs, 'kiln-render'), [folder, '-o', file, '--width', size[0], '--height', size[1], '--supersample', 1, '--quiet', ...options].map(String));
-  const { width, height, data, channels } = decode(readFileSync(file));
-  if (width !== size[0] || height !== size[1] || channels !== 4) throw new Error(`kiln-render drew ${width} x ${height} of ${channels} channels`);
-  return data;
+/** Draws by kiln-render, a picture for each of several lights; RGBA of 8 bits, row 0 at the top. */
+export async function renderEach(folder, size, lights) {
+  const name = join(temporary, `render${Math.random()}`);
+  const options = lights.length > 1 ? ['--each-light', ...lights.flatMap((light) => ['--light', light])] : lights[0];
+  await promisify(execFile)(join(programs, 'kiln-render'), [folder, '-o', `${name}.png`, '--width', size[0], '--height', size[1], '--supersample', 1, '--quiet', ...options].map(String));
+  return lights.map((_, k) => {
+    const { width, height, data, channels } = decode(readFileSync(lights.length > 1 ? `${name}_00${k}.png` : `${name}.png`));
+    if (width !== size[0] || height !== size[1] || channels !== 4) throw new Error(`kiln-render drew ${width} x ${height} of ${channels} channels`);
+    return data;
+  });
 }
+
+/** Draws a picture by kiln-render with some options. */
+export const render = async (folder, size, options) => (await renderEach(folder, size, [options]))[0];
 
 /** Turns the text that a page made of gl.readPixels into RGBA with row 0 at the top. */
 export function pixelsOf(text, [width, height]) {
