@@ -56,7 +56,8 @@ export default defineConfig(({ mode }) => ({
   base: './',
   publicDir: false,
   plugins: [base64(), withoutDecoderFiles(), shortShaders()],
-  worker: { format: 'es', plugins: () => [] },
+  // A page from a file may start workers from classic scripts alone.
+  worker: { format: 'iife', plugins: () => [] },
   build: {
     target: 'es2022',
     outDir: 'dist',
