@@ -139,16 +139,17 @@ lacking() { # lacking TEXT: those of the files on stdin, NUL-separated, whose fi
 files() { find "$@" -type f -print0; }  # files FOLDERS... TESTS...
 cpp=(-name '*.cpp' -o -name '*.h' -o -name '*.inc')
 glsl=(-name '*.glsl' -o -name '*.comp' -o -name '*.vert' -o -name '*.frag')
+web=(-name '*.ts' -o -name '*.mjs')
 while IFS= read -r file; do
   fault "$file does not say its licence"
-done < <(files stages runtime tools examples shaders tests \( "${cpp[@]}" -o "${glsl[@]}" -o -name '*.py' -o -name '*.sh' -o -name CMakeLists.txt \) | lacking "")
+done < <(files stages runtime tools examples shaders tests \( "${cpp[@]}" -o "${glsl[@]}" -o "${web[@]}" -o -name '*.py' -o -name '*.sh' -o -name CMakeLists.txt \) | lacking "")
 while IFS= read -r file; do
   fault "$file is part of the runtime and not under the MIT licence"
-done < <(files runtime examples shaders \( "${cpp[@]}" -o "${glsl[@]}" -o -name '*.py' \) | lacking MIT)
+done < <(files runtime examples shaders tools/web \( "${cpp[@]}" -o "${glsl[@]}" -o "${web[@]}" -o -name '*.py' \) | lacking MIT)
 
 while IFS= read -r file; do
   fault "$file has more than 600 lines"
-done < <(files stages runtime tools examples shaders tests \( "${cpp[@]}" -o "${glsl[@]}" \) | xargs -0 awk 'FNR == 601 { print FILENAME }')
+done < <(files stages runtime tools examples shaders tests \( "${cpp[@]}" -o "${glsl[@]}" -o "${web[@]}" \) -not -path 'tools/web/dist/*' | xargs -0 awk 'FNR == 601 { print FILENAME }')
 
 # Prose fits an editor's window: lines of Markdown have at most 120 columns, except tables and code.
 long_lines() { sed '/^```/,/^```/d' "$1" | LC_ALL=C.UTF-8 grep -E '^.{121,}' | grep -vE '^(\||    )'; }

@@ -17,6 +17,7 @@ for (const name of ['kiln.js', 'kiln-viewer.js']) {
   const { code } = await transformWithEsbuild(readFileSync(join(out, name), 'utf8'), name, { minify: true, target: 'es2022', legalComments: 'none', sourcemap: false });
   writeFileSync(join(out, name), banner + code);
 }
+writeFileSync(join(out, 'kiln-viewer.css'), `/* SPDX-License-Identifier: MIT */\n${readFileSync(join(out, 'kiln-viewer.css'), 'utf8')}`);
 copyFileSync(join(home, 'index.html'), join(out, 'index.html'));
 
 const parts = ['three', 'fast-png', 'fflate', 'iobuffer'].map((name) => {

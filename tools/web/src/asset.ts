@@ -80,7 +80,7 @@ export class KilnAsset {
   /** Texture lookups of a pixel, light and maps not counted; 0 per vertex. */
   get lookups(): number {
     if (this.manifest.vertices > 0) return 0;
-    return this.textures.layers * (this.textures.compressed ? 4 : 1) + (this.textures.clusters ? 4 : 0);
+    return this.textures.layers * (this.textures.exact ? 4 : 1) + (this.textures.clusters ? 4 : 0);
   }
 
   /** What the form is called. */
@@ -127,11 +127,11 @@ export class KilnAsset {
   }
 
   /** Takes a layer that was decoded; it goes to the GPU with one of the next pictures. */
-  receive(layer: number, pictures: readonly Uint8Array[]): void {
+  receive(layer: number, pictures: readonly (Uint8Array | Float32Array)[]): void {
     const { planes } = this.textures;
     const size = planes!.image.width * planes!.image.height * 4;
     pictures.forEach((picture, k) => {
-      (planes!.image.data as Uint8Array).set(picture, (layer + k) * size);
+      (planes!.image.data as Uint8Array | Float32Array).set(picture, (layer + k) * size);
       this.waiting.push(layer + k);
     });
     this.onchange();
@@ -150,7 +150,7 @@ export class KilnAsset {
   private upload(most: number): void {
     const { planes } = this.textures;
     if (this.waiting.length === 0 || !planes) return;
-    const size = planes.image.width * planes.image.height * 4;
+    const size = planes.image.data!.byteLength / planes.image.depth;
     for (let sum = 0; this.waiting.length > 0 && (sum === 0 || sum + size <= most); sum += size) {
       const layer = this.waiting.shift()!;
       planes.addLayerUpdate(layer);

@@ -26,12 +26,26 @@ class BundledDracoLoader extends DRACOLoader {
   }
 }
 
+interface Workers {
+  workerNextTaskID: number;
+  _getWorker(task: number, cost: number): Promise<Worker>;
+  _releaseTask(worker: Worker, task: number): void;
+}
+
 let shared: BundledDracoLoader | null = null;
 
 /** Returns the decoder that all loaders share. */
 export function dracoLoader(): DRACOLoader {
   shared ??= new BundledDracoLoader().setWorkerLimit(2) as BundledDracoLoader;
   return shared;
+}
+
+/** Starts the decoder, so that it is there when the mesh is. */
+export function warmDraco(): void {
+  if (shared) return;
+  const loader = dracoLoader() as unknown as Workers;
+  const task = loader.workerNextTaskID++;
+  void loader._getWorker(task, 0).then((worker) => loader._releaseTask(worker, task));
 }
 
 /** Decodes a Draco mesh: attributes by their semantic, or by unique id. Rejects with KilnError. */

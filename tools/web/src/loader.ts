@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-import { ClampToEdgeWrapping, DataArrayTexture, DataTexture, LinearFilter, Loader, NearestFilter, RedIntegerFormat, UnsignedByteType } from 'three';
+import { ClampToEdgeWrapping, DataArrayTexture, DataTexture, FloatType, LinearFilter, Loader, NearestFilter, RedIntegerFormat, UnsignedByteType } from 'three';
 import { KilnAsset } from './asset';
 import { pngDecoder } from './decoder';
+import { warmDraco } from './draco';
 import { KilnError } from './errors';
 import { checkGeometry, decodeMesh, decodeVertexTransfer, vertexTransferOf } from './geometry';
 import { GlbSource } from './glb';
 import { type Manifest, readManifest } from './manifest';
 import type { SurfaceTextures } from './material';
 import { pictureTexture } from './pictures';
+import type { LayerForm } from './png_jobs';
 import { type AssetSource, HttpSource } from './sources';
 import { type ClusterTables, clusterTables, type PlanePlace } from './weights';
 
@@ -20,11 +22,23 @@ export interface LoadProgress {
   fileCount: number;
 }
 
-/** A layer of the planes' texture, or two where `bits` is 16. */
+/** A layer of the planes' texture, or two of byte pairs. */
 interface LayerPlan {
   layer: number;
-  bits: 8 | 16;
+  form: LayerForm;
   places: PlanePlace[];
+}
+
+let floats: boolean | undefined;
+
+/** Tells whether textures of floats are filtered here: not on every telephone. */
+function filtersFloats(): boolean {
+  if (floats === undefined) {
+    const context = document.createElement('canvas').getContext('webgl2');
+    floats = context?.getExtension('OES_texture_float_linear') != null;
+    context?.getExtension('WEBGL_lose_context')?.loseContext();
+  }
+  return floats;
 }
 
 /** Puts planes into layers of four: low coefficients first, so that the first layers show the most. */
@@ -32,18 +46,21 @@ function planLayers(manifest: Manifest): LayerPlan[] {
   const order = manifest.planes.map((plane, index) => ({ plane, index }));
   if (!manifest.clusters) order.sort((a, b) => a.plane.coefficient - b.plane.coefficient || a.plane.channel - b.plane.channel);
   const plans: LayerPlan[] = [];
+  const deep = manifest.planes.some((plane) => plane.bits === 16);
+  const form = !deep ? 'bytes' : filtersFloats() ? 'floats' : 'byte-pairs';
   let layer = 0;
   for (let first = 0; first < order.length; first += 4) {
     const planes = order.slice(first, first + 4).map(({ plane }) => plane);
-    const bits = planes.some((plane) => plane.bits === 16) ? 16 : 8;
-    plans.push({ layer, bits, places: planes.map((plane, channel) => ({ plane, layer, channel, deep: bits === 16, ready: false })) });
-    layer += bits / 8;
+    plans.push({ layer, form, places: planes.map((plane, channel) => ({ plane, layer, channel, deep: form === 'byte-pairs', factor: 1, ready: false })) });
+    layer += form === 'byte-pairs' ? 2 : 1;
   }
   return plans;
 }
 
-function planesTexture(width: number, height: number, layers: number): DataArrayTexture {
-  const texture = new DataArrayTexture(new Uint8Array(4 * width * height * layers), width, height, layers);
+function planesTexture(width: number, height: number, layers: number, form: LayerForm): DataArrayTexture {
+  const size = 4 * width * height * layers;
+  const texture = new DataArrayTexture(form === 'floats' ? new Float32Array(size) : new Uint8Array(size), width, height, layers);
+  if (form === 'floats') texture.type = FloatType;
   texture.minFilter = texture.magFilter = LinearFilter;
   texture.wrapS = texture.wrapT = ClampToEdgeWrapping;
   texture.generateMipmaps = false;
@@ -86,6 +103,8 @@ export class KilnLoader extends Loader<KilnAsset> {
 
   /** Loads from anything that has a manifest and bytes. */
   async loadSource(source: AssetSource, onProgress: (progress: LoadProgress) => void = () => {}): Promise<KilnAsset> {
+    warmDraco();
+    pngDecoder.warm();
     const { json, file } = await source.manifest();
     const manifest = readManifest(json, `${source.name}/${file}`);
     return new Load(source, manifest, onProgress).run(this.progressive && !manifest.clusters);
@@ -105,10 +124,10 @@ class Load {
   async run(progressive: boolean): Promise<KilnAsset> {
     const plans = this.manifest.vertices > 0 ? [] : planLayers(this.manifest);
     const last = plans.at(-1);
-    const layers = last ? last.layer + last.bits / 8 : Math.ceil(this.manifest.planes.length / 4);
+    const layers = last ? last.layer + (last.form === 'byte-pairs' ? 2 : 1) : Math.ceil(this.manifest.planes.length / 4);
     const textures: SurfaceTextures = {
-      planes: last ? planesTexture(this.manifest.width, this.manifest.height, layers) : null,
-      transfer: null, largest: 255, clusters: null, compressed: this.manifest.clusters !== null, albedo: null, opacity: null, layers,
+      planes: last ? planesTexture(this.manifest.width, this.manifest.height, layers, last.form) : null,
+      transfer: null, largest: 255, clusters: null, exact: last?.form === 'byte-pairs', albedo: null, opacity: null, layers,
     };
     // Asks for everything at once, first for what the first picture needs.
     const mesh = this.mesh();
@@ -122,7 +141,7 @@ class Load {
     const { geometry, transfer } = await mesh;
     textures.transfer = transfer;
     const places = transfer
-      ? this.manifest.planes.map((plane, k): PlanePlace => ({ plane, layer: k >> 2, channel: k & 3, deep: false, ready: true }))
+      ? this.manifest.planes.map((plane, k): PlanePlace => ({ plane, layer: k >> 2, channel: k & 3, deep: false, factor: 1, ready: true }))
       : plans.flatMap((plan) => plan.places);
     if (transfer) textures.largest = 2 ** this.manifest.planes[0].bits - 1;
     const asset = new KilnAsset({ source: this.source, manifest: this.manifest, geometry, textures, places, tables: await tables });
@@ -160,12 +179,14 @@ class Load {
     return { geometry, transfer: manifest.vertices > 0 ? await decodeVertexTransfer(bytes, manifest, file) : null };
   }
 
-  private async layer(plan: LayerPlan): Promise<Uint8Array[]> {
+  private async layer(plan: LayerPlan): Promise<(Uint8Array | Float32Array)[]> {
     const { width, height } = this.manifest;
     const pictures = await Promise.all(plan.places.map(async ({ plane }) => ({
       file: this.nameOf(plane.file), bytes: await this.bytes(plane.file), width, height, bits: plane.bits,
     })));
-    return pngDecoder.layers(pictures, plan.bits);
+    const { layers, factors } = await pngDecoder.layers(pictures, plan.form, this.manifest.clusters !== null);
+    plan.places.forEach((place, k) => (place.factor = factors[k]));
+    return layers;
   }
 
   private async tables(): Promise<ClusterTables | null> {

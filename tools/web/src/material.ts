@@ -11,8 +11,8 @@ export interface SurfaceTextures {
   /** The largest number of `transfer`. */
   largest: number;
   clusters: DataTexture | null;
-  /** Planes are weights of a compressed asset. */
-  compressed: boolean;
+  /** Lookups are blended by the shader, since a texture unit may filter in 8 bits. */
+  exact: boolean;
   albedo: Texture | null;
   opacity: Texture | null;
   layers: number;
@@ -31,7 +31,7 @@ export function makeLightTexture(texels: number): DataTexture {
 export function makeRelitMaterial(textures: SurfaceTextures, light: DataTexture): ShaderMaterial {
   const defines: Record<string, string> = { KILN_LIGHT_WIDTH: String(lightWidth) };
   if (textures.transfer) defines.KILN_VERTICES = '';
-  if (textures.compressed) defines.KILN_EXACT = '';
+  if (textures.exact) defines.KILN_EXACT = '';
   if (textures.clusters) defines.KILN_CLUSTERS = '';
   if (textures.albedo) defines.KILN_ALBEDO = '';
   if (textures.opacity) defines.KILN_OPACITY = '';

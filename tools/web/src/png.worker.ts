@@ -8,10 +8,14 @@ class Fault {
   constructor(readonly file: string, readonly found: string, readonly expected: string, readonly remedy = 'Copy the folder anew, or run `kiln check` on it.') {}
 }
 
+let canvas: OffscreenCanvasRenderingContext2D | null = null;
+
 /** Decodes a sound grey PNG of 8 bits by the browser. */
 async function browserDecode(bytes: Uint8Array, width: number, height: number): Promise<Uint8Array> {
   const bitmap = await createImageBitmap(new Blob([bytes as Uint8Array<ArrayBuffer>], { type: 'image/png' }), { colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
-  const context = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true })!;
+  if (!canvas || canvas.canvas.width !== width || canvas.canvas.height !== height)
+    canvas = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true, alpha: false })!;
+  const context = canvas;
   context.drawImage(bitmap, 0, 0);
   bitmap.close();
   const { data } = context.getImageData(0, 0, width, height);
@@ -56,22 +60,34 @@ function flipped<T extends Uint8Array | Uint16Array>(values: T, width: number, h
   return turned;
 }
 
+/** Returns the largest of some numbers, at least 1. */
+function largestOf(values: ArrayLike<number>): number {
+  let largest = 1;
+  for (let i = 0; i < values.length; ++i) if (values[i] > largest) largest = values[i];
+  return largest;
+}
+
 async function answer(job: PngJob): Promise<PngAnswer> {
   if (job.kind === 'numbers') {
     const wish = job.pictures[0];
     return { id: job.id, numbers: flipped(await numbersOf(wish), wish.width, wish.height) };
   }
   const { width, height } = job.pictures[0];
-  const layers = Array.from({ length: job.bits / 8 }, () => new Uint8Array(4 * width * height));
+  const size = 4 * width * height;
+  const layers = job.form === 'floats' ? [new Float32Array(size)] : job.form === 'bytes' ? [new Uint8Array(size)] : [new Uint8Array(size), new Uint8Array(size)];
+  // The browser decodes them side by side.
+  const stored = await Promise.all(job.pictures.map(numbersOf));
+  const factors = stored.map((values) => (job.spread && job.form === 'bytes' ? Math.floor(255 / largestOf(values)) : 1));
   for (const [channel, wish] of job.pictures.entries()) {
-    const values = await numbersOf(wish);
+    const values = stored[channel];
     // Weights of a compressed asset may differ in their bits: those of 8 are written as what they are of 16.
-    const widen = job.bits === 16 && wish.bits === 8 ? 257 : 1;
+    const widen = wish.bits === 8 && job.form === 'byte-pairs' ? 257 : factors[channel];
+    const unit = job.form === 'floats' ? 1 / (2 ** wish.bits - 1) : 1;
     for (let row = 0; row < height; ++row) {
       let to = 4 * (height - 1 - row) * width + channel;
       for (let at = row * width; at < (row + 1) * width; ++at, to += 4) {
         const value = values[at] * widen;
-        if (job.bits === 8) layers[0][to] = value;
+        if (layers.length === 1) layers[0][to] = value * unit;
         else {
           layers[0][to] = value >> 8;
           layers[1][to] = value & 255;
@@ -79,16 +95,22 @@ async function answer(job: PngJob): Promise<PngAnswer> {
       }
     }
   }
-  return { id: job.id, layers };
+  return { id: job.id, layers, factors };
 }
 
-self.onmessage = async (event: MessageEvent<PngJob>) => {
+// One job after the other, so that the first is done first.
+let queue = Promise.resolve();
+self.onmessage = (event: MessageEvent<PngJob>) => {
+  queue = queue.then(() => work(event.data));
+};
+
+async function work(job: PngJob): Promise<void> {
   let reply: PngAnswer;
   try {
-    reply = await answer(event.data);
+    reply = await answer(job);
   } catch (error) {
-    reply = { id: event.data.id, fault: error instanceof Fault ? { ...error } : { file: event.data.pictures[0].file, found: `a picture that could not be decoded (${String(error)})`, expected: 'a PNG', remedy: 'Reload the page.' } };
+    reply = { id: job.id, fault: error instanceof Fault ? { ...error } : { file: job.pictures[0].file, found: `a picture that could not be decoded (${String(error)})`, expected: 'a PNG', remedy: 'Reload the page.' } };
   }
   const buffers = 'layers' in reply ? reply.layers.map((layer) => layer.buffer) : 'numbers' in reply ? [reply.numbers.buffer] : [];
   self.postMessage(reply, { transfer: buffers as ArrayBuffer[] });
-};
+}

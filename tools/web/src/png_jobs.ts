@@ -9,11 +9,16 @@ export interface PngWish {
   bits: 8 | 16;
 }
 
-/** Up to four grey pictures, to become the channels of one layer (bits 8) or of two (bits 16: high bytes, low bytes). */
+/** How stored values stand in layers: bytes; two layers of high and of low bytes; or floats of 0 to 1. */
+export type LayerForm = 'bytes' | 'byte-pairs' | 'floats';
+
+/** Up to four grey pictures, to become the channels of a layer, or of two. */
 export interface LayerJob {
   id: number;
   kind: 'layer';
-  bits: 8 | 16;
+  form: LayerForm;
+  /** Multiply bytes by as large a factor as their largest allows: weights that use few of 256 values are then filtered finely. */
+  spread: boolean;
   pictures: PngWish[];
 }
 
@@ -27,6 +32,6 @@ export interface NumbersJob {
 export type PngJob = LayerJob | NumbersJob;
 
 export type PngAnswer =
-  | { id: number; layers: Uint8Array[] }
+  | { id: number; layers: (Uint8Array | Float32Array)[]; factors: number[] }
   | { id: number; numbers: Uint8Array | Uint16Array }
   | { id: number; fault: { file: string; found: string; expected: string; remedy: string } };

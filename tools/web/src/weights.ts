@@ -14,6 +14,8 @@ export interface PlanePlace {
   channel: number;
   /** Stored in two layers, of high and of low bytes. */
   deep: boolean;
+  /** What its stored values were multiplied by. */
+  factor: number;
   /** Its layer has arrived. */
   ready: boolean;
 }
@@ -63,13 +65,13 @@ export function fillLight(values: Float32Array, manifest: Manifest, places: read
     const begin = cluster * stride;
     const row = cluster * (places.length + 1);
     const constant = tables ? [lit(row, 0), lit(row, 1), lit(row, 2)] : [0, 0, 0];
-    places.forEach(({ plane, layer, channel, deep, ready }, j) => {
+    places.forEach(({ plane, layer, channel, deep, factor, ready }, j) => {
       if (!ready) return;
       for (let color = 0; color < 3; ++color) {
         if (tables) level[color] = lit(row + 1 + j, color);
         else level[color] = manifest.channels === 1 || plane.channel === color ? albedo[color] * light[color][plane.coefficient] : 0;
         constant[color] += level[color] * plane.min;
-        const scale = level[color] * (plane.max - plane.min);
+        const scale = (level[color] * (plane.max - plane.min)) / factor;
         const at = begin + 4 * (1 + 3 * layer + color) + channel;
         if (!deep) values[at] = scale;
         else {

@@ -36,8 +36,8 @@ vec3 decoded(int begin, int layer, vec4 stored) {
   return vec3(dot(light_at(at), stored), dot(light_at(at + 1), stored), dot(light_at(at + 2), stored));
 }
 
-// Looks up four stored values, bilinearly. Weights of a compressed asset may use a few of 256 values, between which
-// texture units that filter in 8 bits know no steps, so those are blended here.
+// Looks up four stored values, bilinearly. Texture units may filter bytes in 8 bits, which is too few for pairs of them:
+// those are blended here.
 vec4 stored_at(vec2 uv, int layer) {
 #ifdef KILN_EXACT
   ivec2 size = textureSize(kiln_planes, 0).xy;

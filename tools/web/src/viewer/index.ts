@@ -3,6 +3,8 @@
 // attribute `data-kiln-viewer` it opens the viewer as well.
 import { HDRLoader } from 'three/addons/loaders/HDRLoader.js';
 import { DataUtils, HalfFloatType } from 'three';
+import { pngDecoder } from '../decoder';
+import { warmDraco } from '../draco';
 import { defineKilnAsset } from '../element';
 import { KilnLoader } from '../loader';
 import { HttpSource, type AssetSource } from '../sources';
@@ -30,7 +32,7 @@ export class Viewer {
   private readonly loader = new KilnLoader();
   private readonly title = el('h1', {}, 'Kiln');
   private readonly form = el('p', { class: 'form' });
-  private readonly list = el('ul', { class: 'assets' });
+  private readonly list = el('ul', { class: 'assets', hidden: '' });
   private readonly notices = el('div', { class: 'notices', role: 'alert' });
   private readonly busy = el('div', { class: 'busy', role: 'progressbar', 'aria-label': 'Loading' });
   private readonly welcome: HTMLElement;
@@ -82,7 +84,7 @@ export class Viewer {
       el('footer', {}, this.readout.element, drag));
     root.querySelector('main')!.append(el('aside', { class: 'panel', 'aria-label': 'Controls' }, this.list, this.panel.element));
     root.append(help, folderInput, fileInput);
-    this.stage.ondraw = (milliseconds) => milliseconds !== null && this.readout.time(milliseconds);
+    this.stage.ontime = (milliseconds) => this.readout.time(milliseconds);
     canvas.addEventListener('keydown', (event) => this.key(event, help));
     this.acceptDrops(root);
     this.opened = this.openAddress();
@@ -92,14 +94,14 @@ export class Viewer {
   /** Opens what the address names: ?asset=PATH, once or several times, or the list of assets.json. */
   private async openAddress(): Promise<void> {
     const named = new URLSearchParams(location.search).getAll('asset').filter(Boolean);
-    if (named.length > 0) return void (await Promise.all(named.map((path) => this.openPath(path))));
+    if (named.length > 0) return void (await Promise.all(named.map((path, order) => this.openPath(path, order))));
     await this.readList();
     const chosen = new URLSearchParams(location.hash.slice(1)).getAll('asset').filter((path) => this.listed.some((each) => each.path === path));
     const wanted = chosen.length > 0 ? chosen : this.listed.slice(0, 1).map((each) => each.path);
     this.welcome.hidden = wanted.length > 0;
     for (const { asset } of [...this.stage.shown]) if (!wanted.includes(asset.mesh.userData.path as string)) this.stage.remove(asset);
     const open = new Set(this.stage.shown.map(({ asset }) => asset.mesh.userData.path as string));
-    await Promise.all(wanted.filter((path) => !open.has(path)).map((path) => this.openPath(path)));
+    await Promise.all(wanted.filter((path) => !open.has(path)).map((path) => this.openPath(path, this.listed.findIndex((each) => each.path === path))));
     this.refresh();
   }
 
@@ -128,21 +130,21 @@ export class Viewer {
     return this.stage.shown.some(({ asset }) => asset.mesh.userData.path === path);
   }
 
-  private async openPath(path: string): Promise<void> {
+  private async openPath(path: string, order: number): Promise<void> {
     const source = /\.glb$/i.test(path) ? new GlbSource(path) : new HttpSource(path);
     if (new URL(path, document.baseURI).origin !== location.origin) return this.fail(new Error(`${path} lies on another server. This page asks no other server for anything; copy the folder beside it.`));
-    await this.open(source, path);
+    await this.open(source, path, order);
   }
 
   /** Loads an asset and shows it beside those that are there. */
-  async open(source: AssetSource, path = source.name): Promise<void> {
+  async open(source: AssetSource, path = source.name, order = 0): Promise<void> {
     this.welcome.hidden = true;
     this.setLoading(1);
     try {
       this.loader.progressive = true;
       const asset = await this.loader.loadSource(source);
       asset.mesh.userData.path = path;
-      this.stage.add(asset);
+      this.stage.add(asset, order);
       this.refresh();
       await asset.ready;
       this.refresh();
@@ -188,7 +190,7 @@ export class Viewer {
       return this.fail(new Error('No asset was found in these files. Drop a folder that has ranges.json or pca.json, a .glb of kiln export, or a .hdr as surroundings.'));
     for (const file of dropped.environments.slice(0, 1)) await this.takeEnvironment(file);
     if (dropped.sources.length > 0) for (const { asset } of [...this.stage.shown]) this.stage.remove(asset);
-    await Promise.all(dropped.sources.map((source) => this.open(source)));
+    await Promise.all(dropped.sources.map((source, order) => this.open(source, source.name, order)));
   }
 
   private async takeEnvironment(file: File): Promise<void> {
@@ -224,7 +226,7 @@ export class Viewer {
   /** The line between the picture with transfer and the one without. */
   private divider(): HTMLElement {
     const handle = el('div', { class: 'divider', role: 'slider', tabindex: '0', 'aria-label': 'Part of the picture with transfer', 'aria-valuemin': '0', 'aria-valuemax': '100', hidden: '' },
-      el('span', { class: 'left' }, 'transfer'), el('span', { class: 'grip' }), el('span', { class: 'right' }, 'none'));
+      el('span', { class: 'left' }, 'with transfer'), el('span', { class: 'grip' }), el('span', { class: 'right' }, 'without'));
     const to = (split: number) => this.store.set({ split: Math.min(1, Math.max(0, split)) });
     handle.addEventListener('pointerdown', (event) => {
       handle.setPointerCapture(event.pointerId);
@@ -295,6 +297,9 @@ function shortName(name: string): string {
 
 /** Opens the viewer, or says why it cannot. */
 export function openViewer(root: HTMLElement): Viewer | null {
+  // Workers start while WebGL does.
+  warmDraco();
+  pngDecoder.warm();
   try {
     return new Viewer(root);
   } catch (error) {

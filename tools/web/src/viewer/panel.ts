@@ -3,7 +3,8 @@ import { bytesText, button, choice, color, el, select, slider, toggle } from './
 import type { Stage } from './stage';
 import type { Store } from './state';
 
-const degrees = (value: number) => `${Math.round(value)}°`;
+const minus = (text: string) => text.replace('-', '−');
+const degrees = (value: number) => minus(`${Math.round(value)}°`);
 
 function section(title: string, ...content: (Node | null)[]): HTMLElement {
   return el('section', {}, el('h2', {}, title), ...content);
@@ -35,16 +36,16 @@ export function makePanel(store: Store, stage: Stage, actions: PanelActions): { 
   const bands = slider(store, 'Bands', 'bands', { min: 1, max: 5, step: 1 }, (v) => (v === 0 ? 'all' : `${v}`));
   const coefficient = slider(store, 'Coefficient', 'coefficient', { min: 0, max: 24, step: 1 }, (v) => {
     const l = Math.floor(Math.sqrt(v));
-    return `${v} (${l}, ${v - l * (l + 1)})`;
+    return minus(`${v} (${l}, ${v - l * (l + 1)})`);
   });
-  const technique = choice(store, 'Shading', 'technique', [['transfer', 'Transfer'], ['normal-map', 'Normal map'], ['phong', 'Plain']]);
+  const technique = choice(store, 'Shading', 'technique', [['transfer', 'Relit'], ['normal-map', 'Normal map'], ['phong', 'Plain']]);
   const compare = toggle(store, 'Compare with no transfer', 'compare');
   const lights = section('Light',
     choice(store, 'Kind', 'light', [['sun', 'Sun'], ['soft', 'Soft'], ['sky', 'Sky'], ['even', 'Even'], ['none', 'None']]),
     azimuth.row, elevation.row, softness.row, strength.row, tint, fill.row, environment.row, turn.row, environmentStrength.row);
   const fine = section('Harmonics',
     select(store, 'Window', 'window', [['hann', 'Hann'], ['lanczos', 'Lanczos'], ['dering', 'Dering'], ['none', 'None']]).row, bands.row,
-    slider(store, 'Exposure', 'exposure', { min: -4, max: 4, step: 0.1 }, (v) => `${v > 0 ? '+' : ''}${v.toFixed(1)}`).row);
+    slider(store, 'Exposure', 'exposure', { min: -4, max: 4, step: 0.1 }, (v) => minus(`${v > 0 ? '+' : ''}${v.toFixed(1)}`)).row);
   const view = section('View',
     choice(store, 'Show', 'show', [['picture', 'Picture'], ['charts', 'Charts'], ['coefficient', 'Transfer'], ['normals', 'Normals']]),
     coefficient.row, technique, compare, toggle(store, 'Wireframe', 'wireframe'));

@@ -11,6 +11,7 @@ import { PlainView } from './plain';
 import type { State, Store } from './state';
 
 interface Shown {
+  order: number;
   asset: KilnAsset;
   plain: PlainView;
   edges: LineSegments | null;
@@ -23,8 +24,8 @@ export class Stage {
   readonly shown: Shown[] = [];
   /** The environment of a file. */
   environment: RadiancePicture | null = null;
-  /** Called after every picture; with milliseconds when they were measured. */
-  ondraw: (milliseconds: number | null) => void = () => {};
+  /** Called with the milliseconds that a picture took, of some pictures. */
+  ontime: (milliseconds: number) => void = () => {};
   onerror: (error: unknown) => void = () => {};
 
   private readonly withTransfer = new Scene();
@@ -34,6 +35,7 @@ export class Stage {
   private frame = 0;
   private drawn = 0;
   private touched = false;
+  private first = true;
 
   /** Throws where there is no WebGL 2. */
   constructor(
@@ -58,9 +60,11 @@ export class Stage {
     this.resize();
   }
 
-  add(asset: KilnAsset): void {
+  /** Shows an asset to the right of those of a lower order. */
+  add(asset: KilnAsset, order = this.shown.length): void {
     const plain = new PlainView(asset);
-    this.shown.push({ asset, plain, edges: null });
+    this.shown.push({ order, asset, plain, edges: null });
+    this.shown.sort((a, b) => a.order - b.order);
     asset.onchange = () => this.draw();
     asset.mesh.matrixWorldAutoUpdate = true;
     this.withTransfer.add(asset.mesh);
@@ -126,7 +130,7 @@ export class Stage {
     const { state } = this.store;
     const lights: (keyof State)[] = ['light', 'azimuth', 'elevation', 'softness', 'strength', 'color', 'fill', 'environment', 'environmentTurn', 'environmentStrength', 'window', 'bands'];
     if (lights.some((key) => changed.has(key))) this.relight();
-    if (changed.has('show') || changed.has('coefficient') || changed.has('technique')) this.look();
+    if (changed.has('show') || changed.has('coefficient') || changed.has('technique') || changed.has('compare')) this.look();
     if (changed.has('wireframe')) this.wire();
     if (changed.has('drag')) this.canvas.dataset.drag = state.drag;
     this.draw();
@@ -139,9 +143,12 @@ export class Stage {
   }
 
   private look(): void {
-    const { show, technique, coefficient } = this.store.state;
+    const { show, technique, coefficient, compare } = this.store.state;
+    // Maps that only comparisons show are read when the first of them is wanted.
+    const plainWanted = compare || technique !== 'transfer' || show === 'charts' || show === 'normals';
     for (const { asset, plain } of this.shown) {
       asset.showCoefficient(show === 'coefficient' ? Math.min(coefficient, asset.manifest.bands ** 2 - 1) : -1);
+      if (!plainWanted) continue;
       const wanted = show === 'charts' || show === 'normals' ? show : technique === 'normal-map' || (technique === 'transfer' && plain.hasNormalMap) ? 'normal-map' : 'phong';
       plain.show(wanted).then(() => this.draw(), this.onerror);
     }
@@ -199,15 +206,28 @@ export class Stage {
       this.renderer.setScissorTest(false);
     } else this.renderer.render(plainOnly ? this.without : this.withTransfer, this.camera);
     if (state.wireframe) this.renderer.render(this.lines, this.camera);
-    let milliseconds: number | null = null;
-    if (++this.drawn % 4 === 0) {
-      const gl = this.renderer.getContext();
-      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
-      milliseconds = performance.now() - begin;
+    if (this.shown.length > 0 && this.first) {
+      this.first = false;
+      performance.mark('kiln-first-picture');
     }
+    if (++this.drawn % 4 === 0) this.measure(begin);
     this.moveSun();
-    this.ondraw(milliseconds);
     if (this.shown.some(({ asset }) => asset.isUploading)) this.draw();
+  }
+
+  /** Measures the time from `begin` to finished pixels, without waiting for them. */
+  private measure(begin: number): void {
+    const gl = this.renderer.getContext() as WebGL2RenderingContext;
+    const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    if (!sync) return;
+    gl.flush();
+    const poll = () => {
+      const status = gl.clientWaitSync(sync, 0, 0);
+      if (status === gl.TIMEOUT_EXPIRED && performance.now() - begin < 5000) return void setTimeout(poll, 1);
+      gl.deleteSync(sync);
+      if (status === gl.ALREADY_SIGNALED || status === gl.CONDITION_SATISFIED) this.ontime(performance.now() - begin);
+    };
+    setTimeout(poll, 0);
   }
 
   /** Turns the light. */

@@ -36,7 +36,7 @@ export interface State {
 
 export const firstState: Readonly<State> = {
   show: 'picture', technique: 'transfer', coefficient: 1, wireframe: false,
-  light: 'sun', azimuth: 45, elevation: 30, softness: 25, strength: 1, color: '#ffffff', fill: 0.12,
+  light: 'sun', azimuth: -45, elevation: 35, softness: 25, strength: 1, color: '#ffffff', fill: 0.08,
   environment: 'none', environmentTurn: 0, environmentStrength: 1,
   window: lightWindows[0], bands: 0, exposure: 0, compare: false, split: 0.5, drag: 'view',
 };
