@@ -87,7 +87,7 @@ std::string facts(const AssetFolder& asset, const Report& report, const Json& me
 
   std::string html = "<dl class=figures>\n";
   const auto fact = [&](const std::string& name, const std::string& number, const std::string& more) {
-    html += fmt::format("<div><dt>{}</dt><dd>{}</dd><small>{}</small></div>\n", name, number, more);
+    html += fmt::format("<div><dt>{}</dt><dd>{}<small>{}</small></dd></div>\n", name, number, more);
   };
   fact("Triangles", record_value(simplify, "triangles"), "of " + record_value(simplify, "input_triangles"));
   const bool compressed = !asset.compressed.empty();

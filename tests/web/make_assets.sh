@@ -4,7 +4,7 @@
 set -euo pipefail
 programs=$1 sources=$2 out=$3
 stamp=$out/made
-made_by=$(cat "$programs"/kiln-{normals,bake,compress} "$0" | sha1sum)
+made_by=$(cat "$programs"/kiln-{normals,bake,compress,report} "$0" | sha1sum)
 [[ -f $stamp && $(cat "$stamp") == "$made_by" ]] && exit 0
 
 made=$out.part
@@ -42,5 +42,20 @@ run kiln-compress coloured -o clustered_coloured --clusters 2 --pca 8 2> /dev/nu
     done
   done
 } > sky.hdr
+# A report of one, for the tests of its page.
+cat > pipeline.yaml << END
+output: out
+defaults:
+  simplify: {faces: 300}
+  atlas: {size: 64}
+  bake: {bands: 4, directions: 128, backend: embree}
+  report: {picture-size: 160, directions: 32, error-samples: 64, cameras: 1, lights: '45,30; ambient:1'}
+budgets:
+  atlas.utilisation: {min: 0.2}
+  report.relative_l2: {max: 0.00001}
+assets:
+  post: {mesh: $sources/examples/post.obj}
+END
+"$programs/kiln" build -j2 > build.log 2>&1 || [[ $? == 4 ]]
 echo "$made_by" > made
 mv "$made" "$out"
