@@ -102,7 +102,7 @@ class AssetPlanner {
     if (keeps("simplify.faces") && !model_.pilot().has_own_low)
       grid.triangles = {kept_number(asset_, "simplify", "faces")};
     if (keeps("atlas.size")) grid.sizes = {kept_number(asset_, "atlas", "size")};
-    if (keeps("bake.bands")) grid.bands = {std::min(model_.most_bands(), kept_number(asset_, "bake", "bands"))};
+    if (keeps("bake.bands")) grid.bands = {kept_number(asset_, "bake", "bands")};
     if (keeps("bake.directions")) grid.directions = {kept_number(asset_, "bake", "directions")};
     if (keeps("bake.bits")) grid.bits = {kept_number(asset_, "bake", "bits")};
     if (keeps("bake.bounces") && model_.pilot().has_bounces) grid.bounces = {true};
