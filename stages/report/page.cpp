@@ -79,9 +79,10 @@ std::string header(const AssetFolder& asset, const Report& report, const Json& m
   std::string html =
       fmt::format("<header>\n<p class=overline>Kiln asset report</p>\n<h1>{}</h1>\n", html_escaped(asset.name));
   html += fmt::format(
-      "<p class=lead>A mesh of {} triangles as {} triangles, a texture atlas, a normal map and {} transfer coefficient "
-      "planes of {} bits.</p>\n",
-      value(simplify, "input_triangles"), value(simplify, "triangles"), asset.baked.planes.size(), asset.baked.bits);
+      "<p class=lead>A mesh of {} triangles as {} triangles, {} {} transfer coefficient {} of {} bits.</p>\n",
+      value(simplify, "input_triangles"), value(simplify, "triangles"),
+      asset.is_per_vertex() ? "each vertex with" : "a texture atlas, a normal map and", asset.baked.planes.size(),
+      asset.is_per_vertex() ? "values" : "planes", asset.baked.bits);
   html += marked_badge(report.budgets) + "\n" + software_alarm(asset, report);
   html += "<dl class=figures>\n";
   const auto figure_of = [&](const std::string& name, const std::string& number, const std::string& more) {
@@ -89,8 +90,11 @@ std::string header(const AssetFolder& asset, const Report& report, const Json& m
   };
   figure_of("Triangles", value(simplify, "triangles"), "of " + value(simplify, "input_triangles"));
   figure_of("Hausdorff distance", value(simplify, "hausdorff"), "of the diagonal");
-  figure_of("Atlas", value(asset.record("atlas"), "utilisation"),
-            "used, " + value(asset.record("atlas"), "charts") + " charts");
+  if (asset.is_per_vertex())
+    figure_of("Vertices", metric_value("vertices", asset.baked.vertices), "with transfer");
+  else
+    figure_of("Atlas", value(asset.record("atlas"), "utilisation"),
+              "used, " + value(asset.record("atlas"), "charts") + " charts");
   figure_of("Bake", value(bake, "seconds"), value(bake, "directions") + " directions");
   figure_of("Difference", metric_value("relative_l2", metrics.at("report").at("relative_l2")),
             "relative L², worst light" + noise_of(metrics.at("report").at("relative_l2").get<double>(),
@@ -265,6 +269,7 @@ std::string map_figures(const Json& normals, const fs::path& folder, const fs::p
 }
 
 std::string textures_section(const AssetFolder& asset, const fs::path& scratch) {
+  if (asset.is_per_vertex()) return "";
   const Json& normals = asset.record("normals");
   const auto value = [](const Json& record, const char* key) {
     return record.contains(key) ? metric_value(key, record[key]) : std::string("–");
@@ -308,6 +313,7 @@ std::string plane_figure(const AssetFolder& asset, const PrtPlane& plane, int pi
 }
 
 std::string coefficients_section(const AssetFolder& asset, const fs::path& scratch) {
+  if (asset.is_per_vertex()) return "";
   std::string html =
       "<section><h2>Transfer coefficients</h2>\n<p class=note>Each plane as it is stored, black its lowest and white "
       "its highest value: band and order "

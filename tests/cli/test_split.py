@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """test_split.py PROGRAMS SOURCES: the report splits the error of every kind of asset; squares of the causes add up."""
-import functools, json, pathlib, sys, tempfile
-from run_kiln import kiln
+import functools, json, pathlib, subprocess, sys, tempfile
+from run_kiln import kiln, programs
 
 sources = pathlib.Path(sys.argv[2]).resolve()
 PIPELINE = """
@@ -48,6 +48,18 @@ with tempfile.TemporaryDirectory() as name:
         assert abs(own["relative_l2"] - plain["relative_l2"]) < 0.01, (asset, own["relative_l2"], plain["relative_l2"])
     page = (folder / "out" / "jade" / "report.html").read_text()
     assert "do not tell them apart" in page
+
+    # An asset baked per vertex has neither atlas nor maps, and its report neither seams nor texels.
+    words = {"simplify": ["post.obj", "-o", "pv/low.drc", "--faces", "100"],
+             "bake": ["pv/low.drc", "--per-vertex", "--occluder", "post.obj", "-o", "pv/prt", "--directions", "256"],
+             "report": ["pv", "-o", "pv/report.html", "--error-samples", "512", "--picture-size", "64", "--cameras", "1",
+                        "--lights", "ambient:1", "--budget", "report.error.causes.vertices<=0.9"]}
+    for stage, arguments in words.items():
+        subprocess.run([programs / f"kiln-{stage}", *arguments, "--quiet"], cwd=folder, check=True)
+    error = json.loads((folder / "pv" / "metrics.json").read_text())["error"]
+    own = {"geometry", "vertices", "albedo", "bits", "seams", "bands", "directions", "visibility"}
+    assert set(error["causes"]) == own and error["causes"]["seams"] == 0, error["causes"]
+    assert abs(error["root_sum_of_causes"] - error["total"]) <= 0.1 * error["total"] + error["uncertainty"], error
 
     # Causes that an asset has not are no metrics of it.
     (folder / "pipeline.yaml").write_text(PIPELINE.replace("report.error.causes.receivers", "report.error.causes.subsurface"))
