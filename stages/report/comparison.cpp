@@ -110,7 +110,7 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   if (subsurface.wanted()) {
     view.scattering = subsurface_profiles(subsurface);  // has the albedo within
     view.mm_per_unit = subsurface.mm_per_unit;
-  } else {
+  } else if (asset.baked.albedo.known) {
     view.surface_albedo = load_albedo(imported, surface_material(asset)).albedo;
   }
   cut_occluder(high, view.surface_albedo, load_opacity(imported, map_material(asset)).opacity, high_file.string());

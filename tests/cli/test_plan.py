@@ -22,6 +22,7 @@ assets:
   post: {mesh: post.obj}
   jade: {mesh: post.obj, bake: {subsurface: marble}}
   sharp: {mesh: post.obj, bake: {bands: 9}}
+  dots: {mesh: post.obj, bake: {per-vertex: true}}
 """
 
 
@@ -38,13 +39,14 @@ with tempfile.TemporaryDirectory() as name:
     assert not (folder / "plan.yaml").exists()
     assert "keep" in run("plan", "post", "--error", "0.1", "--keep", "atlas.gutter", status=2).stderr
 
-    said = json.loads(run("plan", "post", "jade", "--error", "0.08", "--json", "--keep", "bake.bits").stdout)
-    post, jade = said["assets"]
+    said = json.loads(run("plan", "post", "jade", "dots", "--error", "0.08", "--json", "--keep", "bake.bits").stdout)
+    post, jade, dots = said["assets"]
     assert post["name"] == "post" and post["kept"] and post["predicted"]["total"] < 0.08, post
     assert "bake.bits" not in post["settings"]
     # A hemisphere has two bands, and the surface keeps no more of it than three.
     assert int(post["settings"]["bake.bands"]) <= 3, post
     assert "subsurface" in jade["left_alone"], jade
+    assert "per-vertex" in dots["left_alone"], dots
     plan = yaml.safe_load((folder / "plan.yaml").read_text())
     assert plan["pipeline"] == "pipeline.yaml" and list(plan["assets"]) == ["post"]
     assert str(plan["assets"]["post"]["bake"]["bands"]) == post["settings"]["bake.bands"]

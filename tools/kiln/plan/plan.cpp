@@ -43,6 +43,7 @@ double asked_of(const Asset& asset, const PlanSettings& settings) {
 
 /// Returns why nothing can be planned for an asset; empty if something can.
 std::string reason_to_leave(const Asset& asset) {
+  if (bakes_vertices(asset.settings)) return "per-vertex: plans choose the settings of textures";
   if (effective_setting(asset.settings, "bake", "subsurface") != "none")
     return "subsurface: light scatters beneath its surface, and how much of its error is from directions is not known";
   return {};
