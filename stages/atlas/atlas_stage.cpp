@@ -38,6 +38,7 @@ StageRun run(const AssetPlan& plan) {
 
 const StageInfo& atlas_stage() {
   static const StageInfo info = {.name = "atlas",
+                                 .for_texels = true,
                                  .options = options,
                                  .rivals = {{"size", "texels-per-unit"}},
                                  .metrics = {{metric_names}},

@@ -16,8 +16,11 @@ constexpr const char* metric_names =
     "occluder_triangles "
     "occluders_closed skipped.unoccluded_texels skipped.behind_tiles skipped.lit_tiles skipped.shadowed_tiles "
     "single_rays "
-    "ambiguous refined quantisation_error bytes_out width height seams.edges seams.seam_mismatch_mean_before "
-    "seams.seam_mismatch_max_before seams.seam_mismatch_mean seams.seam_mismatch_max seams.change";
+    "ambiguous refined quantisation_error bytes_out";
+
+constexpr const char* names_of_texels =
+    "width height seams.edges seams.seam_mismatch_mean_before seams.seam_mismatch_max_before "
+    "seams.seam_mismatch_mean seams.seam_mismatch_max seams.change";
 
 /// Metrics of --verify-directions; the last four are left out where the reference shares what it measures.
 constexpr const char* names_of_verification =
@@ -50,6 +53,9 @@ std::vector<MetricGroup> metric_groups() {
   using Settings = const AssetSettings&;
   using Bake = const BakeSettings&;
   return {{metric_names},
+          {names_of_texels, "seams.", "per-vertex: false of bake", [](Settings all) { return !bakes_vertices(all); }},
+          {"vertices vertices_facing_away receiver_distance_largest", "vertices", "per-vertex: true of bake",
+           bakes_vertices},
           {names_of_verification, "verification.", "verify-directions of bake",
            [](Settings all) { return holds(all, [](Bake bake) { return bake.verify_directions != 0; }); }},
           {names_of_bounces, "bounces.", "bounces of bake",
@@ -68,10 +74,37 @@ std::vector<MetricGroup> metric_groups() {
 
 StageOptions options() { return StageOptions::of(bake_options); }
 
+/// Adds what surrounds the asset, and the settings.
+void add_scene_and_settings(StageRun& run, const AssetPlan& plan) {
+  if (!plan.place.empty()) run.add({"--place", plan.place});
+  for (const PlanNeighbour& neighbour : plan.neighbours) {
+    run.add({"--neighbour", neighbour.text});
+    run.inputs.push_back(neighbour.mesh);
+  }
+  run.add_settings(options(), plan.settings_of("bake"));
+}
+
+/// Returns the run that bakes the vertices of the low mesh.
+StageRun vertex_run(const AssetPlan& plan, const BakeSettings& settings) {
+  const fs::path prt = layout::stage_folder(plan.folder, "bake"), low = plan.folder / layout::low_mesh;
+  StageRun run{"bake", {"kiln-bake", low.string()}};
+  run.inputs = {plan.mesh, layout::record(plan.folder, "simplify"), low};
+  run.outputs = {layout::record(plan.folder, "bake"), prt / vertex_mesh_name, prt / ranges_name};
+  if (settings.receiver == BakeReceiver::high) run.add({"--occluder", command_word(plan.mesh)});
+  run.checkpoint = layout::checkpoint_folder(prt);
+  run.add({"-o", folder_word(prt)});
+  return run;
+}
+
 StageRun run(const AssetPlan& plan) {
   const fs::path prt = layout::stage_folder(plan.folder, "bake"), atlas = plan.folder / layout::atlas_mesh;
   const fs::path normals = layout::stage_folder(plan.folder, "normals");
   const BakeSettings settings = settings_from(plan.settings_of("bake"), bake_options);
+  if (settings.per_vertex) {
+    StageRun run = vertex_run(plan, settings);
+    add_scene_and_settings(run, plan);
+    return run;
+  }
   StageRun run{"bake", {"kiln-bake", atlas.string(), "--detail", folder_word(normals)}};
   run.inputs = {plan.mesh, layout::record(plan.folder, "atlas"), atlas, layout::record(plan.folder, "normals")};
   run.outputs = {layout::record(plan.folder, "bake")};
@@ -84,12 +117,7 @@ StageRun run(const AssetPlan& plan) {
     run.inputs.push_back(layout::record(plan.folder, "lod"));
   }
   run.add({"-o", folder_word(prt)});
-  if (!plan.place.empty()) run.add({"--place", plan.place});
-  for (const PlanNeighbour& neighbour : plan.neighbours) {
-    run.add({"--neighbour", neighbour.text});
-    run.inputs.push_back(neighbour.mesh);
-  }
-  run.add_settings(options(), plan.settings_of("bake"));
+  add_scene_and_settings(run, plan);
   for (int i = 0; i < settings.bands * settings.bands; ++i) run.outputs.push_back(prt / plane_file(0, i));
   for (const char* name : {atlas_mesh_name, ranges_name}) run.outputs.push_back(prt / name);
   if (plan.passes("lod")) run.outputs.push_back(prt / level_file(1));

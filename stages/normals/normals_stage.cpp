@@ -53,6 +53,7 @@ StageRun run(const AssetPlan& plan) {
 
 const StageInfo& normals_stage() {
   static const StageInfo info = {.name = "normals",
+                                 .for_texels = true,
                                  .options = options,
                                  .rivals = {{"albedo", "albedo-texture"},
                                             {"opacity", "opacity-texture"},

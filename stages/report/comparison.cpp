@@ -106,7 +106,8 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
 
   // Draw the high mesh by rays, from the very cameras that kiln-render used.
   const Stopwatch reference_watch;
-  const TriangleMesh atlas = load_atlas(asset.prt() / layout::atlas_mesh);
+  const TriangleMesh atlas =
+      asset.is_per_vertex() ? load_prt_asset(asset.prt()).mesh : load_atlas(asset.prt() / layout::atlas_mesh);
   const ImportSettings how = import_settings_of(asset.record("simplify").value("settings", Json::object()));
   const ImportedMesh imported = import_mesh(high_file, how, atlas.frame);  // as in the stages before
   TriangleMesh high = imported.mesh;
@@ -118,11 +119,10 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   if (subsurface.wanted()) {
     view.scattering = subsurface_profiles(subsurface);  // has the albedo within
     view.mm_per_unit = subsurface.mm_per_unit;
-  } else {
+  } else if (asset.baked.albedo.known) {
     view.surface_albedo = load_albedo(imported, surface_material(asset)).albedo;
   }
-  cut_occluder(high, view.surface_albedo, load_opacity(imported, material_of(asset.record("normals"))).opacity,
-               high_file.string());
+  cut_occluder(high, view.surface_albedo, load_opacity(imported, map_material(asset)).opacity, high_file.string());
   view.bounces = static_cast<int>(bounces_taken(asset.record("bake")));
   view.scene = scene_of(asset, imported, view.bounces > 0 || error_bounces(asset, settings) > 0);
   view.bands = asset.baked.bands;

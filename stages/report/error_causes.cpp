@@ -178,6 +178,7 @@ class SplitWay {
     split_.samples = samples_.pixels();
     split_.directions = std::clamp(4 * static_cast<int>(input.bake_directions.size()), fewest_reference_directions,
                                    most_reference_directions);
+    if (!input.scattering.empty()) split_.directions = light_.lines;
     split_.bands = reference_bands(input.asset.bands);
   }
 

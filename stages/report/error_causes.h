@@ -33,7 +33,7 @@ struct ErrorSplit {
   BandSquares squares;      ///< of all causes but bands together, as those of one cause
   BandSquares seen;         ///< squares of the transfer seen, in the reference's bands, over that in the asset's bands
   std::size_t samples = 0;  ///< pixels
-  int directions = 0;       ///< of the reference
+  int directions = 0;       ///< of the reference; where light scatters lines about a point, of each of two sets
   int bands = 0;            ///< of the reference
 
   /// Returns the root of the sum of the causes' squares.

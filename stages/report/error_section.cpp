@@ -2,6 +2,7 @@
 #include "report/error_section.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <map>
 
@@ -64,19 +65,26 @@ std::string promise(const std::map<std::string, double>& predicted, double measu
 std::string error_section(const Comparison& comparison) {
   std::string html = "<section><h2>Where the error comes from</h2>\n";
   const ErrorSplit& split = comparison.error;
+  const bool by_paths = std::ranges::find(split.causes, "subsurface", &ErrorCause::name) != split.causes.end();
   html += fmt::format(
       "<p class=note>The expected relighting error of what a viewer sees against the high mesh, at {} points of the "
-      "surface, each seen from a direction of its own; {} directions by rays. Each cause is measured by changing one "
-      "thing; their squares add up to {}.</p>\n",
+      "surface, each seen from a direction of its own; {} {}. Each cause is measured by changing one thing; their "
+      "squares add up to {}.{}</p>\n",
       metric_value("samples", split.samples), metric_value("directions", split.directions),
-      metric_value("relighting_error", split.root_sum()));
+      by_paths ? "lines of paths beneath the surface from each" : "directions by rays",
+      metric_value("relighting_error", split.root_sum()),
+      by_paths ? fmt::format(" All together is known within {}; causes below {} may be the paths' noise.",
+                             metric_value("relighting_error", split.uncertainty),
+                             metric_value("relighting_error", std::sqrt(2 * split.total * split.uncertainty)))
+               : "");
   const Rows rows(split.total, comparison.predicted);
   html += promise(comparison.predicted, split.total) + "<table class='folding sortable'><thead>" + rows.head() +
           "</thead><tbody>\n" + rows.row("total", "<b>All together</b>", split.total, "");
   std::vector<ErrorCause> causes = split.causes;
   std::ranges::stable_sort(causes, std::greater<>(), &ErrorCause::error);
   for (const ErrorCause& cause : causes) {
-    if (cause.name == "albedo" && cause.error == 0) continue;  // one colour: there is nothing to be wrong
+    // One colour, or no atlas: there is nothing to be wrong.
+    if ((cause.name == "albedo" || cause.name == "seams") && cause.error == 0) continue;
     const CauseText* text = find_cause_text(cause.name);
     html += text == nullptr ? rows.row(cause.name, html_escaped(cause.name), cause.error, "")
                             : rows.row(cause.name, text->label, cause.error, text->remedy);

@@ -221,6 +221,7 @@ std::string map_figures(const Json& normals, const fs::path& folder, const fs::p
 }
 
 std::string textures_section(const AssetFolder& asset, const fs::path& scratch) {
+  if (asset.is_per_vertex()) return "";
   const Json& normals = asset.record("normals");
   const auto value = [](const Json& record, const char* key) {
     return record.contains(key) ? metric_value(key, record[key]) : std::string("–");
@@ -264,6 +265,7 @@ std::string plane_figure(const AssetFolder& asset, const PrtPlane& plane, int pi
 }
 
 std::string coefficients_section(const AssetFolder& asset, const fs::path& scratch) {
+  if (asset.is_per_vertex()) return "";
   std::string html =
       "<section><h2>Transfer coefficients</h2>\n<p class=note>Each plane as it is stored, black its lowest and white "
       "its highest value: band and order "

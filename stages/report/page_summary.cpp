@@ -98,7 +98,10 @@ std::string facts(const AssetFolder& asset, const Report& report, const Json& me
        compressed ? metric_value("gpu_bytes", report.comparison.compressed_gpu_bytes) + " compressed"
                   : "mesh, textures, light");
   const auto planes = static_cast<int>(asset.baked.planes.size());
-  fact("Lookups", grouped((planes + 3) / 4), compressed ? compress_value("lookups_out") + " compressed" : "a pixel");
+  fact("Lookups", asset.is_per_vertex() ? "none" : grouped((planes + 3) / 4),
+       compressed              ? compress_value("lookups_out") + " compressed"
+       : asset.is_per_vertex() ? "transfer is at vertices"
+                               : "of textures, a pixel");
   fact("Worst light", metric_value("relative_l2", metrics.at("report").at("relative_l2")), "off rays in its bands");
   fact("Made in", metric_value("seconds", seconds), metric_value("cpu_seconds", cpu) + " of CPU");
   return html + "</dl>\n";
@@ -125,11 +128,10 @@ std::string page_summary(const AssetFolder& asset, const Report& report, const J
   std::string html = "<header>\n<div class=first>\n<div class=cover>" + cover + "</div>\n<div class=words>\n";
   html += fmt::format("<p class=overline>Kiln asset report</p>\n<h1>{}</h1>\n", html_escaped(asset.name));
   html += marked_verdict(report.budgets, metrics) + "\n" + error_part(report.comparison.error);
-  html += fmt::format(
-      "<p class=note>{} triangles in place of {}, a texture atlas, a normal map and {} transfer planes of {} "
-      "bits.</p>\n",
-      record_value(simplify, "triangles"), record_value(simplify, "input_triangles"), asset.baked.planes.size(),
-      asset.baked.bits);
+  html += fmt::format("<p class=note>{} triangles in place of {}, {} {} transfer {} of {} bits.</p>\n",
+                      record_value(simplify, "triangles"), record_value(simplify, "input_triangles"),
+                      asset.is_per_vertex() ? "each vertex with" : "a texture atlas, a normal map and",
+                      asset.baked.planes.size(), asset.is_per_vertex() ? "values" : "planes", asset.baked.bits);
   html += "</div>\n</div>\n" + facts(asset, report, metrics);
   return html + fmt::format("<p class='note made'>Kiln {}, on {}, {}{}.</p>\n</header>\n",
                             html_escaped(metrics.at("version").get<std::string>()), html_escaped(host()), today(),

@@ -18,7 +18,11 @@ bool is_on_low(const AssetFolder& asset) {
 
 MaterialSettings surface_material(const AssetFolder& asset) {
   const MaterialSettings of_bake = material_of(asset.record("bake"));
-  return of_bake.albedo ? of_bake : material_of(asset.record("normals"));
+  return of_bake.albedo ? of_bake : map_material(asset);
+}
+
+MaterialSettings map_material(const AssetFolder& asset) {
+  return material_of(asset.record(asset.is_per_vertex() ? "bake" : "normals"));
 }
 
 bool high_casts_shadows(const AssetFolder& asset) {

@@ -34,6 +34,9 @@ MaterialSettings material_of(const Json& record);
 /// give one, else those of the normals stage.
 MaterialSettings surface_material(const AssetFolder& asset);
 
+/// Returns the settings by which the surface's maps were made: those of the normals stage, of vertices the bake's.
+MaterialSettings map_material(const AssetFolder& asset);
+
 /// Tells whether the bake's receivers are on the low mesh.
 bool is_on_low(const AssetFolder& asset);
 

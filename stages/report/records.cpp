@@ -32,6 +32,15 @@ StageRecord load_record(const fs::path& file, const std::string& stage) {
   return {stage, file, std::move(json)};
 }
 
+/// Tells whether the record of the bake, if there is one, says that vertices were baked: atlas and normals have no part
+/// in that.
+bool is_baked_per_vertex(const fs::path& folder) {
+  const fs::path record = layout::record(folder, "bake");
+  if (!fs::is_regular_file(record)) return false;
+  const Json json = Json::parse(read_text(record), nullptr, false);
+  return json.is_object() && json.value("settings", Json::object()).value("per-vertex", false);
+}
+
 }  // namespace
 
 const StageRecord& AssetFolder::stage_record(const std::string& stage) const {
@@ -48,7 +57,10 @@ AssetFolder load_asset_folder(const fs::path& folder, const fs::path& compressed
   // The path "out/bunny/" has an empty last part.
   const fs::path whole = fs::weakly_canonical(folder);
   asset.name = (whole.filename().empty() ? whole.parent_path() : whole).filename().string();
-  for (const char* stage : {"simplify", "atlas", "normals", "bake"})
+  const bool is_per_vertex = is_baked_per_vertex(folder);
+  const std::vector<std::string> of_texels = {"simplify", "atlas", "normals", "bake"},
+                                 of_vertices = {"simplify", "bake"};
+  for (const std::string& stage : is_per_vertex ? of_vertices : of_texels)
     asset.records.push_back(load_record(layout::record(folder, stage), stage));
   asset.compressed = compressed;
   if (!compressed.empty()) asset.records.push_back(load_record(layout::record_in(compressed, "compress"), "compress"));
@@ -57,7 +69,7 @@ AssetFolder load_asset_folder(const fs::path& folder, const fs::path& compressed
   asset.baked = load_prt_description(asset.prt());
   const fs::path lod = layout::record(folder, "lod");
   if (!asset.baked.levels.empty() && fs::exists(lod)) asset.records.push_back(load_record(lod, "lod"));
-  if (asset.baked.vertices > 0 || asset.baked.pca)
+  if (asset.baked.pca || asset.is_per_vertex() != is_per_vertex)
     throw BadInput(asset.baked.ranges_file.string(), "has no planes of coefficients in pictures",
                    "the ranges of kiln-bake for an atlas", "run kiln-bake again");
   return asset;

@@ -20,7 +20,7 @@ constexpr const char* metric_names =
 constexpr const char* error_names =
     "error.total error.uncertainty error.root_sum_of_causes error.samples error.reference_directions "
     "error.reference_bands "
-    "error.causes.geometry error.causes.texels error.causes.albedo error.causes.bands error.causes.bits "
+    "error.causes.geometry error.causes.albedo error.causes.bands error.causes.bits "
     "error.causes.seams";
 
 /// Tells whether a setting of the bake is left at one value.
@@ -39,7 +39,9 @@ StageRun run(const AssetPlan& plan) {
   StageRun run{"report", {"kiln-report", folder.string(), "-o", page.string(), "--high", command_word(plan.mesh)}};
   run.helpers = {"kiln-render"};
   run.inputs = {plan.mesh};
-  for (const char* stage : {"simplify", "atlas", "normals", "bake"})
+  const std::vector<const char*> of_texels = {"simplify", "atlas", "normals", "bake"},
+                                 of_vertices = {"simplify", "bake"};
+  for (const char* stage : bakes_vertices(plan.settings) ? of_vertices : of_texels)
     run.inputs.push_back(layout::record(folder, stage));
   run.outputs = {folder / report_record, page, folder / report_metrics, folder / report_cover};
   if (plan.passes("compress")) {
@@ -64,6 +66,9 @@ const StageInfo& report_stage() {
       .options = options,
       .metrics = {{metric_names},
                   {error_names},
+                  {"error.causes.texels", "error.causes.texels", "per-vertex: false of bake",
+                   [](const AssetSettings& all) { return !bakes_vertices(all); }},
+                  {"error.causes.vertices", "error.causes.vertices", "per-vertex: true of bake", bakes_vertices},
                   {"error.causes.directions", "error.causes.directions", "subsurface of bake",
                    [](const AssetSettings& all) { return bake_has(all, "subsurface", "none"); }},
                   {"error.causes.visibility", "error.causes.visibility", "bounces or subsurface of bake",

@@ -97,14 +97,15 @@ ErrorSplit split_error(const AssetFolder& asset, const TriangleMesh& low, const 
   const PrtAsset plain = load_prt_asset(asset.prt());
   std::optional<PrtAsset> compressed;
   if (!asset.compressed.empty()) compressed = load_prt_asset(asset.compressed);
-  DetailMaps detail = load_detail_maps(layout::stage_folder(asset.folder, "normals"), low);
+  std::optional<DetailMaps> detail;
+  if (!asset.is_per_vertex()) detail = load_detail_maps(layout::stage_folder(asset.folder, "normals"), low);
   const TriangleMesh seen_low = plain.opacity_file.empty() ? low : cut_by_map(low, asset.prt() / plain.opacity_file);
   SplitInput input = {.high = high.mesh,
                       .low = seen_low,
                       .scene = high.scene,
                       .asset = plain,
                       .compressed = compressed ? &*compressed : nullptr,
-                      .detail = &detail,
+                      .detail = detail ? &*detail : nullptr,
                       .bake_directions = directions_of(bake),
                       .bounces = error_bounces(asset, settings),
                       .prior = prior_of(settings, reference_bands(plain.bands))};
@@ -118,10 +119,12 @@ ErrorSplit split_error(const AssetFolder& asset, const TriangleMesh& low, const 
   std::optional<DetailMaps> low_detail;
   std::optional<LowReceivers> on_low;
   if (is_on_low(asset)) {
-    stand_on_low(low_detail.emplace(detail), low, has_no_maps(asset));
+    if (detail) stand_on_low(low_detail.emplace(*detail), low, has_no_maps(asset));
     if (!high_casts_shadows(asset))
-      low_scene = scene_of(asset, import_mesh(asset.folder / layout::atlas_mesh, {}, low.frame), input.bounces > 0);
-    on_low.emplace(LowReceivers{low_scene ? *low_scene : high.scene, &*low_detail});
+      low_scene =
+          scene_of(asset, import_mesh(asset.folder / (detail ? layout::atlas_mesh : layout::low_mesh), {}, low.frame),
+                   input.bounces > 0);
+    on_low.emplace(LowReceivers{low_scene ? *low_scene : high.scene, low_detail ? &*low_detail : nullptr});
     input.on_low = &*on_low;
   }
   if (const SubsurfaceSettings subsurface = settings_of(bake, add_subsurface_options); subsurface.wanted()) {
@@ -130,9 +133,9 @@ ErrorSplit split_error(const AssetFolder& asset, const TriangleMesh& low, const 
   } else if (input.albedo_within = bake.at("settings").value("bake-albedo", false);
              input.albedo_within || !plain.albedo.file.empty()) {
     input.albedo = &high.albedo;
-    if (const MaterialSettings material = material_of(bake); material.albedo) {
-      detail.albedo = {};
-      detail.constant_albedo = Eigen::Vector3f(material.albedo->data());
+    if (const MaterialSettings material = material_of(bake); material.albedo && detail) {
+      detail->albedo = {};
+      detail->constant_albedo = Eigen::Vector3f(material.albedo->data());
     }
     input.map_albedo = !has_no_maps(asset);
   }

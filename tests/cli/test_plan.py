@@ -21,6 +21,8 @@ defaults:
 assets:
   post: {mesh: post.obj}
   jade: {mesh: post.obj, bake: {subsurface: marble}}
+  sharp: {mesh: post.obj, bake: {bands: 9}}
+  dots: {mesh: post.obj, bake: {per-vertex: true}}
 """
 
 
@@ -37,13 +39,14 @@ with tempfile.TemporaryDirectory() as name:
     assert not (folder / "plan.yaml").exists()
     assert "keep" in run("plan", "post", "--error", "0.1", "--keep", "atlas.gutter", status=2).stderr
 
-    said = json.loads(run("plan", "--error", "0.08", "--json", "--keep", "bake.bits").stdout)
-    post, jade = said["assets"]
+    said = json.loads(run("plan", "post", "jade", "dots", "--error", "0.08", "--json", "--keep", "bake.bits").stdout)
+    post, jade, dots = said["assets"]
     assert post["name"] == "post" and post["kept"] and post["predicted"]["total"] < 0.08, post
     assert "bake.bits" not in post["settings"]
     # A hemisphere has two bands, and the surface keeps no more of it than three.
     assert int(post["settings"]["bake.bands"]) <= 3, post
     assert "subsurface" in jade["left_alone"], jade
+    assert "per-vertex" in dots["left_alone"], dots
     plan = yaml.safe_load((folder / "plan.yaml").read_text())
     assert plan["pipeline"] == "pipeline.yaml" and list(plan["assets"]) == ["post"]
     assert str(plan["assets"]["post"]["bake"]["bands"]) == post["settings"]["bake.bands"]
@@ -62,6 +65,12 @@ with tempfile.TemporaryDirectory() as name:
     (folder / "plan.yaml").write_text(text.replace(size, "size: 16"))
     missed = run("build", "--plan", "plan.yaml", "post", "--quiet", status=4)
     assert "report.error.total" in missed.stderr, missed.stderr
+
+    # More bands than pilots have, kept, are those of its pilots; directions follow, so that they keep them apart.
+    kept = json.loads(run("plan", "sharp", "--error", "0.2", "--json", "--keep", "bake.bands", "-o", "sharp.yaml").stdout)
+    assert kept["assets"][0]["kept"] and "bake.bands" not in kept["assets"][0]["settings"], kept
+    bake = json.loads((folder / "out" / ".pilots" / "coarse" / "sharp" / "prt" / "bake.json").read_text())
+    assert bake["coefficients"] == 81 and bake["directions"] == 324, bake
 
     # The pilots are kept: a second plan builds nothing.
     record = folder / "out" / ".pilots" / "fine" / "post" / "prt" / "bake.json"

@@ -234,13 +234,34 @@ TEST(Pipeline, SelectsByNameOrDefault) {
   EXPECT_THROW(select_assets(pipeline, {"third"}), WrongUsage);
 }
 
+TEST(Pipeline, AssetsOfVerticesPassNoStageForTexels) {
+  const Pipeline pipeline = pipeline_of(
+      "budgets: {atlas.charts: {max: 9}}\nassets:\n  dots: {mesh: a.obj, bake: {per-vertex: true}}\n  texels: {mesh: "
+      "a.obj, bake: {per-vertex: false}}\n");
+  EXPECT_TRUE(pipeline.assets[0].budgets.empty()) << "a budget for all is for those that pass the stage";
+  EXPECT_EQ(pipeline.assets[1].budgets.size(), 1u);
+  std::vector<std::string> names;
+  for (const MakeRule& rule : make_rules(pipeline))
+    if (rule.asset == "dots") {
+      names.push_back(rule.run.name);
+      for (const std::filesystem::path& input : rule.run.inputs)
+        EXPECT_EQ(input.string().find("atlas"), std::string::npos) << input;
+    }
+  EXPECT_EQ(names, (std::vector<std::string>{"simplify", "bake", "report"}));
+}
+
 TEST(Pipeline, WhatCannotWorkIsRefusedAtOnce) {
   const auto refusal_of = [](const std::string& settings) {
     return refusal("assets:\n  a:\n    mesh: x.obj\n    " + settings + "\n");
   };
   const std::pair<const char*, const char*> cases[] = {
       {"atlas: {uv: keep}", "'keep' for uv of atlas"},
-      {"bake: {per-vertex: true}", "'true' for per-vertex of bake"},
+      {"bake: {per-vertex: true}\n    lod: [0.5]", "'true' for per-vertex of bake"},
+      {"bake: {per-vertex: true, adaptive: 0.01}", "for adaptive of bake"},
+      {"bake: {per-vertex: true, ship: 'maps=ao'}", "for ship of bake"},
+      {"budgets: {atlas.charts: {max: 9}}\n    bake: {per-vertex: true}", "a stage that the asset passes"},
+      {"budgets: {report.error.causes.texels: {max: 0.1}}\n    bake: {per-vertex: true}",
+       "set per-vertex: false of bake"},
       {"bake: {size: 64}", "'64' for size of bake"},
       {"bake: {bits: 12}", "8 or 16"},
       {"bake: {max-error: 2}", "above 0 and below 1"},

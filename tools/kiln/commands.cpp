@@ -99,7 +99,7 @@ void list(const Pipeline& pipeline, bool as_json) {
     for (const Asset& asset : pipeline.assets) {
       Json stages = Json::array();
       for (const std::string& stage : stage_names())
-        if (asset.settings.contains(stage)) stages.push_back(stage);
+        if (stage_info(stage).is_passed(asset.settings)) stages.push_back(stage);
       assets.push_back({{"name", asset.name},
                         {"default", !asset.on_request},
                         {"mesh", text_of_path(mesh_text(asset))},

@@ -24,7 +24,7 @@ void add(std::vector<std::string>& metrics, const std::string& stage, std::strin
 std::vector<std::string> metrics_of(const AssetSettings& settings) {
   std::vector<std::string> metrics;
   for (const StageInfo* stage : all_stages()) {
-    if (!settings.contains(stage->name)) continue;
+    if (!settings.contains(stage->name) || !stage->is_passed(settings)) continue;
     // The report's own CPU time and memory are not yet known when it judges.
     if (stage->name != "report") add(metrics, stage->name, of_every_stage);
     for (const MetricGroup& group : stage->metrics)

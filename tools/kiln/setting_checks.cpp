@@ -30,6 +30,7 @@ class Checks {
     check_bake();
     check_subsurface();
     check_low_receivers();
+    if (bakes_vertices(asset_.settings)) check_vertices();
     if (asset_.settings.contains("compress")) check_compress();
     check_report();
   }
@@ -85,8 +86,6 @@ class Checks {
             "a low mesh of the asset's own beside it, whose cage it is", "add 'low: FILE', or leave the line out");
     require(text("normals", "part-cage").empty() || text("normals", "match") == "names", "normals", "part-cage",
             "'match: names' beside it", "add that, or leave the line out");
-    require(value("bake", "per-vertex") == false, "bake", "per-vertex",
-            "none in a pipeline, whose other stages are for texels", "leave it out, or run kiln-bake by hand");
     require(value("bake", "size") == 0, "bake", "size",
             "none in a pipeline, where the maps of the normals stage say it", "set the size of atlas");
   }
@@ -134,6 +133,18 @@ class Checks {
                    "set 'material: {albedo: ...}', or receiver: high");
   }
 
+  /// Refuses what is for texels where vertices are baked.
+  void check_vertices() const {
+    for (const char* stage : {"lod", "compress"})
+      require(!asset_.settings.contains(stage), "bake", "per-vertex",
+              fmt::format("none beside {}, which is for the texels of an atlas", stage), "remove one of them");
+    require(value("bake", "adaptive") == 0, "bake", "adaptive",
+            "0 beside per-vertex, since it goes by squares of texels", "remove one of them");
+    const ShippedParts ship = settings_from(asset_.settings.at("bake"), bake_options).ship;
+    require(!ship.all_maps && ship.maps.empty(), "bake", "ship",
+            "no maps beside per-vertex, since they are looked up with the uvs of an atlas", "remove one of them");
+  }
+
   void check_compress() const {
     const auto settings = settings_from(asset_.settings.at("compress"), compress_options);
     const int bands = value("bake", "bands").get<int>(), vector = bands * bands;
@@ -173,6 +184,8 @@ void check_budgets(const Asset& asset, const std::map<std::string, Limits>& budg
     const std::string found = fmt::format("a budget for '{}', which no stage of asset '{}' writes", metric, asset.name);
     if (const std::string setting = setting_of_metric(metric); !setting.empty())
       throw BadInput(limits.where, found, "a metric of the stages as they are set", "set " + setting);
+    if (names.empty())
+      throw BadInput(limits.where, found, "a metric of a stage that the asset passes", "change or remove the budget");
     throw BadInput(limits.where, found,
                    nearest.empty() ? fmt::format("{} and one of {}", stage, fmt::join(names, ", "))
                                    : fmt::format("a metric, such as '{}'", nearest),

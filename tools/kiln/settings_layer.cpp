@@ -222,8 +222,9 @@ MergedSettings merge_layers(const std::vector<SettingsLayer>& layers, const std:
   }
   for (const SettingsLayer& layer : layers)
     for (const auto& [metric, limits] : layer.budgets) {
+      const StageInfo* const info = find_stage(stage_of_metric(metric));
+      if (layer.is_shared && info != nullptr && !info->is_passed(merged.settings)) continue;
       if (!merged.settings.contains(stage_of_metric(metric))) {
-        if (layer.is_shared) continue;
         const std::string stage = stage_of_metric(metric);
         throw BadInput(limits.where, fmt::format("a budget for '{}', and no {} of asset '{}'", metric, stage, asset),
                        fmt::format("'{}: true' or its settings beside it", stage), "change the line");

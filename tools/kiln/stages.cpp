@@ -42,7 +42,7 @@ Json effective_setting(const AssetSettings& settings, const std::string& stage, 
 std::vector<StageRun> stage_runs(const AssetPlan& plan) {
   std::vector<StageRun> runs;
   for (const StageInfo* stage : all_stages())
-    if (!stage->on_request || plan.passes(stage->name)) runs.push_back(stage->run(plan));
+    if (stage->is_passed(plan.settings)) runs.push_back(stage->run(plan));
   return runs;
 }
 

@@ -5,6 +5,13 @@
 
 namespace kiln {
 
+bool bakes_vertices(const AssetSettings& settings) {
+  const auto bake = settings.find("bake");
+  if (bake == settings.end()) return false;
+  const auto found = bake->second.find("per-vertex");
+  return found != bake->second.end() && found->second == "true";
+}
+
 void StageOptions::add_seed(OptionSet& options, int& seed) {
   options.integer("seed", seed, 0, 2147483647, "Seed of everything random");
 }
@@ -30,6 +37,10 @@ const StageSettings& AssetPlan::settings_of(const std::string& stage) const {
   static const StageSettings none;
   const auto found = settings.find(stage);
   return found == settings.end() ? none : found->second;
+}
+
+bool StageInfo::is_passed(const AssetSettings& settings) const {
+  return (!on_request || settings.contains(name)) && !(for_texels && bakes_vertices(settings));
 }
 
 std::vector<std::string> StageInfo::rivals_of(const std::string& setting) const {

@@ -18,6 +18,9 @@ using StageSettings = std::map<std::string, std::string>;
 /// Settings of an asset's stages, by stage name. A stage on request has an entry only where the asset passes it.
 using AssetSettings = std::map<std::string, StageSettings>;
 
+/// Tells whether an asset's vertices are baked, in place of texels.
+bool bakes_vertices(const AssetSettings& settings);
+
 /// The settings of a stage as its program knows them, with their defaults, and what pipeline.yaml may say besides.
 class StageOptions {
  public:
@@ -108,11 +111,15 @@ struct MetricGroup {
 struct StageInfo {
   std::string name;               ///< name in pipeline.yaml; the program's is kiln- and this
   bool on_request = false;        ///< an asset passes it only where pipeline.yaml has a block for it
+  bool for_texels = false;        ///< an asset whose vertices are baked does not pass it
   std::string list_setting = {};  ///< setting that a list in place of the block stands for; empty: it may be none
   StageOptions (*options)() = nullptr;
   std::vector<std::pair<std::string, std::string>> rivals = {};  ///< settings that exclude each other
   std::vector<MetricGroup> metrics = {};                         ///< besides those of every stage
   StageRun (*run)(const AssetPlan&) = nullptr;                   ///< its command, inputs and outputs
+
+  /// Tells whether an asset of these settings passes it.
+  bool is_passed(const AssetSettings& settings) const;
 
   /// The settings that may not stand beside `setting`.
   std::vector<std::string> rivals_of(const std::string& setting) const;

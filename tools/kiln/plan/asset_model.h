@@ -60,7 +60,8 @@ struct Prediction {
 /// Predicts errors and costs of an asset's settings from its pilot. Each cause of the error follows one setting by a
 /// power law through both builds: geometry and receivers on the
 /// low mesh the triangles, texels, seams and albedo the covered texels, directions their number.
-/// The square of rounding falls by four for each bit. Costs are linear in the work of a stage.
+/// The square of rounding falls by four for each bit. Costs are linear in the work of a
+/// stage, those of the bake a power of it.
 class AssetModel {
  public:
   explicit AssetModel(Pilot pilot);

@@ -20,14 +20,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int pilot_bands = 8;
+constexpr int pilot_bands = 8;  // more where a kept number of bands asks for them
 const Overrides coarse_settings = {{"simplify.faces", "500"}, {"atlas.size", "64"}, {"bake.directions", "256"}};
 const Overrides fine_settings = {{"simplify.faces", "2000"}, {"atlas.size", "128"}, {"bake.directions", "1024"}};
 
-/// Settings of all pilots: the cheapest simplification that is near to its best, no verification, few samples of the
-/// error, pictures as small as they can be.
+/// Settings of all pilots: the cheapest simplification that is near to its best, few turns of charts, no verification,
+/// few samples of the error, pictures as small as they can be.
 const Overrides common_settings = {{"simplify.quality", "standard"},
                                    {"simplify.aware", "none"},
+                                   {"atlas.rotations", "4"},
                                    {"bake.bands", std::to_string(pilot_bands)},
                                    {"bake.bits", "8"},
                                    {"bake.adaptive", "0"},
@@ -37,7 +38,23 @@ const Overrides common_settings = {{"simplify.quality", "standard"},
                                    {"report.cameras", "1"},
                                    {"report.directions", "16"},
                                    {"report.lights", "ambient:1"},
-                                   {"report.error-samples", "2048"}};
+                                   {"report.error-samples", "1024"}};
+
+/// Returns settings of an asset's pilots whose bands stay as the pipeline has them, where those are more than those of
+/// other pilots: the bands, and directions that keep them apart.
+Overrides settings_of_many_bands(const Asset& asset, const Overrides& of_build) {
+  const Json given = effective_setting(asset.settings, "bake", "bands");
+  const int bands = given.is_number_integer() ? given.get<int>() : 0;
+  if (bands <= pilot_bands) return {};
+  Overrides settings = {{"bake.bands", std::to_string(bands)}};
+  for (const auto& [name, value] : of_build) {
+    if (name != "bake.directions") continue;
+    // As many for each coefficient as the pilot of fewer bands has.
+    const int directions = std::stoi(value) * bands * bands / (pilot_bands * pilot_bands);
+    settings.emplace_back(name, std::to_string(directions));
+  }
+  return settings;
+}
 
 Json record_of(const fs::path& asset, const std::string& stage) {
   return Json::parse(read_text(layout::record(asset, stage)));
@@ -107,6 +124,10 @@ std::vector<PilotBuild> PilotBuilds::build_at(const std::string& name, const std
     std::erase_if(settings, [&](const auto& setting) {
       return is_kept(setting) && (setting.first == "simplify.quality" || setting.first == "simplify.aware");
     });
+    if (std::ranges::find(kept, "bake.bands") != kept.end()) {
+      const Overrides many = settings_of_many_bands(asset, overrides);
+      settings.insert(settings.end(), many.begin(), many.end());
+    }
     override_settings(asset, settings, "a pilot's");
   }
   std::vector<std::string> names;

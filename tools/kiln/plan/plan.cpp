@@ -43,6 +43,7 @@ double asked_of(const Asset& asset, const PlanSettings& settings) {
 
 /// Returns why nothing can be planned for an asset; empty if something can.
 std::string reason_to_leave(const Asset& asset) {
+  if (bakes_vertices(asset.settings)) return "per-vertex: plans choose the settings of textures";
   if (effective_setting(asset.settings, "bake", "subsurface") != "none")
     return "subsurface: light scatters beneath its surface, and how much of its error is from directions is not known";
   return {};
@@ -102,7 +103,7 @@ class AssetPlanner {
     if (keeps("simplify.faces") && !model_.pilot().has_own_low)
       grid.triangles = {kept_number(asset_, "simplify", "faces")};
     if (keeps("atlas.size")) grid.sizes = {kept_number(asset_, "atlas", "size")};
-    if (keeps("bake.bands")) grid.bands = {std::min(model_.most_bands(), kept_number(asset_, "bake", "bands"))};
+    if (keeps("bake.bands")) grid.bands = {kept_number(asset_, "bake", "bands")};
     if (keeps("bake.directions")) grid.directions = {kept_number(asset_, "bake", "directions")};
     if (keeps("bake.bits")) grid.bits = {kept_number(asset_, "bake", "bits")};
     if (keeps("bake.bounces") && model_.pilot().has_bounces) grid.bounces = {true};
