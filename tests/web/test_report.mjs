@@ -10,10 +10,12 @@ import { assets, browse, until } from './harness.mjs';
 
 const address = pathToFileURL(join(assets, 'out/post/report.html')).href;
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-let browser;
+let browser, shared;
 
 before(async () => {
   browser = await browse('swiftshader');
+  shared = await open();
+  await until(shared, "document.querySelector('.cover.is-live') !== null");
 });
 after(() => browser?.close());
 
@@ -39,36 +41,8 @@ async function faults(page) {
   return violations.filter(({ impact }) => ['serious', 'critical'].includes(impact)).map(({ id, nodes }) => `${id}: ${nodes.slice(0, 3).map(({ html, failureSummary }) => `${html.slice(0, 120)} ${failureSummary}`).join('; ')}`);
 }
 
-test('the first screen says what matters, and the asset is live', async () => {
-  const page = await open();
-  await until(page, "document.querySelector('.cover.is-live') !== null");
-  const first = await page.evaluate("(() => { const header = document.querySelector('header'); return { text: header.innerText, bottom: header.getBoundingClientRect().bottom }; })()");
-  for (const wanted of [/post/, /budget/i, /%\s+is what a viewer may expect/, /On disk/i, /On the GPU/i, /Lookups/i, /Made in/i, /Kiln 0\.1\.0, on \S+, \d{4}-\d\d-\d\d/, /would help most/]) assert.match(first.text, wanted);
-  assert.ok(first.bottom <= 800, `the first screen ends at ${first.bottom} of 800 pixels`);
-  const before = await shot(page);
-  await page.focus('.cover canvas');
-  for (let k = 0; k < 12; ++k) await page.keyboard.press('Shift+ArrowRight');
-  await page.waitForTimeout(300);
-  const lit = await shot(page);
-  assert.notDeepEqual(lit, before, 'keys do not move the light');
-  for (let k = 0; k < 9; ++k) await page.keyboard.press('ArrowLeft');
-  await page.waitForTimeout(300);
-  assert.notDeepEqual(await shot(page), lit, 'keys do not turn the asset');
-  const box = await page.locator('.cover canvas').boundingBox();
-  const turned = await shot(page);
-  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
-  await page.mouse.down();
-  await page.mouse.move(box.x + box.width / 4, box.y + box.height / 2, { steps: 4 });
-  await page.mouse.up();
-  await page.waitForTimeout(300);
-  assert.notDeepEqual(await shot(page), turned, 'a pointer does not turn the asset');
-  assert.deepEqual([page.said, page.asked], [[], []]);
-  await page.context().close();
-});
-
 test('the live picture is that of kiln-render', async () => {
-  const page = await open();
-  await until(page, "document.querySelector('.cover.is-live') !== null");
+  const page = shared;
   await page.waitForTimeout(300);
   // Both at 64 pixels a side, those of the surface: test_pictures compares pixel by pixel.
   const { still, live } = await page.evaluate(`(async () => {
@@ -98,11 +72,35 @@ test('the live picture is that of kiln-render', async () => {
   // The still picture is cut to its asset with another margin, so places differ by a pixel of these.
   assert.ok(Math.abs(live.count / still.count - 1) < 0.1, JSON.stringify({ still, live }));
   assert.ok(Math.abs(live.mean - still.mean) < 3 && Math.abs(live.deviation - still.deviation) < 4, JSON.stringify({ still, live }));
-  await page.context().close();
+});
+
+test('the first screen says what matters, and the asset is live', async () => {
+  const page = shared;
+  const first = await page.evaluate("(() => { const header = document.querySelector('header'); return { text: header.innerText, bottom: header.getBoundingClientRect().bottom }; })()");
+  for (const wanted of [/post/, /budget/i, /%\s+is what a viewer may expect/, /On disk/i, /On the GPU/i, /Lookups/i, /Made in/i, /Kiln 0\.1\.0, on \S+, \d{4}-\d\d-\d\d/, /would help most/]) assert.match(first.text, wanted);
+  assert.ok(first.bottom <= 800, `the first screen ends at ${first.bottom} of 800 pixels`);
+  const before = await shot(page);
+  await page.focus('.cover canvas');
+  for (let k = 0; k < 12; ++k) await page.keyboard.press('Shift+ArrowRight');
+  await page.waitForTimeout(300);
+  const lit = await shot(page);
+  assert.notDeepEqual(lit, before, 'keys do not move the light');
+  for (let k = 0; k < 9; ++k) await page.keyboard.press('ArrowLeft');
+  await page.waitForTimeout(300);
+  assert.notDeepEqual(await shot(page), lit, 'keys do not turn the asset');
+  const box = await page.locator('.cover canvas').boundingBox();
+  const turned = await shot(page);
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 4, box.y + box.height / 2, { steps: 4 });
+  await page.mouse.up();
+  await page.waitForTimeout(300);
+  assert.notDeepEqual(await shot(page), turned, 'a pointer does not turn the asset');
+  assert.deepEqual([page.said, page.asked], [[], []]);
 });
 
 test('tables sort by their columns', async () => {
-  const page = await open();
+  const page = shared;
   const column = (head) => page.evaluate(`(() => { const table = [...document.querySelectorAll('table.sortable')].find((each) => each.tHead.innerText.includes('Error')); const at = [...table.tHead.rows[0].cells].findIndex((each) => each.innerText.trim() === '${head}'); return [...table.tBodies[0].rows].map((row) => parseFloat(row.cells[at].innerText)); })()`);
   const button = page.locator('table.sortable .sort', { hasText: /^Error$/ });
   await button.click();
@@ -111,11 +109,10 @@ test('tables sort by their columns', async () => {
   await button.click();
   assert.deepEqual(await column('Error'), [...up].reverse());
   assert.equal(await page.locator('th[aria-sort=descending]').count(), 1);
-  await page.context().close();
 });
 
 test('pictures open, swap in place and close by keys', async () => {
-  const page = await open();
+  const page = shared;
   const look = page.locator('.quartet .look').first();
   await look.focus();
   await page.keyboard.press('Enter');
@@ -132,7 +129,6 @@ test('pictures open, swap in place and close by keys', async () => {
   await page.keyboard.press('Escape');
   assert.equal(await page.locator('.lightbox[open]').count(), 0);
   assert.ok(await look.evaluate((each) => each === document.activeElement), 'the focus does not come back');
-  await page.context().close();
 });
 
 test('a telephone shows all of it', async () => {
@@ -156,20 +152,16 @@ test('without scripts the page is whole', async () => {
 });
 
 test('on paper it takes three to five pages', async () => {
-  const page = await open();
-  await until(page, "document.querySelector('.cover.is-live') !== null");
+  const page = shared;
   const pdf = (await page.pdf({ preferCSSPageSize: true })).toString('latin1');
   const pages = pdf.match(/\/Type\s*\/Page\b/g).length;
   assert.ok(pages >= 2 && pages <= 5, `${pages} pages`);
-  await page.context().close();
 });
 
 test('axe-core finds nothing serious, in light and in dark', async () => {
   for (const colorScheme of ['light', 'dark']) {
-    const page = await open({ colorScheme });
-    await until(page, "document.querySelector('.cover.is-live') !== null");
-    assert.deepEqual(await faults(page), [], colorScheme);
-    await page.context().close();
+    await shared.emulateMedia({ colorScheme });
+    assert.deepEqual(await faults(shared), [], colorScheme);
   }
 });
 
