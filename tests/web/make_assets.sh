@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # make_assets.sh PROGRAMS SOURCES OUT: bakes a small asset of every form, once for all tests in a browser.
 set -euo pipefail
-programs=$1 sources=$2 out=$3
+programs=$(realpath "$1") sources=$(realpath "$2") out=$(realpath --canonicalize-missing "$3")
 stamp=$out/made
 made_by=$(cat "$programs"/kiln-{normals,bake,compress,report} "$0" | sha1sum)
 [[ -f $stamp && $(cat "$stamp") == "$made_by" ]] && exit 0
@@ -25,6 +25,9 @@ run kiln-normals coloured.obj "$atlas" -o detail_coloured --size 32
 bake "$sources/examples/post.obj" detail plain --bands 4
 bake "$sources/examples/post.obj" detail deep --bands 3 --bits 16
 bake "$sources/examples/post.obj" detail_tangent tangent --bands 3
+# A high mesh of flat sides, so that a map in tangent space has to turn most normals of the low mesh.
+run kiln-normals "$sources/examples/post.obj" "$atlas" -o detail_hard --size 128 --space tangent --normals angle:30
+bake "$sources/examples/post.obj" detail_hard hard --bands 2
 bake coloured.obj detail_coloured coloured --bands 3 --bounces 1
 bake coloured.obj detail_coloured coloured_deep --bands 3 --bounces 1 --bits 16
 run kiln-bake "$sources/examples/post.obj" --per-vertex -o vertices --bands 4 --directions 128

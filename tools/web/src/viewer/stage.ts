@@ -118,7 +118,7 @@ export class Stage {
       for (let i = 0; i < position.count; ++i) points.push(new Vector3().fromBufferAttribute(position, i).applyMatrix4(asset.mesh.matrixWorld));
     }
     const box = new Box3().setFromPoints(points);
-    this.controls.target.copy(fitCamera(this.camera, points, { margin: 1.18 }));
+    this.controls.target.copy(fitCamera(this.camera, points, { margin: this.canvas.clientWidth < 600 ? 1.3 : 1.18 }));
     const size = box.getSize(new Vector3()).length();
     this.controls.minDistance = 0.05 * size;
     this.controls.maxDistance = 20 * size;
