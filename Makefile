@@ -28,12 +28,13 @@ pages: configure
 	cmake --build $(BUILD) -j $(JOBS) --target programs pages
 
 configure:
-	@tools/setup
+	@tools/setup $(SETUP)
 	@test -f $(BUILD)/build.ninja || cmake --preset $(PRESET)
 
 demo: programs
 	$(BUILD)/bin/kiln build pipeline.yaml
 
+test: SETUP := tests
 test: build
 	ctest --preset $(PRESET) -j $(JOBS)
 

@@ -5,7 +5,7 @@ set -euo pipefail
 sources=$1 folder=$2 programs=$3 name=$4
 for program in node npm chromium; do
   command -v "$program" > /dev/null ||
-    { echo "FAULT: $program is not installed, which the tests in a browser need; run tools/setup" >&2; exit 1; }
+    { echo "FAULT: $program is not installed, which the tests in a browser need; run tools/setup tests" >&2; exit 1; }
 done
 
 if [[ $name == packages ]]; then
