@@ -35,7 +35,7 @@ struct LevelLimits {
 /// Collapses edges of an atlas mesh, cheapest first, and returns what is left at each of the goals, each coarser than
 /// the one before. A collapse moves one vertex into a neighbour, so all vertices that are left keep position, uv and
 /// normal, unless levels are fitted. Seams of uvs, hard edges and borders collapse along themselves, both sides
-/// together, and their junctions stay. Costs are the growth of the squared texture deviation (texture_deviation.h).
+/// together, and their junctions stay. Costs are the growth of the cubed texture deviation (texture_deviation.h).
 /// Goals that cannot be reached end where nothing is left to collapse. Same input, same levels, whatever the number of
 /// threads.
 std::vector<Level> make_level_chain(const TriangleMesh& atlas, const std::vector<LevelGoal>& goals,
