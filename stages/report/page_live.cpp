@@ -8,7 +8,6 @@
 #include <set>
 #include <vector>
 
-#include "asset/format.h"
 #include "base/file_names.h"
 #include "base/files.h"
 #include "base/json.h"

@@ -132,8 +132,8 @@ OptionSet simplify_options(SimplifySettings& settings) {
         checked.keeps_uvs();
       });
   options.number("uv-overhang", settings.uv_overhang, 0, 1,
-                 "With --keep uv: what charts may hang over their outlines, a fraction of the unit square, where the "
-                 "texture has its gutter");
+                 "With --keep uv: how far charts may hang over their outlines, as a fraction of the unit square's "
+                 "side: the texture has its gutter there");
   add_import_options(options, settings.import);
   options.toggle("colors", settings.colors, "Keep the input's colours, as colours of vertices");
   add_low_options(options, settings);
