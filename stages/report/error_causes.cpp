@@ -45,12 +45,11 @@ PointList points_of(const DetailMaps& detail, const std::vector<std::uint32_t>& 
   return points;
 }
 
-/// Returns the points of the high mesh that slots stand for.
-PointList points_on_high(const SplitInput& input, const std::vector<std::uint32_t>& slots) {
-  if (input.detail != nullptr) return points_of(*input.detail, slots);
+/// Returns the points of the high mesh that vertices of the low one stand for.
+PointList points_of_vertices(const SplitInput& input, const std::vector<std::uint32_t>& vertices) {
   PointList points;
   const RayScene high(input.high);
-  for (const std::uint32_t vertex : slots) {
+  for (const std::uint32_t vertex : vertices) {
     // Normals of the file are those of the receivers.
     const Eigen::Vector3f &position = input.low.positions[vertex], &normal = input.low.normals[vertex];
     const SurfacePoint found = high.closest_facing_point(position, normal, std::numeric_limits<float>::infinity());
@@ -58,6 +57,11 @@ PointList points_on_high(const SplitInput& input, const std::vector<std::uint32_
     points.normals.push_back(normal);
   }
   return points;
+}
+
+/// Returns the points of the high mesh that slots stand for.
+PointList points_on_high(const SplitInput& input, const std::vector<std::uint32_t>& slots) {
+  return input.detail != nullptr ? points_of(*input.detail, slots) : points_of_vertices(input, slots);
 }
 
 /// Returns the points of the bake's receivers, where those are on the low mesh.
@@ -162,7 +166,7 @@ class SplitWay {
       : input_(input),
         progress_(progress),
         samples_(make_error_samples(input.high, input.low, input.detail, sampling_of(input))),
-        slots_(samples_.slots()),
+        slots_(slots_of(samples_.lookups)),
         high_points_(points_on_high(input, slots_)),
         low_points_(points_on_low(input, slots_)),
         paint_(input, samples_, slots_, high_points_),
@@ -218,6 +222,13 @@ class SplitWay {
     split_.total = error(whole.total() / norm + tail);
     split_.squares = relative(whole.by_band);
     split_.uncertainty = uncertainty_of_root(whole, cut, tail);
+    const auto cause_of = [&](const CauseStep& step, const BandSquares& of_step) {
+      return ErrorCause{step.cause, error(std::accumulate(of_step.begin(), of_step.end(), 0.0)), of_step};
+    };
+    if (at_vertices_ != nullptr) {
+      const CauseStep step{"vertices", *sampled_, *at_vertices_};
+      split_.at_vertices = cause_of(step, relative(sums.of_step(step, bands).by_band));
+    }
     for (const CauseStep& step : steps_) {
       if (step.cause == "compression" && input_.compressed == nullptr) continue;
       BandSquares squares = relative(sums.of_step(step, bands).by_band);
@@ -225,7 +236,7 @@ class SplitWay {
         const auto part = std::ranges::find(split_.causes, step.without, &ErrorCause::name);
         std::ranges::transform(squares, part->squares, squares.begin(), std::minus<>());
       }
-      split_.causes.push_back({step.cause, error(std::accumulate(squares.begin(), squares.end(), 0.0)), squares});
+      split_.causes.push_back(cause_of(step, squares));
     }
     if (std::ranges::find(split_.causes, "albedo", &ErrorCause::name) == split_.causes.end())
       split_.causes.push_back({"albedo", 0, BandSquares(static_cast<std::size_t>(bands))});
@@ -240,7 +251,7 @@ class SplitWay {
   Receivers at_stood() const { return {samples_.stood_positions, samples_.stood_normals}; }
 
   TransferRows looked_up_in(const PrtAsset& asset) const {
-    return looked_up(samples_, slots_, stored_rows(asset, slots_));
+    return looked_up(samples_.lookups, slots_, stored_rows(asset, slots_));
   }
 
   std::string lookups_cause() const { return input_.detail != nullptr ? "texels" : "vertices"; }
@@ -272,10 +283,17 @@ class SplitWay {
     };
     const Station& sampled = add(Station(stood(by_bake(transport_, at_stood()))));
     steps_.push_back({"directions", direct_stood, sampled});
+    if (input_.try_vertices && input_.detail != nullptr && input_.albedo == nullptr) {
+      const std::vector<std::uint32_t> vertices = slots_of(samples_.vertex_lookups);
+      const PointList points = points_of_vertices(input_, vertices);
+      sampled_ = &sampled;
+      at_vertices_ =
+          &add(Station(looked_up(samples_.vertex_lookups, vertices, by_bake(transport_, points.receivers()))));
+    }
     TransferRows at_slots = by_bake(transport_, high_points_.receivers());
     progress_(0.8);
     const auto of_slots = [&](const TransferRows& vectors) {
-      return paint_.looked_up(looked_up(samples_, slots_, vectors));
+      return paint_.looked_up(looked_up(samples_.lookups, slots_, vectors));
     };
     const auto bounced_at = [&](const SplitTransport& transport, const Receivers& receivers) {
       return transport.bounced(receivers, bands);
@@ -338,7 +356,7 @@ class SplitWay {
     steps_.push_back({"geometry", *seen_, stood});
     progress_(0.4);
     const auto inside = StepPoints::inside_charts;
-    const auto at_points = [&](const TransferRows& vectors) { return looked_up(samples_, vectors); };
+    const auto at_points = [&](const TransferRows& vectors) { return looked_up(samples_.lookups, vectors); };
     Station of_slots = transport_.beneath(of_each_point(high_points_).receivers(), bands, of_points);
     const Station* filtered = &add(of_slots.through(at_points));
     steps_.push_back({lookups_cause(), stood, *filtered, inside});
@@ -370,6 +388,7 @@ class SplitWay {
   std::deque<Station> stations_;                 ///< whose addresses stay
   std::vector<CauseStep> steps_;
   const Station *seen_in_all_bands_ = nullptr, *seen_ = nullptr, *stored_ = nullptr;
+  const Station *sampled_ = nullptr, *at_vertices_ = nullptr;  ///< null: lookups between vertices are not tried
   ErrorSplit split_;
 };
 
@@ -393,14 +412,17 @@ Json to_json(const ErrorSplit& split) {
     causes[cause.name] = cause.error;
     if (!cause.squares.empty()) squares[cause.name] = cause.squares;
   }
-  return {{"total", split.total},
-          {"uncertainty", split.uncertainty},
-          {"causes", causes},
-          {"root_sum_of_causes", split.root_sum()},
-          {"squares_by_band", squares},
-          {"samples", split.samples},
-          {"reference_directions", split.directions},
-          {"reference_bands", split.bands}};
+  Json json = {{"total", split.total},
+               {"uncertainty", split.uncertainty},
+               {"causes", causes},
+               {"root_sum_of_causes", split.root_sum()},
+               {"squares_by_band", squares},
+               {"samples", split.samples},
+               {"reference_directions", split.directions},
+               {"reference_bands", split.bands}};
+  if (split.at_vertices)
+    json["at_vertices"] = {{"error", split.at_vertices->error}, {"squares_by_band", split.at_vertices->squares}};
+  return json;
 }
 
 }  // namespace kiln

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,9 @@ struct ErrorSplit {
   double total = 0;
   double uncertainty = 0;  ///< half-width of its 95 % confidence interval, for the pixels it was measured at
   std::vector<ErrorCause> causes;
-  BandSquares squares;      ///< of all causes but bands together, as those of one cause
+  std::optional<ErrorCause> at_vertices = {};  ///< what lookups between the low mesh's vertices would contribute, in
+                                               ///< place of those between texels
+  BandSquares squares;                         ///< of all causes but bands together, as those of one cause
   BandSquares seen;         ///< squares of the transfer seen, in the reference's bands, over that in the asset's bands
   std::size_t samples = 0;  ///< pixels
   int directions = 0;       ///< of the reference; where light scatters lines about a point, of each of two sets
@@ -69,6 +72,8 @@ struct SplitInput {
                                                  ///< lighting_prior
   ErrorSampling sampling = {};                   ///< half of its pixels where they have a size or light
                                                  ///< bounces, a quarter where it scatters
+  bool try_vertices = false;                     ///< whether to measure `at_vertices`: of textures alone, without
+                                                 ///< albedo in them and light beneath the surface
 };
 
 /// Measures E at points spread evenly over the low mesh, each seen from a direction of its own, by changing one thing

@@ -173,11 +173,13 @@ class Sampler {
     return rays.first_hit(position + distance_ * view, -view, 0, infinity);
   }
 
+  Lookup vertex_lookup_at(const SurfacePoint& low) const {
+    const Triangle& t = low_.triangles[low.triangle];
+    return {{t[0], t[1], t[2], t[2]}, {1 - low.u - low.v, low.u, low.v, 0}};
+  }
+
   Lookup lookup_at(const SurfacePoint& low) const {
-    if (detail_ == nullptr) {
-      const Triangle& t = low_.triangles[low.triangle];
-      return {{t[0], t[1], t[2], t[2]}, {1 - low.u - low.v, low.u, low.v, 0}};
-    }
+    if (detail_ == nullptr) return vertex_lookup_at(low);
     const int width = detail_->width, height = detail_->height;
     const Eigen::Vector2f uv = interpolate(low_, low_.uvs, low);
     const float x = uv.x() * static_cast<float>(width) - 0.5f, y = uv.y() * static_cast<float>(height) - 0.5f;
@@ -205,6 +207,7 @@ class Sampler {
       samples_.stood.push_back(stood);
       if (!low_.uvs.empty()) samples_.uvs.push_back(interpolate(low_, low_.uvs, low));
       samples_.lookups.push_back(lookup_at(low));
+      samples_.vertex_lookups.push_back(vertex_lookup_at(low));
     }
     samples_.pixel_ends.push_back(samples_.points());
   }
@@ -226,7 +229,7 @@ class Sampler {
 
 }  // namespace
 
-std::vector<std::uint32_t> ErrorSamples::slots() const {
+std::vector<std::uint32_t> slots_of(const std::vector<Lookup>& lookups) {
   std::vector<std::uint32_t> all;
   for (const Lookup& lookup : lookups) all.insert(all.end(), lookup.slots.begin(), lookup.slots.end());
   std::ranges::sort(all);

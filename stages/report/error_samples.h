@@ -27,15 +27,16 @@ struct ErrorSamples {
   std::vector<SurfacePoint> seen, stood;                        ///< both, in the high mesh
   std::vector<Eigen::Vector2f> uvs;                             ///< of the low mesh's points; empty where it has none
   std::vector<Lookup> lookups;                                  ///< in the low mesh's texture, or of its vertices
+  std::vector<Lookup> vertex_lookups;                           ///< of its vertices
   std::vector<std::size_t> pixel_ends;                          ///< for each pixel the index after its last point
   std::vector<double> pixel_weights;                            ///< candidates that each pixel stands for
 
   std::size_t points() const { return lookups.size(); }
   std::size_t pixels() const { return pixel_ends.size(); }
-
-  /// Lists the slots that are looked up, each once, sorted.
-  std::vector<std::uint32_t> slots() const;
 };
+
+/// Lists the slots that are looked up, each once, sorted.
+std::vector<std::uint32_t> slots_of(const std::vector<Lookup>& lookups);
 
 /// Wishes for samples.
 struct ErrorSampling {

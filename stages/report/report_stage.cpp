@@ -23,13 +23,15 @@ constexpr const char* error_names =
     "error.causes.geometry error.causes.albedo error.causes.bands error.causes.bits "
     "error.causes.seams";
 
-/// Tells whether a setting of the bake is left at one value.
-bool bake_has(const AssetSettings& all, const char* name, const char* value) {
-  const auto bake = all.find("bake");
-  if (bake == all.end()) return true;
-  const auto found = bake->second.find(name);
-  return found == bake->second.end() || found->second == value;
+/// Tells whether a setting of a stage is left out, or has a value.
+bool has(const AssetSettings& all, const char* stage, const char* name, const char* value) {
+  const auto settings = all.find(stage);
+  if (settings == all.end()) return true;
+  const auto found = settings->second.find(name);
+  return found == settings->second.end() || found->second == value;
 }
+
+bool bake_has(const AssetSettings& all, const char* name, const char* value) { return has(all, "bake", name, value); }
 
 StageOptions options() { return StageOptions::of(report_options); }
 
@@ -69,6 +71,8 @@ const StageInfo& report_stage() {
                   {"error.causes.texels", "error.causes.texels", "per-vertex: false of bake",
                    [](const AssetSettings& all) { return !bakes_vertices(all); }},
                   {"error.causes.vertices", "error.causes.vertices", "per-vertex: true of bake", bakes_vertices},
+                  {"error.at_vertices.error", "error.at_vertices.error", "error-vertices: true of report",
+                   [](const AssetSettings& all) { return !has(all, "report", "error-vertices", "false"); }},
                   {"error.causes.directions", "error.causes.directions", "subsurface of bake",
                    [](const AssetSettings& all) { return bake_has(all, "subsurface", "none"); }},
                   {"error.causes.visibility", "error.causes.visibility", "bounces or subsurface of bake",

@@ -113,6 +113,7 @@ ErrorSplit split_error(const AssetFolder& asset, const TriangleMesh& low, const 
   if (settings.error_pixels > 0)
     input.sampling.pixel_size = bounding_box(high.mesh).sides().maxCoeff() / settings.error_pixels;
   input.sampling.seed = static_cast<std::uint64_t>(run.seed);
+  input.try_vertices = settings.error_vertices && plain.opacity_file.empty();
 
   // Step 1: follow what the bake has had otherwise: receivers, light beneath the surface, albedo.
   std::optional<SceneMesh> low_scene;

@@ -67,26 +67,26 @@ TransferRows times(TransferRows vectors, const std::vector<Eigen::Vector3f>& col
   return vectors;
 }
 
-TransferRows looked_up(const ErrorSamples& samples, const std::vector<std::uint32_t>& slots,
+TransferRows looked_up(const std::vector<Lookup>& lookups, const std::vector<std::uint32_t>& slots,
                        const TransferRows& of_slot) {
-  TransferRows result{of_slot.length, std::vector<float>(samples.points() * of_slot.length)};
-  for (std::size_t s = 0; s < samples.points(); ++s)
+  TransferRows result{of_slot.length, std::vector<float>(lookups.size() * of_slot.length)};
+  for (std::size_t s = 0; s < lookups.size(); ++s)
     for (std::size_t k = 0; k < 4; ++k) {
-      const auto at = std::ranges::lower_bound(slots, samples.lookups[s].slots[k]) - slots.begin();
+      const auto at = std::ranges::lower_bound(slots, lookups[s].slots[k]) - slots.begin();
       const std::span<const float> vector = of_slot.of(static_cast<std::size_t>(at));
       for (std::size_t i = 0; i < of_slot.length; ++i)
-        result.values[s * of_slot.length + i] += samples.lookups[s].weights[k] * vector[i];
+        result.values[s * of_slot.length + i] += lookups[s].weights[k] * vector[i];
     }
   return result;
 }
 
-TransferRows looked_up(const ErrorSamples& samples, const TransferRows& of_own_slots) {
-  TransferRows result{of_own_slots.length, std::vector<float>(samples.points() * of_own_slots.length)};
-  for (std::size_t s = 0; s < samples.points(); ++s)
+TransferRows looked_up(const std::vector<Lookup>& lookups, const TransferRows& of_own_slots) {
+  TransferRows result{of_own_slots.length, std::vector<float>(lookups.size() * of_own_slots.length)};
+  for (std::size_t s = 0; s < lookups.size(); ++s)
     for (std::size_t k = 0; k < 4; ++k) {
       const std::span<const float> vector = of_own_slots.of(4 * s + k);
       for (std::size_t i = 0; i < result.length; ++i)
-        result.values[s * result.length + i] += samples.lookups[s].weights[k] * vector[i];
+        result.values[s * result.length + i] += lookups[s].weights[k] * vector[i];
     }
   return result;
 }

@@ -39,11 +39,11 @@ TransferRows sum_of(TransferRows a, const TransferRows& b);
 TransferRows times(TransferRows vectors, const std::vector<Eigen::Vector3f>& colors, int channels);
 
 /// Looks up vectors at all points of the samples. `of_slot` are vectors of `slots`, which are sorted.
-TransferRows looked_up(const ErrorSamples& samples, const std::vector<std::uint32_t>& slots,
+TransferRows looked_up(const std::vector<Lookup>& lookups, const std::vector<std::uint32_t>& slots,
                        const TransferRows& of_slot);
 
 /// Looks up vectors of which each point has four of its own, one for each slot of its lookup.
-TransferRows looked_up(const ErrorSamples& samples, const TransferRows& of_own_slots);
+TransferRows looked_up(const std::vector<Lookup>& lookups, const TransferRows& of_own_slots);
 
 /// Decodes the vectors that an asset stores at slots: texels, or vertices of an asset baked per vertex.
 TransferRows stored_rows(const PrtAsset& asset, const std::vector<std::uint32_t>& slots);

@@ -79,6 +79,41 @@ TEST(AssetModel, PredictsWhatItsLawsSay) {
   EXPECT_NEAR(at.bytes, truth.mesh_bytes + truth.map_bytes + truth.plane_bytes, 0.01 * at.bytes);
 }
 
+TEST(AssetModel, VerticesCostTheirLookupsAndNoAtlas) {
+  Pilot pilot;
+  pilot.coarse = build_of(500, 64, 256);
+  pilot.fine = build_of(2000, 128, 1024);
+  pilot.input_triangles = 100000;
+  // Squares that fall as fast as the triangles rise.
+  pilot.coarse.at_vertices = {0.04, 0, 0, 0, 0, 0};
+  pilot.fine.at_vertices = {0.01, 0, 0, 0, 0, 0};
+  pilot.coarse.vertices = 250;
+  pilot.fine.vertices = 1000;
+  pilot.may_be_vertices = true;
+  const AssetModel asset(pilot);
+  const Prediction at = asset.predict({8000, 0, 6, 1024, 8, false, 0, true});
+  double seen = 0;
+  for (int l = 0; l < 6; ++l) seen += std::pow(0.5, l);
+  EXPECT_NEAR(at.causes.at("vertices"), std::sqrt(0.0025 / seen), 1e-12);
+  EXPECT_FALSE(at.causes.contains("texels") || at.causes.contains("seams"));
+  // 4,000 vertices of 36 bytes, and the mesh itself.
+  EXPECT_NEAR(at.bytes, 4000 * 36 + 1000 + 3 * 8000, 1);
+  const PilotBuild truth = build_of(8000, 64, 1024);
+  const double bake = 5e-7 * 4000 * 36 + 0.01 * std::pow(4000.0 * 1024, 0.4);
+  EXPECT_NEAR(at.cpu_seconds, truth.cpu_seconds.at("simplify") + bake, 1e-6);
+
+  // A loose error is cheapest so, a strict one is not; what must be so is so.
+  const std::vector<Choice> choices = choices_of(full_grid(asset), 0);
+  PlanGoal goal;
+  goal.error = 0.3;
+  EXPECT_TRUE(cheapest(asset, choices, goal)->choice.per_vertex);
+  pilot.coarse.at_vertices[0] = 4;
+  pilot.fine.at_vertices[0] = 1;
+  EXPECT_FALSE(cheapest(AssetModel(pilot), choices, goal)->choice.per_vertex);
+  pilot.must_be_vertices = true;
+  for (const Choice& choice : choices_of(full_grid(AssetModel(pilot)), 0)) ASSERT_TRUE(choice.per_vertex);
+}
+
 TEST(AssetModel, SecondsOfLargeBakesAreNearThoseMeasured) {
   // CPU seconds of kiln-bake as they were measured, of 2,000 triangles each: pilots of 8 bands at 64 x 64 and 128 x 128
   // texels, 256 and 1,024 directions, and what larger bakes of 5 bands took.

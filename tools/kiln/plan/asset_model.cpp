@@ -23,16 +23,24 @@ constexpr double least_bake_exponent = 0.35;
 /// 1.39 on the bunny of 500 and 2,000 triangles.
 constexpr double atlas_over_pilot = 1.4;
 
+/// Steepest exponent by which the square of lookups between vertices falls with the triangles: 0.9 to 1.0 on the bunny
+/// and the armadillo of 500 to 8,000 triangles, whose vertices stand at creases where a shadow ends.
+constexpr double steepest_of_vertices = 1.2;
+
 double sum_of_first(const std::vector<double>& values, int count) {
   const std::size_t n = std::min(values.size(), static_cast<std::size_t>(count));
   return std::accumulate(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(n), 0.0);
 }
 
+/// Returns what squares by band are of the transfer seen in an asset of so many bands.
+double share_of(const std::vector<double>& squares, const PilotBuild& build, int bands) {
+  return std::max(0.0, sum_of_first(squares, bands) / sum_of_first(build.seen, bands));
+}
+
 /// Returns the square of a cause's error in an asset of so many bands; 0 where the build has no such cause.
 double square_of(const PilotBuild& build, const std::string& cause, int bands) {
   const auto found = build.squares.find(cause);
-  if (found == build.squares.end()) return 0;
-  return std::max(0.0, sum_of_first(found->second, bands) / sum_of_first(build.seen, bands));
+  return found == build.squares.end() ? 0 : share_of(found->second, build, bands);
 }
 
 /// Returns the value at `x` of the line through two points, which neither falls nor begins below 0.
@@ -85,10 +93,16 @@ Prediction AssetModel::predict(const Choice& choice) const {
   follow("geometry", &PilotBuild::triangles, choice.triangles, 1.5);
   if (fine.squares.contains("receivers")) follow("receivers", &PilotBuild::triangles, choice.triangles, 1.5);
   if (choice.triangles >= pilot_.input_triangles) squares["geometry"] = 0;
-  const double covered = texels(choice.size);
-  follow("texels", &PilotBuild::texels, covered, 1.5);
-  if (square_of(fine, "albedo", bands) > 0) follow("albedo", &PilotBuild::texels, covered, 1.5);
-  follow("seams", &PilotBuild::texels, covered, 1);
+  if (choice.per_vertex) {
+    squares["vertices"] =
+        power_law(coarse.triangles, share_of(coarse.at_vertices, coarse, bands), fine.triangles,
+                  share_of(fine.at_vertices, fine, bands), choice.triangles, -steepest_of_vertices, 0);
+  } else {
+    const double covered = texels(choice.size);
+    follow("texels", &PilotBuild::texels, covered, 1.5);
+    if (square_of(fine, "albedo", bands) > 0) follow("albedo", &PilotBuild::texels, covered, 1.5);
+    follow("seams", &PilotBuild::texels, covered, 1);
+  }
   follow("directions", &PilotBuild::directions, choice.directions, 1.5);
   squares["bits"] = square_of(fine, "bits", bands) * std::pow(0.25, choice.bits - pilot_bits);
   if (pilot_.has_bounces && choice.bounces)
@@ -122,15 +136,17 @@ Prediction AssetModel::predict(const Choice& choice) const {
   return prediction;
 }
 
-double AssetModel::cpu_seconds(const Choice& choice) const {
+double AssetModel::vertices(const Choice& choice) const {
+  return rising_line(pilot_.coarse.triangles, pilot_.coarse.vertices, pilot_.fine.triangles, pilot_.fine.vertices,
+                     choice.triangles);
+}
+
+double AssetModel::receivers(const Choice& choice) const {
+  return choice.per_vertex ? vertices(choice) : texels(choice.size);
+}
+
+double AssetModel::bake_seconds(const Choice& choice) const {
   const PilotBuild &coarse = pilot_.coarse, &fine = pilot_.fine;
-  const double covered = texels(choice.size);
-  const auto line = [&](const char* stage, double work_coarse, double work_fine, double work) {
-    return rising_line(work_coarse, stage_seconds(coarse, stage), work_fine, stage_seconds(fine, stage), work);
-  };
-  double seconds = stage_seconds(fine, "simplify");
-  seconds += atlas_over_pilot * line("atlas", coarse.triangles, fine.triangles, choice.triangles);
-  seconds += line("normals", coarse.texels, fine.texels, covered);
   // Neighbouring rays share their work, the more the denser texels and directions are: the seconds of a bake, without
   // those of its planes, follow a power of the pairs of a texel and a direction well below 1.
   const auto planes = [](const PilotBuild& build) {
@@ -139,13 +155,23 @@ double AssetModel::cpu_seconds(const Choice& choice) const {
   const auto pairs = [](const PilotBuild& build) { return (build.texels + build.cache_points) * build.directions; };
   const double bake = power_law(pairs(coarse), stage_seconds(coarse, "bake") - planes(coarse), pairs(fine),
                                 stage_seconds(fine, "bake") - planes(fine),
-                                (covered + fine.cache_points) * choice.directions, least_bake_exponent, 1) +
-                      seconds_per_plane_texel * covered * choice.bands * choice.bands;
-  const double bare = pilot_.has_bounces ? stage_seconds(pilot_.without_bounces, "bake") : 0;
+                                (receivers(choice) + fine.cache_points) * choice.directions, least_bake_exponent, 1) +
+                      seconds_per_plane_texel * receivers(choice) * choice.bands * choice.bands;
+  if (!pilot_.has_bounces || choice.bounces || stage_seconds(coarse, "bake") <= 0) return bake;
   // Without bounces a bake is as much cheaper as in the pilot.
-  seconds += pilot_.has_bounces && !choice.bounces && stage_seconds(coarse, "bake") > 0
-                 ? bake * std::min(1.0, bare / stage_seconds(coarse, "bake"))
-                 : bake;
+  return bake * std::min(1.0, stage_seconds(pilot_.without_bounces, "bake") / stage_seconds(coarse, "bake"));
+}
+
+double AssetModel::cpu_seconds(const Choice& choice) const {
+  const PilotBuild &coarse = pilot_.coarse, &fine = pilot_.fine;
+  const auto line = [&](const char* stage, double work_coarse, double work_fine, double work) {
+    return rising_line(work_coarse, stage_seconds(coarse, stage), work_fine, stage_seconds(fine, stage), work);
+  };
+  double seconds = stage_seconds(fine, "simplify") + bake_seconds(choice);
+  if (choice.per_vertex) return seconds;
+  const double covered = texels(choice.size);
+  seconds += atlas_over_pilot * line("atlas", coarse.triangles, fine.triangles, choice.triangles);
+  seconds += line("normals", coarse.texels, fine.texels, covered);
   if (choice.compression > 0 && pilot_.is_compressed)
     seconds += stage_seconds(pilot_.compressed, "compress") * covered / pilot_.compressed.texels;
   return seconds;
@@ -153,9 +179,11 @@ double AssetModel::cpu_seconds(const Choice& choice) const {
 
 double AssetModel::bytes(const Choice& choice) const {
   const PilotBuild &coarse = pilot_.coarse, &fine = pilot_.fine;
-  const double covered = texels(choice.size);
   const double mesh =
       rising_line(coarse.triangles, coarse.mesh_bytes, fine.triangles, fine.mesh_bytes, choice.triangles);
+  // Coefficients of vertices take their bits: Draco finds little in them (97 to 104 % of that, mesh included).
+  if (choice.per_vertex) return mesh + vertices(choice) * choice.bands * choice.bands * choice.bits / 8;
+  const double covered = texels(choice.size);
   // Larger pictures are smoother, so their bytes grow less than their texels.
   const auto at = [&](double PilotBuild::*bytes, double texels) {
     return power_law(coarse.texels, coarse.*bytes, fine.texels, fine.*bytes, texels, 0.5, 1);

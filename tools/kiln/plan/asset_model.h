@@ -10,6 +10,7 @@ namespace kiln {
 /// What one small build of an asset measured.
 struct PilotBuild {
   double triangles = 0;      ///< of the low mesh
+  double vertices = 0;       ///< of the low mesh
   double size = 0;           ///< texels along a side of the atlas
   double texels = 0;         ///< covered ones
   double cache_points = 0;   ///< points of the surface at which light bounces
@@ -17,35 +18,40 @@ struct PilotBuild {
   int bands = 0;             ///< of the bake
   std::vector<double> seen;  ///< squares of the transfer seen, by band (report/error_causes.h)
   std::map<std::string, std::vector<double>> squares;  ///< of each cause, by band
-  double total = 0;                                    ///< E
-  double uncertainty = 0;                              ///< of E, of 95 % confidence
-  double root_sum = 0;                                 ///< root of the sum of the causes' squares
-  std::map<std::string, double> cpu_seconds;           ///< by stage
-  double mesh_bytes = 0;                               ///< of the mesh
-  double map_bytes = 0;                                ///< of the maps of normals and albedo
-  double plane_bytes = 0;                              ///< of the planes, or of what kiln-compress made of them
+  std::vector<double> at_vertices;  ///< what lookups between vertices would cost in place of texels, by band; empty:
+                                    ///< the asset needs textures
+  double total = 0;                 ///< E
+  double uncertainty = 0;           ///< of E, of 95 % confidence
+  double root_sum = 0;              ///< root of the sum of the causes' squares
+  std::map<std::string, double> cpu_seconds;  ///< by stage
+  double mesh_bytes = 0;                      ///< of the mesh
+  double map_bytes = 0;                       ///< of the maps of normals and albedo
+  double plane_bytes = 0;                     ///< of the planes, or of what kiln-compress made of them
 };
 
 /// Two builds of an asset, the second with more triangles, texels and directions, and what is known of its mesh.
 struct Pilot {
   PilotBuild coarse, fine;
-  PilotBuild without_bounces;  ///< like `coarse`, without bounces, against a reference that has them
-  bool has_bounces = false;    ///< whether light bounces, and `without_bounces` is there
-  PilotBuild compressed;       ///< like `fine`, with the bands chosen, compressed
-  bool is_compressed = false;  ///< whether that is there
-  double input_triangles = 0;  ///< of the high mesh
-  bool has_own_low = false;    ///< whether the low mesh is the asset's own, whose triangles are no choice
+  PilotBuild without_bounces;     ///< like `coarse`, without bounces, against a reference that has them
+  bool has_bounces = false;       ///< whether light bounces, and `without_bounces` is there
+  PilotBuild compressed;          ///< like `fine`, with the bands chosen, compressed
+  bool is_compressed = false;     ///< whether that is there
+  double input_triangles = 0;     ///< of the high mesh
+  bool has_own_low = false;       ///< whether the low mesh is the asset's own, whose triangles are no choice
+  bool may_be_vertices = false;   ///< whether both builds have `at_vertices`, and the pipeline allows such a bake
+  bool must_be_vertices = false;  ///< whether the pipeline asks for it
 };
 
 /// Settings that a plan decides for an asset.
 struct Choice {
   int triangles = 0;
-  int size = 0;  ///< texels along a side of the atlas
+  int size = 0;  ///< texels along a side of the atlas; 0 where vertices are baked
   int bands = 0;
   int directions = 0;
   int bits = 8;
-  bool bounces = false;    ///< whether light bounces, as often as the pipeline says
-  double compression = 0;  ///< E that kiln-compress may add, by the measured prior; 0: not compressed
+  bool bounces = false;     ///< whether light bounces, as often as the pipeline says
+  double compression = 0;   ///< E that kiln-compress may add, by the measured prior; 0: not compressed
+  bool per_vertex = false;  ///< whether transfer is baked into the vertices of the low mesh, without an atlas
 };
 
 /// What an asset of a choice costs and how wrong it is.
@@ -58,10 +64,9 @@ struct Prediction {
 };
 
 /// Predicts errors and costs of an asset's settings from its pilot. Each cause of the error follows one setting by a
-/// power law through both builds: geometry and receivers on the
-/// low mesh the triangles, texels, seams and albedo the covered texels, directions their number.
-/// The square of rounding falls by four for each bit. Costs are linear in the work of a
-/// stage, those of the bake a power of it.
+/// power law through both builds: geometry, receivers on the low mesh and lookups between its vertices the triangles,
+/// texels, seams and albedo the covered texels, directions their number. The square of rounding falls by four for each
+/// bit. Costs are linear in the work of a stage, those of the bake a power of it.
 class AssetModel {
  public:
   explicit AssetModel(Pilot pilot);
@@ -77,6 +82,10 @@ class AssetModel {
   Prediction predict(const Choice& choice) const;
 
  private:
+  /// Returns the points that a choice bakes: texels, or vertices.
+  double receivers(const Choice& choice) const;
+  double vertices(const Choice& choice) const;
+  double bake_seconds(const Choice& choice) const;
   double cpu_seconds(const Choice& choice) const;
   double bytes(const Choice& choice) const;
 

@@ -52,28 +52,39 @@ double cost_of(const Prediction& prediction, PlanCost cost) {
 ChoiceGrid full_grid(const AssetModel& model) {
   ChoiceGrid grid;
   grid.triangles = triangle_counts(model.pilot());
-  grid.sizes = {64, 96, 128, 192, 256, 384, 512, 768, 1024, 1536, 2048, 4096};
+  for (const int size : {64, 96, 128, 192, 256, 384, 512, 768, 1024, 1536, 2048, 4096})
+    if (size >= model.pilot().coarse.size) grid.sizes.push_back(size);
   for (int bands = 1; bands <= model.most_bands(); ++bands) grid.bands.push_back(bands);
   grid.directions = {64,   96,   128,  192,  256,  384,  512,   768,   1024,
                      1536, 2048, 3072, 4096, 6144, 8192, 12288, 16384, 32768};
   grid.bits = {8, 16};
   grid.bounces = {false};
   if (model.pilot().has_bounces) grid.bounces.push_back(true);
+  if (model.pilot().must_be_vertices)
+    grid.per_vertex = {true};
+  else if (model.pilot().may_be_vertices)
+    grid.per_vertex = {false, true};
   return grid;
 }
 
 std::vector<Choice> choices_of(const ChoiceGrid& grid, double compression) {
   std::vector<Choice> choices;
-  for (const int triangles : grid.triangles)
-    for (const int size : grid.sizes)
+  const auto add = [&](int size, bool per_vertex) {
+    for (const int triangles : grid.triangles)
       for (const int bands : grid.bands)
         for (const int directions : grid.directions)
           for (const int bits : grid.bits) {
             // Fewer do not keep the functions apart (kiln-bake warns of it).
             if (directions < 4 * bands * bands) continue;
             for (const bool bounces : grid.bounces)
-              choices.push_back({triangles, size, bands, directions, bits, bounces, compression});
+              choices.push_back({triangles, size, bands, directions, bits, bounces, compression, per_vertex});
           }
+  };
+  for (const bool per_vertex : grid.per_vertex) {
+    if (per_vertex) add(0, true);
+    for (const int size : grid.sizes)
+      if (!per_vertex) add(size, false);
+  }
   return choices;
 }
 

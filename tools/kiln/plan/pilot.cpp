@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <fmt/format.h>
 #include <limits>
 
@@ -12,6 +13,7 @@
 #include "base/files.h"
 #include "base/json.h"
 #include "kiln/build.h"
+#include "kiln/metrics.h"
 #include "kiln/text_file.h"
 
 namespace kiln {
@@ -20,6 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
+constexpr int most_atlas_factor = 16;
 constexpr int pilot_bands = 8;  // more where a kept number of bands asks for them
 const Overrides coarse_settings = {{"simplify.faces", "500"}, {"atlas.size", "64"}, {"bake.directions", "256"}};
 const Overrides fine_settings = {{"simplify.faces", "2000"}, {"atlas.size", "128"}, {"bake.directions", "1024"}};
@@ -38,7 +41,8 @@ const Overrides common_settings = {{"simplify.quality", "standard"},
                                    {"report.cameras", "1"},
                                    {"report.directions", "16"},
                                    {"report.lights", "ambient:1"},
-                                   {"report.error-samples", "1024"}};
+                                   {"report.error-samples", "1024"},
+                                   {"report.error-vertices", "true"}};
 
 /// Returns settings of an asset's pilots whose bands stay as the pipeline has them, where those are more than those of
 /// other pilots: the bands, and directions that keep them apart.
@@ -70,7 +74,9 @@ double bytes_of(const fs::path& file) {
 PilotBuild read_build(const fs::path& asset, const std::string& last) {
   PilotBuild result;
   const Json atlas = record_of(asset, "atlas"), bake = record_of(asset, "bake"), report = record_of(asset, "report");
-  result.triangles = record_of(asset, "simplify").at("triangles").get<double>();
+  const Json simplify = record_of(asset, "simplify");
+  result.triangles = simplify.at("triangles").get<double>();
+  result.vertices = simplify.at("vertices").get<double>();
   result.size = std::sqrt(atlas.at("width").get<double>() * atlas.at("height").get<double>());
   result.texels = atlas.at("covered_texels").get<double>();
   result.directions = bake.at("directions").get<double>();
@@ -85,6 +91,8 @@ PilotBuild read_build(const fs::path& asset, const std::string& last) {
   result.root_sum = error.at("root_sum_of_causes").get<double>();
   for (const auto& [cause, squares] : error.at("squares_by_band").items())
     if (cause != "total") (cause == "seen" ? result.seen : result.squares[cause]) = squares.get<std::vector<double>>();
+  if (const auto found = error.find("at_vertices"); found != error.end())
+    result.at_vertices = found->at("squares_by_band").get<std::vector<double>>();
   for (const char* stage : {"simplify", "atlas", "normals", "bake", "compress"})
     if (std::error_code code; fs::is_regular_file(layout::record(asset, stage), code))
       result.cpu_seconds[stage] = record_of(asset, stage).at("cpu_seconds").get<double>();
@@ -98,6 +106,21 @@ PilotBuild read_build(const fs::path& asset, const std::string& last) {
 
 }  // namespace
 
+bool allows_vertices(const Asset& asset) {
+  if (bakes_vertices(asset.settings)) return true;
+  try {
+    Asset at_vertices = asset;
+    override_settings(at_vertices, {{"bake.adaptive", "0"}, {"bake.per-vertex", "true"}}, "a plan's");
+    // A budget for what vertices have not asks for texels.
+    const std::vector<std::string> metrics = metrics_of(at_vertices.settings);
+    return std::ranges::all_of(asset.budgets, [&](const std::string& budget) {
+      return std::ranges::find(metrics, budget.substr(0, budget.find_first_of("<>"))) != metrics.end();
+    });
+  } catch (const BadInput&) {
+    return false;
+  }
+}
+
 bool has_bounces(const Asset& asset) {
   const auto bake = asset.settings.find("bake");
   if (bake == asset.settings.end()) return false;
@@ -108,9 +131,8 @@ bool has_bounces(const Asset& asset) {
 PilotBuilds::PilotBuilds(const Pipeline& pipeline, fs::path folder, int jobs, bool quiet)
     : pipeline_(pipeline), folder_(std::move(folder)), jobs_(jobs), quiet_(quiet) {}
 
-std::vector<PilotBuild> PilotBuilds::build_at(const std::string& name, const std::vector<const Asset*>& assets,
-                                              const Overrides& overrides, bool compressed,
-                                              const std::vector<std::string>& kept) {
+Pipeline PilotBuilds::pipeline_at(const std::string& name, const Overrides& overrides, bool compressed,
+                                  const std::vector<std::string>& kept) const {
   Pipeline there = pipeline_;
   there.output = fs::absolute(folder_ / name).lexically_normal();
   const auto is_kept = [&](const auto& setting) { return std::ranges::find(kept, setting.first) != kept.end(); };
@@ -119,6 +141,7 @@ std::vector<PilotBuild> PilotBuilds::build_at(const std::string& name, const std
     asset.settings.erase("probes");
     if (!compressed) asset.settings.erase("compress");
     Overrides settings = common_settings;
+    if (bakes_vertices(asset.settings)) settings.emplace_back("bake.per-vertex", "false");
     settings.insert(settings.end(), overrides.begin(), overrides.end());
     // A way of simplifying that is kept is that of the pilots, too.
     std::erase_if(settings, [&](const auto& setting) {
@@ -128,14 +151,47 @@ std::vector<PilotBuild> PilotBuilds::build_at(const std::string& name, const std
       const Overrides many = settings_of_many_bands(asset, overrides);
       settings.insert(settings.end(), many.begin(), many.end());
     }
+    if (const auto factor = atlas_factors_.find(asset.name); factor != atlas_factors_.end())
+      for (auto& [setting, value] : settings)
+        if (setting == "atlas.size") value = std::to_string(std::stoi(value) * factor->second);
     override_settings(asset, settings, "a pilot's");
   }
+  return there;
+}
+
+bool PilotBuilds::enlarge_missing_atlases(const Pipeline& there, const std::vector<std::string>& names) {
+  bool enlarged = false;
+  for (const std::string& name : names) {
+    const fs::path asset = there.output / name;
+    std::error_code code;
+    if (!fs::exists(layout::record(asset, "simplify"), code) || fs::exists(layout::record(asset, "atlas"), code))
+      continue;
+    int& factor = atlas_factors_.try_emplace(name, 1).first->second;
+    if (factor >= most_atlas_factor) return false;
+    factor *= 2;
+    enlarged = true;
+    if (!quiet_)
+      std::fprintf(stderr, "kiln: asset '%s': its pilots take atlases %d times as large\n", name.c_str(), factor);
+  }
+  return enlarged;
+}
+
+std::vector<PilotBuild> PilotBuilds::build_at(const std::string& name, const std::vector<const Asset*>& assets,
+                                              const Overrides& overrides, bool compressed,
+                                              const std::vector<std::string>& kept) {
   std::vector<std::string> names;
   for (const Asset* asset : assets) names.push_back(asset->name);
   BuildSettings settings;
   settings.jobs = jobs_;
   settings.quiet = quiet_;
-  if (const int status = kiln::build(there, select_assets(there, names), settings); status != 0)
+  Pipeline there = pipeline_at(name, overrides, compressed, kept);
+  int status = kiln::build(there, select_assets(there, names), settings);
+  // Many charts, or thin ones, have no room in the atlas of most pilots.
+  while (status != 0 && enlarge_missing_atlases(there, names)) {
+    there = pipeline_at(name, overrides, compressed, kept);
+    status = kiln::build(there, select_assets(there, names), settings);
+  }
+  if (status != 0)
     throw BadInput(pipeline_.file.string(), fmt::format("pilots that end with status {}", status),
                    "assets that can be built", "mend what the stage has said");
   std::vector<PilotBuild> builds;
@@ -163,6 +219,9 @@ std::map<std::string, Pilot> PilotBuilds::build(const std::vector<const Asset*>&
       pilot.has_own_low = true;
       pilot.input_triangles = std::numeric_limits<double>::infinity();  // it never becomes the high mesh
     }
+    pilot.must_be_vertices = bakes_vertices(assets[k]->settings);
+    pilot.may_be_vertices =
+        !pilot.coarse.at_vertices.empty() && !pilot.fine.at_vertices.empty() && allows_vertices(*assets[k]);
     if (!pilot.has_bounces) continue;
     Overrides bare = coarse_settings;
     bare.emplace_back("bake.bounces", "0");

@@ -33,15 +33,22 @@ class PilotBuilds {
   double cpu_seconds() const { return cpu_seconds_; }
 
  private:
+  Pipeline pipeline_at(const std::string& name, const Overrides& overrides, bool compressed,
+                       const std::vector<std::string>& kept) const;
   std::vector<PilotBuild> build_at(const std::string& name, const std::vector<const Asset*>& assets,
                                    const Overrides& overrides, bool compressed, const std::vector<std::string>& kept);
+  bool enlarge_missing_atlases(const Pipeline& there, const std::vector<std::string>& names);
 
   const Pipeline& pipeline_;
   const std::filesystem::path folder_;
   const int jobs_;
   const bool quiet_;
+  std::map<std::string, int> atlas_factors_;  ///< by asset: how many times larger its pilots' atlases have to be
   double cpu_seconds_ = 0;
 };
+
+/// Tells whether an asset may be baked into vertices: whether none of its stages, settings and budgets needs texels.
+bool allows_vertices(const Asset& asset);
 
 /// Tells whether light bounces in an asset as the pipeline has it.
 bool has_bounces(const Asset& asset);

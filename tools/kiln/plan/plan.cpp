@@ -24,9 +24,9 @@ namespace {
 constexpr double share_of_compression = 0.5;  // of E, a quarter of its square
 
 /// Settings that a plan decides, except those of simplification's price.
-const std::vector<std::string> decided = {"simplify.faces", "simplify.quality", "simplify.aware",
-                                          "atlas.size",     "bake.bands",       "bake.directions",
-                                          "bake.bits",      "bake.bounces",     "compress.max-error"};
+const std::vector<std::string> decided = {"simplify.faces",     "simplify.quality", "simplify.aware", "atlas.size",
+                                          "bake.bands",         "bake.directions",  "bake.bits",      "bake.bounces",
+                                          "compress.max-error", "bake.per-vertex"};
 
 /// Returns E asked for of an asset: that of the command, or the asset's budget.
 double asked_of(const Asset& asset, const PlanSettings& settings) {
@@ -43,7 +43,6 @@ double asked_of(const Asset& asset, const PlanSettings& settings) {
 
 /// Returns why nothing can be planned for an asset; empty if something can.
 std::string reason_to_leave(const Asset& asset) {
-  if (bakes_vertices(asset.settings)) return "per-vertex: plans choose the settings of textures";
   if (effective_setting(asset.settings, "bake", "subsurface") != "none")
     return "subsurface: light scatters beneath its surface, and how much of its error is from directions is not known";
   return {};
@@ -65,6 +64,9 @@ class AssetPlanner {
 
   /// Returns the plan; without lines where the error cannot be kept, and then `prediction` is of the best there is.
   PlannedAsset decide() {
+    if (model_.pilot().must_be_vertices && !model_.pilot().may_be_vertices)
+      return {asset_.name, goal_.error, "per-vertex: what its albedo or opacity costs at vertices is not known",
+              {},          {},          {}};
     ChoiceGrid grid = full_grid(model_);
     keep_in(grid);
     double allowance = asset_.settings.contains("compress") ? share_of_compression * goal_.error : 0;
@@ -102,7 +104,9 @@ class AssetPlanner {
   void keep_in(ChoiceGrid& grid) const {
     if (keeps("simplify.faces") && !model_.pilot().has_own_low)
       grid.triangles = {kept_number(asset_, "simplify", "faces")};
-    if (keeps("atlas.size")) grid.sizes = {kept_number(asset_, "atlas", "size")};
+    const bool has_atlas = !model_.pilot().must_be_vertices;
+    if (keeps("atlas.size") && has_atlas) grid.sizes = {kept_number(asset_, "atlas", "size")};
+    if ((keeps("atlas.size") || keeps("bake.per-vertex")) && has_atlas) grid.per_vertex = {false};
     if (keeps("bake.bands")) grid.bands = {kept_number(asset_, "bake", "bands")};
     if (keeps("bake.directions")) grid.directions = {kept_number(asset_, "bake", "directions")};
     if (keeps("bake.bits")) grid.bits = {kept_number(asset_, "bake", "bits")};
@@ -136,7 +140,7 @@ class AssetPlanner {
   /// Returns the preset `final` as a choice, as far as the pilot's bands reach.
   Choice final_choice(double allowance) const {
     const int triangles = model_.pilot().has_own_low ? static_cast<int>(model_.pilot().fine.triangles) : 1000;
-    Choice choice{triangles, 512, 5, 1024, 8, model_.pilot().has_bounces, allowance};
+    Choice choice{triangles, 512, 5, 1024, 8, model_.pilot().has_bounces, allowance, model_.pilot().must_be_vertices};
     for (const auto& [name, value] : find_preset("final")->settings) {
       if (name == "simplify.faces" && !is_moot(asset_, name)) choice.triangles = std::stoi(value);
       if (name == "atlas.size") choice.size = std::stoi(value);
@@ -163,8 +167,11 @@ class AssetPlanner {
         costs("geometry") + (is_whole ? "; all of the high mesh" : ""));
     add("simplify.quality", "standard", "seconds less than best, for some more triangles");
     add("simplify.aware", "none", "");
-    add("atlas.size", std::to_string(choice.size),
-        fmt::format("{} at texels, {:.2g} % at seams", costs("texels"), 100 * at.causes.at("seams")));
+    if (choice.per_vertex)
+      add("bake.per-vertex", "true", costs("vertices") + "; no atlas, no maps");
+    else
+      add("atlas.size", std::to_string(choice.size),
+          fmt::format("{} at texels, {:.2g} % at seams", costs("texels"), 100 * at.causes.at("seams")));
     add("bake.bands", std::to_string(choice.bands), costs("bands") + why_bands());
     add("bake.directions", std::to_string(choice.directions), costs("directions"));
     if (effective_setting(asset_.settings, "bake", "max-error") != "none")
