@@ -12,6 +12,7 @@
 #include "bake/integrate/integration.h"
 #include "base/errors.h"
 #include "base/json.h"
+#include "base/parallel.h"
 #include "base/progress.h"
 #include "base/stopwatch.h"
 #include "sh/basis.h"
@@ -85,9 +86,29 @@ BakeJob direct_job(const BakeJob& job) {
   return direct;
 }
 
+/// Bakes without shadows: the transfer follows from the normals.
+BakeResult bake_unshadowed(const BakeJob& job) {
+  const Stopwatch stopwatch;
+  const ReceiverSet& receivers = job.receivers;
+  const ShBasis basis(job.settings.bands);
+  TransferVectors transfer(receivers.slots.size(), basis.size());
+  parallel_for(std::size_t{0}, receivers.slots.size(), 256, [&](std::size_t r) {
+    const std::vector<float> values = unoccluded_transfer(basis, receivers.normals[r]);
+    for (int i = 0; i < basis.size(); ++i) transfer.plane(i)[r] = values[static_cast<std::size_t>(i)];
+  });
+  BakeResult result;
+  result.renderer = "none: the bake has no shadows";
+  result.unoccluded = receivers.slots.size();
+  result.channels.push_back(std::move(transfer));
+  multiply_albedo(result.channels, receivers.albedos);
+  result.seconds = stopwatch.seconds();
+  return result;
+}
+
 }  // namespace
 
 BakeResult bake(const BakeJob& job) {
+  if (!job.settings.casts_shadows) return bake_unshadowed(job);
   const Stopwatch stopwatch;
   const BakeJob direct = direct_job(job);
   RayMemory memory(bounce_memory_share(job.settings));

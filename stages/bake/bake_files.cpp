@@ -134,6 +134,7 @@ Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene&
 }  // namespace
 
 std::vector<std::string> direction_warnings(const BakeSettings& settings) {
+  if (!settings.casts_shadows) return {};
   const bool by_error = settings.max_error.wanted;  // then directions are progressive, as many as it takes
   const int most = by_error ? settings.max_directions : settings.directions;
   const std::int64_t needed =

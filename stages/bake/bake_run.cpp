@@ -41,6 +41,8 @@ BakeResult integrate(OutputSet& outputs, const BakePaths& paths, const BakeScene
                      const BakeRun& run, const CommandLine& command) {
   if (settings.adaptive > 0 && (run.is_shard() || !run.shards.empty() || run.resume))
     throw WrongUsage("adaptive: found --shard, --merge or --resume; expected none, they go by blocks of directions");
+  if (!settings.casts_shadows && (run.is_shard() || !run.shards.empty() || run.resume))
+    throw WrongUsage("shadows none: found --shard, --merge or --resume; expected none, there is nothing to divide");
   BakeJob job = make_job(scene, settings, command);
   job.progress = command.progress(run.shards.empty() ? "bake" : "merge");
   if (!run.shards.empty()) {

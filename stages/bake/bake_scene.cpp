@@ -105,7 +105,9 @@ std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSetti
 /// there inside the high one, and are not buried.
 void set_aside_buried(const BakePaths& paths, const BakeSettings& settings, BakeScene& scene) {
   const bool on_high = settings.receiver == BakeReceiver::high, high_shadows = !paths.occluders.empty();
-  if (settings.buried == BuriedChoice::keep || settings.subsurface.wanted() || on_high != high_shadows) return;
+  if (settings.buried == BuriedChoice::keep || settings.subsurface.wanted() || on_high != high_shadows ||
+      !settings.casts_shadows)
+    return;
   const float ray_offset = ray_offset_of(settings, scene.occluders.hull);
   scene.buried = settings.per_vertex
                      ? set_aside_buried_vertices(scene.receivers, scene.vertex_mesh, scene.occluders, ray_offset)
@@ -177,6 +179,7 @@ void BakeScene::add_warnings(const std::vector<std::string>& further) {
 }
 
 BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) {
+  check_shadows(settings);
   subsurface_profiles(settings.subsurface);  // throws before anything is baked, if settings do not go together
   if (settings.subsurface.wanted() && settings.bake_albedo)
     throw WrongUsage("subsurface: found --bake-albedo; expected one of them, the material has its own albedo");

@@ -138,6 +138,10 @@ void add_main_options(OptionSet& options, BakeSettings& settings) {
           "Which surface receives light: the high mesh's point of a texel (needs --detail) or of a vertex (the closest "
           "of the first --occluder), or the low mesh's")
       .affects(Affects::sums)
+      .choice("shadows", settings.casts_shadows, {{"cast", true}, {"none", false}},
+              "Whether occluders cast shadows; none: transfer of the normals alone, in closed form, as a convex asset "
+              "that stands alone has it")
+      .affects(Affects::sums)
       .toggle("per-vertex", settings.per_vertex, "Bake into the vertices of any mesh: no atlas, no --detail, no --size")
       .affects(Affects::sums)
       .integer("bits", settings.bits, 8, 16, "Bits of a stored coefficient, 8 or 16")
@@ -164,6 +168,17 @@ void add_main_options(OptionSet& options, BakeSettings& settings) {
 }
 
 }  // namespace
+
+void check_shadows(const BakeSettings& settings) {
+  if (settings.casts_shadows) return;
+  const auto refuse = [](bool given, const std::string& setting) {
+    if (given) throw WrongUsage("shadows: found none beside " + setting + "; expected cast, or no " + setting);
+  };
+  refuse(settings.bounces.any(), "bounces");
+  refuse(settings.subsurface.wanted(), "subsurface");
+  refuse(settings.adaptive > 0, "adaptive");
+  refuse(settings.max_error.wanted, "max-error");
+}
 
 OptionSet bake_options(BakeSettings& settings) {
   OptionSet options, surroundings, subsurface, shadows;

@@ -70,8 +70,9 @@ struct BakeSettings {
   int bounce_memory = 512;     ///< MB of rays that bounces may keep; changes no result
   BakeBackend backend = BakeBackend::automatic;
   BakeReceiver receiver = BakeReceiver::high;
-  bool per_vertex = false;  ///< vertices receive light instead of texels
-  Extent size;              ///< texels, if no detail folder says it; 0: the size that the atlas was packed for
+  bool casts_shadows = true;  ///< whether occluders shadow; else transfer is that of free receivers, in closed form
+  bool per_vertex = false;    ///< vertices receive light instead of texels
+  Extent size;                ///< texels, if no detail folder says it; 0: the size that the atlas was packed for
   std::string gl_device = "auto";
   int shadow_size = 1024;            ///< texels; 0: the smallest size whose error is under that of storing
   ShadowMapSettings shadows;         ///< except size_texels, which shadow_size replaces
@@ -80,6 +81,9 @@ struct BakeSettings {
   int verify_directions = 0;  ///< 0: no verification
   int verify_texels = 2048;
 };
+
+/// Throws WrongUsage where settings ask for no shadows and for what follows rays.
+void check_shadows(const BakeSettings& settings);
 
 /// Returns the settings as options, for the command line, pipeline.yaml and the report.
 OptionSet bake_options(BakeSettings& settings);

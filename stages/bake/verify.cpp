@@ -51,7 +51,8 @@ BakeSettings settled(const BakeSettings& settings, const BakeResult& result) {
   BakeSettings fixed = settings;
   fixed.max_error = {};
   fixed.adaptive = 0;
-  fixed.directions = result.directions;
+  fixed.casts_shadows = true;  // what leaving them out costs is a part of the error
+  if (result.directions > 0) fixed.directions = result.directions;
   fixed.sampling = result.sampling;
   if (result.bounces) fixed.bounces = {.count = static_cast<int>(result.bounces->energy.size())};
   return fixed;

@@ -22,6 +22,7 @@ constexpr CauseText texts[] = {
     {"bits", "Bits: values are rounded", "rounding to few bits", "16 bits"},
     {"visibility", "Visibility: what the bake's engine sees", "what the bake's engine sees",
      "another backend, larger depth maps"},
+    {"shadows", "Shadows: the bake leaves them out", "shadows, which the bake leaves out", "shadows: cast"},
     {"bounces", "Bounces and visibility: light that bounces, and what the bake's engine sees", "light that bounces",
      "a smaller bounce-edge"},
     {"subsurface",

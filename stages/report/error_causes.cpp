@@ -83,6 +83,17 @@ ErrorSampling sampling_of(const SplitInput& input) {
   return sampling;
 }
 
+/// Returns the transfer of free points with these normals.
+TransferRows unshadowed_rows(const std::vector<Eigen::Vector3f>& normals, int bands) {
+  const ShBasis basis(bands);
+  TransferRows rows{static_cast<std::size_t>(basis.size()), {}};
+  for (const Eigen::Vector3f& normal : normals) {
+    const std::vector<float> values = unoccluded_transfer(basis, normal);
+    rows.values.insert(rows.values.end(), values.begin(), values.end());
+  }
+  return rows;
+}
+
 using Colors = std::vector<Eigen::Vector3f>;
 
 /// What albedo does to transfer: nothing, or what the high mesh's own and the asset's make of it.
@@ -225,10 +236,11 @@ class SplitWay {
     const auto cause_of = [&](const CauseStep& step, const BandSquares& of_step) {
       return ErrorCause{step.cause, error(std::accumulate(of_step.begin(), of_step.end(), 0.0)), of_step};
     };
-    if (at_vertices_ != nullptr) {
-      const CauseStep step{"vertices", *sampled_, *at_vertices_};
-      split_.at_vertices = cause_of(step, relative(sums.of_step(step, bands).by_band));
-    }
+    const auto measured = [&](const CauseStep& step) {
+      return cause_of(step, relative(sums.of_step(step, bands).by_band));
+    };
+    if (at_vertices_) split_.at_vertices = measured(*at_vertices_);
+    if (unshadowed_) split_.unshadowed = measured(*unshadowed_);
     for (const CauseStep& step : steps_) {
       if (step.cause == "compression" && input_.compressed == nullptr) continue;
       BandSquares squares = relative(sums.of_step(step, bands).by_band);
@@ -278,17 +290,22 @@ class SplitWay {
     seen_ = &add(direct_seen + bounced.through(seen));
     progress_(0.6);
 
+    const bool casts_shadows = !input_.bake_directions.empty();
     const auto by_bake = [&](const SplitTransport& transport, const Receivers& receivers) {
-      return in_all_channels(transport.direct(receivers, bands, input_.bake_directions));
+      return in_all_channels(transport.direct(receivers, bands, casts_shadows ? input_.bake_directions : directions));
     };
     const Station& sampled = add(Station(stood(by_bake(transport_, at_stood()))));
     steps_.push_back({"directions", direct_stood, sampled});
-    if (input_.try_vertices && input_.detail != nullptr && input_.albedo == nullptr) {
+    if (input_.try_others && input_.detail != nullptr && input_.albedo == nullptr) {
       const std::vector<std::uint32_t> vertices = slots_of(samples_.vertex_lookups);
       const PointList points = points_of_vertices(input_, vertices);
-      sampled_ = &sampled;
-      at_vertices_ =
-          &add(Station(looked_up(samples_.vertex_lookups, vertices, by_bake(transport_, points.receivers()))));
+      const Station& at_vertices =
+          add(Station(looked_up(samples_.vertex_lookups, vertices, by_bake(transport_, points.receivers()))));
+      at_vertices_.emplace(CauseStep{"vertices", sampled, at_vertices});
+    }
+    if (input_.try_others) {
+      const Station& free = add(Station(stood(in_all_channels(unshadowed_rows(samples_.stood_normals, bands)))));
+      unshadowed_.emplace(CauseStep{"shadows", direct_stood, free});
     }
     TransferRows at_slots = by_bake(transport_, high_points_.receivers());
     progress_(0.8);
@@ -309,6 +326,13 @@ class SplitWay {
       bounced_at_slots = bounced_at(*low_transport_, low_points_.receivers());
       filtered = &add(Station(of_slots(paint_.slots(at_slots))));
       steps_.push_back({"receivers", on_high, add(*filtered + bounced_at_slots.through(in_slots_color)), inside});
+    }
+    if (!casts_shadows) {
+      const PointList& points = low_transport_ ? low_points_ : high_points_;
+      at_slots = in_all_channels(unshadowed_rows(points.normals, bands));
+      const Station& free = add(Station(of_slots(paint_.slots(at_slots))));
+      steps_.push_back({"shadows", *filtered, free, inside});
+      filtered = &free;
     }
     if (paint_.within()) {
       const Station& colored = add(Station(of_slots(paint_.baked(at_slots))));
@@ -388,7 +412,7 @@ class SplitWay {
   std::deque<Station> stations_;                 ///< whose addresses stay
   std::vector<CauseStep> steps_;
   const Station *seen_in_all_bands_ = nullptr, *seen_ = nullptr, *stored_ = nullptr;
-  const Station *sampled_ = nullptr, *at_vertices_ = nullptr;  ///< null: lookups between vertices are not tried
+  std::optional<CauseStep> at_vertices_, unshadowed_;  ///< steps on other ways
   ErrorSplit split_;
 };
 
@@ -420,8 +444,11 @@ Json to_json(const ErrorSplit& split) {
                {"samples", split.samples},
                {"reference_directions", split.directions},
                {"reference_bands", split.bands}};
-  if (split.at_vertices)
-    json["at_vertices"] = {{"error", split.at_vertices->error}, {"squares_by_band", split.at_vertices->squares}};
+  const auto add = [&](const char* name, const std::optional<ErrorCause>& cause) {
+    if (cause) json[name] = {{"error", cause->error}, {"squares_by_band", cause->squares}};
+  };
+  add("at_vertices", split.at_vertices);
+  add("unshadowed", split.unshadowed);
   return json;
 }
 

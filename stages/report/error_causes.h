@@ -33,6 +33,8 @@ struct ErrorSplit {
   std::vector<ErrorCause> causes;
   std::optional<ErrorCause> at_vertices = {};  ///< what lookups between the low mesh's vertices would contribute, in
                                                ///< place of those between texels
+  std::optional<ErrorCause> unshadowed = {};   ///< what transfer without shadows would contribute, in place of that
+                                               ///< over the bake's directions
   BandSquares squares;                         ///< of all causes but bands together, as those of one cause
   BandSquares seen;         ///< squares of the transfer seen, in the reference's bands, over that in the asset's bands
   std::size_t samples = 0;  ///< pixels
@@ -59,7 +61,7 @@ struct SplitInput {
   const PrtAsset* compressed = nullptr;  ///< the same by kiln-compress; null: none
   const DetailMaps* detail = nullptr;    ///< the points of the high mesh that texels stand for; null: vertices were
                                          ///< baked, and `low` is its mesh
-  std::vector<Eigen::Vector3f> bake_directions;  ///< directions of the bake
+  std::vector<Eigen::Vector3f> bake_directions;  ///< directions of the bake; none: it has no shadows
   int bounces = 0;                               ///< how often light bounces; the scene has albedos then
   const LowReceivers* on_low = nullptr;          ///< null: the bake's receivers are on the high mesh
   std::vector<ScatterProfile> scattering = {};   ///< of light beneath the surface, for one colour or three; none: empty
@@ -72,8 +74,8 @@ struct SplitInput {
                                                  ///< lighting_prior
   ErrorSampling sampling = {};                   ///< half of its pixels where they have a size or light
                                                  ///< bounces, a quarter where it scatters
-  bool try_vertices = false;                     ///< whether to measure `at_vertices`: of textures alone, without
-                                                 ///< albedo in them and light beneath the surface
+  bool try_others = false;                       ///< whether to measure `at_vertices`, of textures without albedo in
+                                                 ///< them, and `unshadowed`; neither of light beneath the surface
 };
 
 /// Measures E at points spread evenly over the low mesh, each seen from a direction of its own, by changing one thing
@@ -89,6 +91,7 @@ struct SplitInput {
 /// - `bits`: as computed, or rounded to the planes' ranges;
 /// - `visibility`: by rays, or as stored; where light bounces it is called `bounces`, and paths add that light to the
 ///   rays';
+/// - `shadows`: with those that the bake leaves out, or without; `directions` are the reference's then, of no error;
 /// - `seams`: in place of the last ones from `texels` on, from the point to what is stored, where texels at the border
 /// of a chart are
 ///   looked up;

@@ -112,6 +112,7 @@ constexpr Known known_metrics[] = {
     {"report.error.causes.directions", "of it: directions", Unit::share, Better::lower},
     {"report.error.causes.bits", "of it: bits", Unit::share, Better::lower},
     {"report.error.causes.visibility", "of it: visibility", Unit::share, Better::lower},
+    {"report.error.causes.shadows", "of it: shadows left out", Unit::share, Better::lower},
     {"report.error.causes.albedo", "of it: albedo", Unit::share, Better::lower},
     {"report.error.causes.receivers", "of it: receivers on the low mesh", Unit::share, Better::lower},
     {"report.error.causes.subsurface", "of it: light beneath the surface", Unit::share, Better::lower},

@@ -88,9 +88,10 @@ OptionSet report_options(ReportSettings& settings) {
       "How often light bounces in what the error is measured against; baked: as often as in the bake",
       parse_error_bounces,
       [](const std::optional<int>& bounces) { return bounces ? std::to_string(*bounces) : "baked"; });
-  options.toggle("error-vertices", settings.error_vertices,
-                 "Measure as well what transfer at the vertices of the low mesh would cost in place of texels "
-                 "(error.at_vertices), which `kiln plan` asks for");
+  options.toggle(
+      "error-others", settings.error_others,
+      "Measure as well what the asset would cost otherwise: with transfer at the vertices of the low mesh in "
+      "place of texels (error.at_vertices), and without shadows (error.unshadowed); `kiln plan` asks for it");
   options.text("predicted", settings.predicted,
                "What `kiln plan` predicted, to show beside what is measured: 'total=0.008; geometry=0.004; ...'");
   return options;

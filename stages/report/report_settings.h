@@ -34,7 +34,7 @@ struct ReportSettings {
   double error_pixels = 0;                ///< longest side of the asset as it is seen, pixels; 0: any size
   int error_samples = 4096;               ///< pixels that the error is measured at
   std::optional<int> error_bounces;       ///< bounces of light that E expects; nothing: as many as were baked
-  bool error_vertices = false;            ///< whether to measure transfer at vertices in place of texels, too
+  bool error_others = false;              ///< whether to measure vertices in place of texels, and no shadows, too
   std::string predicted;                  ///< what a plan predicted: "total=0.008; geometry=0.004; ..."
 };
 

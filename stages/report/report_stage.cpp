@@ -33,6 +33,10 @@ bool has(const AssetSettings& all, const char* stage, const char* name, const ch
 
 bool bake_has(const AssetSettings& all, const char* name, const char* value) { return has(all, "bake", name, value); }
 
+bool measures_others(const AssetSettings& all) {
+  return !has(all, "report", "error-others", "false") && bake_has(all, "subsurface", "none");
+}
+
 StageOptions options() { return StageOptions::of(report_options); }
 
 StageRun run(const AssetPlan& plan) {
@@ -71,14 +75,17 @@ const StageInfo& report_stage() {
                   {"error.causes.texels", "error.causes.texels", "per-vertex: false of bake",
                    [](const AssetSettings& all) { return !bakes_vertices(all); }},
                   {"error.causes.vertices", "error.causes.vertices", "per-vertex: true of bake", bakes_vertices},
-                  {"error.at_vertices.error", "error.at_vertices.error", "error-vertices: true of report",
-                   [](const AssetSettings& all) { return !has(all, "report", "error-vertices", "false"); }},
+                  {"error.at_vertices.error", "error.at_vertices.", "error-others of report, per-vertex: false of bake",
+                   [](const AssetSettings& all) { return measures_others(all) && !bakes_vertices(all); }},
+                  {"error.unshadowed.error", "error.unshadowed.", "error-others of report", measures_others},
                   {"error.causes.directions", "error.causes.directions", "subsurface of bake",
                    [](const AssetSettings& all) { return bake_has(all, "subsurface", "none"); }},
                   {"error.causes.visibility", "error.causes.visibility", "bounces or subsurface of bake",
                    [](const AssetSettings& all) {
                      return bake_has(all, "subsurface", "none") && bake_has(all, "bounces", "0");
                    }},
+                  {"error.causes.shadows", "error.causes.shadows", "shadows: none of bake",
+                   [](const AssetSettings& all) { return !bake_has(all, "shadows", "cast"); }},
                   {"error.causes.bounces", "error.causes.bounces", "bounces or subsurface of bake",
                    [](const AssetSettings& all) {
                      return bake_has(all, "subsurface", "none") && !bake_has(all, "bounces", "0");

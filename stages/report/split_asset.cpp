@@ -19,9 +19,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Returns the directions of the bake.
+/// Returns the directions of the bake; none where it has no shadows.
 std::vector<Eigen::Vector3f> directions_of(const Json& bake) {
   const Json& settings = bake.at("settings");
+  if (settings.value("shadows", std::string("cast")) == "none") return {};
   const std::string sampling = settings.value("sampling", std::string("fibonacci"));
   const bool by_error = settings.value("max-error", std::string("none")) != "none";
   return sample_directions(by_error                    ? Sampling::progressive
@@ -113,7 +114,7 @@ ErrorSplit split_error(const AssetFolder& asset, const TriangleMesh& low, const 
   if (settings.error_pixels > 0)
     input.sampling.pixel_size = bounding_box(high.mesh).sides().maxCoeff() / settings.error_pixels;
   input.sampling.seed = static_cast<std::uint64_t>(run.seed);
-  input.try_vertices = settings.error_vertices && plain.opacity_file.empty();
+  input.try_others = settings.error_others && plain.opacity_file.empty();
 
   // Step 1: follow what the bake has had otherwise: receivers, light beneath the surface, albedo.
   std::optional<SceneMesh> low_scene;

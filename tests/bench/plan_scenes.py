@@ -66,8 +66,8 @@ def kiln(folder, *words):
 
 def cost_of(asset):
     """Returns CPU seconds and bytes of an asset's folder."""
-    records = ["simplify.json", "atlas.json", "normals/normals.json", "prt/bake.json"]
-    seconds = sum(json.loads((asset / name).read_text())["cpu_seconds"] for name in records)
+    records = [asset / name for name in ("simplify.json", "atlas.json", "normals/normals.json", "prt/bake.json")]
+    seconds = sum(json.loads(file.read_text())["cpu_seconds"] for file in records if file.exists())
     return seconds, sum(file.stat().st_size for file in (asset / "prt").iterdir() if file.name != "bake.json")
 
 

@@ -18,6 +18,7 @@ assets:
   low: {mesh: post.obj, bake: {receiver: low}, budgets: {report.error.causes.receivers: {max: 0.2}}}
   within: {mesh: post.obj, normals: {albedo: '0.8,0.5,0.2'}, bake: {bake-albedo: true}}
   painted: {mesh: post.obj, bake: {albedo: '0.5'}}
+  free: {mesh: post.obj, bake: {shadows: none}, budgets: {report.error.causes.shadows: {max: 0.9}}}
   dots: {mesh: post.obj, bake: {per-vertex: true}, budgets: {report.error.causes.vertices: {max: 0.9}}}
   jade: {mesh: post.obj, bake: {subsurface: marble, subsurface-scale: 50}, budgets: {report.error.causes.subsurface: {max: 0.2}}}
 """
@@ -34,7 +35,7 @@ with tempfile.TemporaryDirectory() as name:
 
     common = {"geometry", "albedo", "bits", "seams", "bands"}
     direct = {"texels", "directions", "visibility"}
-    causes = {"plain": direct, "low": direct | {"receivers"}, "within": direct, "painted": direct,
+    causes = {"plain": direct, "free": direct | {"shadows"}, "low": direct | {"receivers"}, "within": direct, "painted": direct,
               "jade": {"texels", "subsurface"}, "dots": {"vertices", "directions", "visibility"}}
     for asset, own in causes.items():
         error = report_of(asset)["error"]
@@ -48,6 +49,10 @@ with tempfile.TemporaryDirectory() as name:
         own = report_of(asset)
         assert abs(own["error"]["total"] - plain["error"]["total"]) < 0.01 * plain["error"]["total"], (asset, own["error"])
         assert abs(own["relative_l2"] - plain["relative_l2"]) < 0.01, (asset, own["relative_l2"], plain["relative_l2"])
+
+    # Without shadows no direction is taken, and what that leaves out is measured.
+    free = report_of("free")["error"]["causes"]
+    assert free["directions"] == 0 and free["shadows"] > 10 * free["visibility"], free
     page = (folder / "out" / "jade" / "report.html").read_text()
     assert "do not tell them apart" in page
 

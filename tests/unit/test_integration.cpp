@@ -122,6 +122,29 @@ TEST_P(Cuts, NothingToTestIsStillABake) {
             result.channels.front().values);
 }
 
+TEST(Unshadowed, IsTheClampedCosineOfEveryNormal) {
+  // Points inside a closed sphere, which shadows them wholly: without shadows only their normals count.
+  const Occluders occluders = join_occluders({shapes::icosphere(2)});
+  ReceiverSet receivers;
+  for (const Eigen::Vector3f& normal : {Eigen::Vector3f(0, 0, 1), Eigen::Vector3f(0.6f, 0, 0.8f)}) {
+    receivers.slots.push_back(static_cast<std::uint32_t>(receivers.slots.size()));
+    receivers.positions.emplace_back(0, 0, 0);
+    receivers.normals.push_back(normal);
+  }
+  receivers.width = receivers.height = 2;
+  BakeSettings settings;
+  settings.bands = 3;
+  settings.casts_shadows = false;
+  const BakeResult result = bake({receivers, occluders, settings});
+  EXPECT_EQ(result.directions, 0);
+  EXPECT_EQ(result.unoccluded, 2u);
+  // Bands of the clamped cosine over pi are 1, 2/3 and 1/4 [Ramamoorthi 2001]; Y_1^1 is 0.488603 x.
+  EXPECT_NEAR(result.channels.front().plane(0)[0], 0.28209479, 1e-6);
+  EXPECT_NEAR(result.channels.front().plane(3)[0], 0, 1e-6);
+  EXPECT_NEAR(result.channels.front().plane(3)[1], 0.48860251 * 2 / 3 * 0.6, 1e-6);
+  EXPECT_NEAR(result.channels.front().plane(6)[0], 0.31539157 / 4 * 2, 1e-6);
+}
+
 TEST_P(Cuts, AnInterruptedBakeGoesOnToTheSameBits) {
   const Checkpoints first{folder / "checkpoint", 0, false};
   Checkpoints again = first;

@@ -114,6 +114,48 @@ TEST(AssetModel, VerticesCostTheirLookupsAndNoAtlas) {
   for (const Choice& choice : choices_of(full_grid(AssetModel(pilot)), 0)) ASSERT_TRUE(choice.per_vertex);
 }
 
+TEST(AssetModel, MoreDirectionsAreNeverCheaper) {
+  // Pilots whose bakes take what reading and writing take, the second by chance a little less.
+  Pilot pilot;
+  pilot.coarse = build_of(500, 64, 256);
+  pilot.fine = build_of(2000, 128, 1024);
+  pilot.coarse.cpu_seconds["bake"] = 0.95;
+  pilot.fine.cpu_seconds["bake"] = 0.90;
+  const AssetModel asset(pilot);
+  double last = 0;
+  for (const int directions : full_grid(asset).directions) {
+    const double seconds = asset.predict({500, 64, 2, directions, 8, false, 0}).cpu_seconds;
+    EXPECT_GE(seconds, last) << directions;
+    last = seconds;
+  }
+}
+
+TEST(AssetModel, WithoutShadowsCostsThemAndNoDirections) {
+  Pilot pilot;
+  pilot.coarse = build_of(500, 64, 256);
+  pilot.fine = build_of(2000, 128, 1024);
+  pilot.input_triangles = 100000;
+  pilot.fine.unshadowed = {0.09, 0, 0, 0, 0, 0};
+  pilot.may_be_unshadowed = true;
+  const AssetModel asset(pilot);
+  const Prediction at = asset.predict({2000, 128, 6, 0, 8, false, 0});
+  double seen = 0;
+  for (int l = 0; l < 6; ++l) seen += std::pow(0.5, l);
+  EXPECT_NEAR(at.causes.at("shadows"), std::sqrt(0.09 / seen), 1e-12);
+  EXPECT_FALSE(at.causes.contains("directions") || at.causes.contains("visibility"));
+
+  // They are left out where that is not seen: of a convex asset.
+  const auto best = [&] {
+    PlanGoal goal;
+    goal.error = 0.3;
+    const AssetModel model(pilot);
+    return cheapest(model, choices_of(full_grid(model), 0), goal)->choice.directions;
+  };
+  EXPECT_GT(best(), 0);
+  pilot.fine.unshadowed[0] = 0;
+  EXPECT_EQ(best(), 0);
+}
+
 TEST(AssetModel, SecondsOfLargeBakesAreNearThoseMeasured) {
   // CPU seconds of kiln-bake as they were measured, of 2,000 triangles each: pilots of 8 bands at 64 x 64 and 128 x 128
   // texels, 256 and 1,024 directions, and what larger bakes of 5 bands took.

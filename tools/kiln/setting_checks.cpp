@@ -104,6 +104,8 @@ class Checks {
   }
 
   void check_bake() const {
+    try_parsing(where("bake", {"shadows"}), "change the line, or remove the other one",
+                [&] { check_shadows(settings_from(asset_.settings.at("bake"), bake_options)); });
     const int bits = value("bake", "bits").get<int>();
     require(bits == 8 || bits == 16, "bake", "bits", "8 or 16", "change the line");
     for (const char* stage : {"bake", "report"}) {

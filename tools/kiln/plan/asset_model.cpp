@@ -27,6 +27,9 @@ constexpr double atlas_over_pilot = 1.4;
 /// and the armadillo of 500 to 8,000 triangles, whose vertices stand at creases where a shadow ends.
 constexpr double steepest_of_vertices = 1.2;
 
+/// Directions as which a bake without any counts: what is left, reading and writing, is no dearer.
+constexpr int fewest_directions = 64;
+
 double sum_of_first(const std::vector<double>& values, int count) {
   const std::size_t n = std::min(values.size(), static_cast<std::size_t>(count));
   return std::accumulate(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(n), 0.0);
@@ -103,9 +106,11 @@ Prediction AssetModel::predict(const Choice& choice) const {
     if (square_of(fine, "albedo", bands) > 0) follow("albedo", &PilotBuild::texels, covered, 1.5);
     follow("seams", &PilotBuild::texels, covered, 1);
   }
-  follow("directions", &PilotBuild::directions, choice.directions, 1.5);
+  if (choice.directions > 0) follow("directions", &PilotBuild::directions, choice.directions, 1.5);
   squares["bits"] = square_of(fine, "bits", bands) * std::pow(0.25, choice.bits - pilot_bits);
-  if (pilot_.has_bounces && choice.bounces)
+  if (choice.directions == 0)
+    squares["shadows"] = share_of(fine.unshadowed, fine, bands);
+  else if (pilot_.has_bounces && choice.bounces)
     // Bounced light is gathered over the bake's directions. Its error is averaged over the four texels of a lookup,
     // which keeps 4/9 of its square, until texels are finer than its grain.
     squares["bounces"] =
@@ -153,9 +158,11 @@ double AssetModel::bake_seconds(const Choice& choice) const {
     return seconds_per_plane_texel * build.texels * build.bands * build.bands;
   };
   const auto pairs = [](const PilotBuild& build) { return (build.texels + build.cache_points) * build.directions; };
-  const double bake = power_law(pairs(coarse), stage_seconds(coarse, "bake") - planes(coarse), pairs(fine),
-                                stage_seconds(fine, "bake") - planes(fine),
-                                (receivers(choice) + fine.cache_points) * choice.directions, least_bake_exponent, 1) +
+  // More work is never cheaper: where the pilots say so, what they measured is reading and writing.
+  const double least = stage_seconds(coarse, "bake") - planes(coarse),
+               most = std::max(least, stage_seconds(fine, "bake") - planes(fine));
+  const double work = (receivers(choice) + fine.cache_points) * std::max(choice.directions, fewest_directions);
+  const double bake = power_law(pairs(coarse), least, pairs(fine), most, work, least_bake_exponent, 1) +
                       seconds_per_plane_texel * receivers(choice) * choice.bands * choice.bands;
   if (!pilot_.has_bounces || choice.bounces || stage_seconds(coarse, "bake") <= 0) return bake;
   // Without bounces a bake is as much cheaper as in the pilot.

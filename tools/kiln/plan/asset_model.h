@@ -20,6 +20,7 @@ struct PilotBuild {
   std::map<std::string, std::vector<double>> squares;  ///< of each cause, by band
   std::vector<double> at_vertices;  ///< what lookups between vertices would cost in place of texels, by band; empty:
                                     ///< the asset needs textures
+  std::vector<double> unshadowed;   ///< what leaving out shadows would cost, by band; empty: not known
   double total = 0;                 ///< E
   double uncertainty = 0;           ///< of E, of 95 % confidence
   double root_sum = 0;              ///< root of the sum of the causes' squares
@@ -32,14 +33,15 @@ struct PilotBuild {
 /// Two builds of an asset, the second with more triangles, texels and directions, and what is known of its mesh.
 struct Pilot {
   PilotBuild coarse, fine;
-  PilotBuild without_bounces;     ///< like `coarse`, without bounces, against a reference that has them
-  bool has_bounces = false;       ///< whether light bounces, and `without_bounces` is there
-  PilotBuild compressed;          ///< like `fine`, with the bands chosen, compressed
-  bool is_compressed = false;     ///< whether that is there
-  double input_triangles = 0;     ///< of the high mesh
-  bool has_own_low = false;       ///< whether the low mesh is the asset's own, whose triangles are no choice
-  bool may_be_vertices = false;   ///< whether both builds have `at_vertices`, and the pipeline allows such a bake
-  bool must_be_vertices = false;  ///< whether the pipeline asks for it
+  PilotBuild without_bounces;      ///< like `coarse`, without bounces, against a reference that has them
+  bool has_bounces = false;        ///< whether light bounces, and `without_bounces` is there
+  PilotBuild compressed;           ///< like `fine`, with the bands chosen, compressed
+  bool is_compressed = false;      ///< whether that is there
+  double input_triangles = 0;      ///< of the high mesh
+  bool has_own_low = false;        ///< whether the low mesh is the asset's own, whose triangles are no choice
+  bool may_be_vertices = false;    ///< whether both builds have `at_vertices`, and the pipeline allows such a bake
+  bool may_be_unshadowed = false;  ///< whether the pilot knows `unshadowed`, and the pipeline allows such a bake
+  bool must_be_vertices = false;   ///< whether the pipeline asks for it
 };
 
 /// Settings that a plan decides for an asset.
@@ -47,7 +49,7 @@ struct Choice {
   int triangles = 0;
   int size = 0;  ///< texels along a side of the atlas; 0 where vertices are baked
   int bands = 0;
-  int directions = 0;
+  int directions = 0;  ///< 0: the bake has no shadows
   int bits = 8;
   bool bounces = false;     ///< whether light bounces, as often as the pipeline says
   double compression = 0;   ///< E that kiln-compress may add, by the measured prior; 0: not compressed

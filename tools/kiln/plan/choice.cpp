@@ -57,6 +57,8 @@ ChoiceGrid full_grid(const AssetModel& model) {
   for (int bands = 1; bands <= model.most_bands(); ++bands) grid.bands.push_back(bands);
   grid.directions = {64,   96,   128,  192,  256,  384,  512,   768,   1024,
                      1536, 2048, 3072, 4096, 6144, 8192, 12288, 16384, 32768};
+  // Of choices that cost the same the first is taken: that without shadows, if it serves.
+  if (model.pilot().may_be_unshadowed) grid.directions.insert(grid.directions.begin(), 0);
   grid.bits = {8, 16};
   grid.bounces = {false};
   if (model.pilot().has_bounces) grid.bounces.push_back(true);
@@ -75,7 +77,7 @@ std::vector<Choice> choices_of(const ChoiceGrid& grid, double compression) {
         for (const int directions : grid.directions)
           for (const int bits : grid.bits) {
             // Fewer do not keep the functions apart (kiln-bake warns of it).
-            if (directions < 4 * bands * bands) continue;
+            if (directions > 0 && directions < 4 * bands * bands) continue;
             for (const bool bounces : grid.bounces)
               choices.push_back({triangles, size, bands, directions, bits, bounces, compression, per_vertex});
           }

@@ -42,8 +42,8 @@ struct ChoiceGrid {
 
 /// Returns the values that are worth a try for an asset: triangles from those of the coarse pilot to those of its high
 /// mesh, in steps of the root of two, atlases of the coarse pilot's to 4,096 texels, as many bands as the pilot knows,
-/// 64 to 32,768 directions, 8 and 16 bits, vertices in place of texels where the pilot may be that. Below the coarse
-/// pilot errors rise faster than it can know.
+/// 64 to 32,768 directions, or no shadows where the pilot may be without, 8 and 16 bits, vertices in place of texels
+/// where the pilot may be that. Below the coarse pilot errors rise faster than it can know.
 ChoiceGrid full_grid(const AssetModel& model);
 
 /// Returns every combination. `compression` is the E that kiln-compress may add in all of them, 0 for none.

@@ -42,7 +42,7 @@ const Overrides common_settings = {{"simplify.quality", "standard"},
                                    {"report.directions", "16"},
                                    {"report.lights", "ambient:1"},
                                    {"report.error-samples", "1024"},
-                                   {"report.error-vertices", "true"}};
+                                   {"report.error-others", "true"}};
 
 /// Returns settings of an asset's pilots whose bands stay as the pipeline has them, where those are more than those of
 /// other pilots: the bands, and directions that keep them apart.
@@ -91,8 +91,12 @@ PilotBuild read_build(const fs::path& asset, const std::string& last) {
   result.root_sum = error.at("root_sum_of_causes").get<double>();
   for (const auto& [cause, squares] : error.at("squares_by_band").items())
     if (cause != "total") (cause == "seen" ? result.seen : result.squares[cause]) = squares.get<std::vector<double>>();
-  if (const auto found = error.find("at_vertices"); found != error.end())
-    result.at_vertices = found->at("squares_by_band").get<std::vector<double>>();
+  const auto other = [&](const char* name) {
+    const auto found = error.find(name);
+    return found == error.end() ? std::vector<double>() : found->at("squares_by_band").get<std::vector<double>>();
+  };
+  result.at_vertices = other("at_vertices");
+  result.unshadowed = other("unshadowed");
   for (const char* stage : {"simplify", "atlas", "normals", "bake", "compress"})
     if (std::error_code code; fs::is_regular_file(layout::record(asset, stage), code))
       result.cpu_seconds[stage] = record_of(asset, stage).at("cpu_seconds").get<double>();
@@ -106,13 +110,12 @@ PilotBuild read_build(const fs::path& asset, const std::string& last) {
 
 }  // namespace
 
-bool allows_vertices(const Asset& asset) {
-  if (bakes_vertices(asset.settings)) return true;
+bool allows(const Asset& asset, const std::string& setting, const std::string& value) {
   try {
-    Asset at_vertices = asset;
-    override_settings(at_vertices, {{"bake.adaptive", "0"}, {"bake.per-vertex", "true"}}, "a plan's");
-    // A budget for what vertices have not asks for texels.
-    const std::vector<std::string> metrics = metrics_of(at_vertices.settings);
+    Asset other = asset;
+    override_settings(other, {{"bake.adaptive", "0"}, {"bake.max-error", "none"}, {setting, value}}, "a plan's");
+    // A budget for what would not be written asks for another value.
+    const std::vector<std::string> metrics = metrics_of(other.settings);
     return std::ranges::all_of(asset.budgets, [&](const std::string& budget) {
       return std::ranges::find(metrics, budget.substr(0, budget.find_first_of("<>"))) != metrics.end();
     });
@@ -120,6 +123,8 @@ bool allows_vertices(const Asset& asset) {
     return false;
   }
 }
+
+bool has_shadows(const Asset& asset) { return effective_setting(asset.settings, "bake", "shadows") != "none"; }
 
 bool has_bounces(const Asset& asset) {
   const auto bake = asset.settings.find("bake");
@@ -142,6 +147,7 @@ Pipeline PilotBuilds::pipeline_at(const std::string& name, const Overrides& over
     if (!compressed) asset.settings.erase("compress");
     Overrides settings = common_settings;
     if (bakes_vertices(asset.settings)) settings.emplace_back("bake.per-vertex", "false");
+    if (!has_shadows(asset)) settings.emplace_back("bake.shadows", "cast");
     settings.insert(settings.end(), overrides.begin(), overrides.end());
     // A way of simplifying that is kept is that of the pilots, too.
     std::erase_if(settings, [&](const auto& setting) {
@@ -220,8 +226,10 @@ std::map<std::string, Pilot> PilotBuilds::build(const std::vector<const Asset*>&
       pilot.input_triangles = std::numeric_limits<double>::infinity();  // it never becomes the high mesh
     }
     pilot.must_be_vertices = bakes_vertices(assets[k]->settings);
-    pilot.may_be_vertices =
-        !pilot.coarse.at_vertices.empty() && !pilot.fine.at_vertices.empty() && allows_vertices(*assets[k]);
+    pilot.may_be_vertices = !pilot.coarse.at_vertices.empty() && !pilot.fine.at_vertices.empty() &&
+                            allows(*assets[k], "bake.per-vertex", "true");
+    pilot.may_be_unshadowed =
+        !pilot.has_bounces && !pilot.fine.unshadowed.empty() && allows(*assets[k], "bake.shadows", "none");
     if (!pilot.has_bounces) continue;
     Overrides bare = coarse_settings;
     bare.emplace_back("bake.bounces", "0");

@@ -47,8 +47,11 @@ class PilotBuilds {
   double cpu_seconds_ = 0;
 };
 
-/// Tells whether an asset may be baked into vertices: whether none of its stages, settings and budgets needs texels.
-bool allows_vertices(const Asset& asset);
+/// Tells whether an asset may have a setting of the bake: whether none of its stages, settings and budgets forbids it.
+bool allows(const Asset& asset, const std::string& setting, const std::string& value);
+
+/// Tells whether the bake of an asset has shadows as the pipeline has it.
+bool has_shadows(const Asset& asset);
 
 /// Tells whether light bounces in an asset as the pipeline has it.
 bool has_bounces(const Asset& asset);

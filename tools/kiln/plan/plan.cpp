@@ -26,7 +26,7 @@ constexpr double share_of_compression = 0.5;  // of E, a quarter of its square
 /// Settings that a plan decides, except those of simplification's price.
 const std::vector<std::string> decided = {"simplify.faces",     "simplify.quality", "simplify.aware", "atlas.size",
                                           "bake.bands",         "bake.directions",  "bake.bits",      "bake.bounces",
-                                          "compress.max-error", "bake.per-vertex"};
+                                          "compress.max-error", "bake.per-vertex",  "bake.shadows"};
 
 /// Returns E asked for of an asset: that of the command, or the asset's budget.
 double asked_of(const Asset& asset, const PlanSettings& settings) {
@@ -54,6 +54,11 @@ int kept_number(const Asset& asset, const std::string& stage, const std::string&
     throw WrongUsage(fmt::format("keep: found {}.{} of '{}', which is {}; expected a whole number", stage, setting,
                                  asset.name, value.dump()));
   return value.get<int>();
+}
+
+std::vector<int> without_zero(std::vector<int> values) {
+  std::erase(values, 0);
+  return values;
 }
 
 /// Decides the settings of one asset.
@@ -108,6 +113,7 @@ class AssetPlanner {
     if (keeps("atlas.size") && has_atlas) grid.sizes = {kept_number(asset_, "atlas", "size")};
     if ((keeps("atlas.size") || keeps("bake.per-vertex")) && has_atlas) grid.per_vertex = {false};
     if (keeps("bake.bands")) grid.bands = {kept_number(asset_, "bake", "bands")};
+    if (keeps("bake.shadows")) grid.directions = has_shadows(asset_) ? without_zero(grid.directions) : std::vector{0};
     if (keeps("bake.directions")) grid.directions = {kept_number(asset_, "bake", "directions")};
     if (keeps("bake.bits")) grid.bits = {kept_number(asset_, "bake", "bits")};
     if (keeps("bake.bounces") && model_.pilot().has_bounces) grid.bounces = {true};
@@ -173,7 +179,12 @@ class AssetPlanner {
       add("atlas.size", std::to_string(choice.size),
           fmt::format("{} at texels, {:.2g} % at seams", costs("texels"), 100 * at.causes.at("seams")));
     add("bake.bands", std::to_string(choice.bands), costs("bands") + why_bands());
-    add("bake.directions", std::to_string(choice.directions), costs("directions"));
+    if (choice.directions == 0) {
+      add("bake.shadows", "none", costs("shadows") + ": what they are");
+    } else {
+      if (!has_shadows(asset_)) add("bake.shadows", "cast", "too much is lost without them");
+      add("bake.directions", std::to_string(choice.directions), costs("directions"));
+    }
     if (effective_setting(asset_.settings, "bake", "max-error") != "none")
       add("bake.max-error", "none", "the plan has decided");
     add("bake.sampling", "fibonacci", "the most even one");
