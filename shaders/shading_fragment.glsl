@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// The surface at a fragment of rasterisation.
+layout(location = 0) uniform int drawn_node;
+
+in vec3 surface_position;
+in vec3 surface_normal;
+in vec3 surface_color;
+in vec2 surface_uv;
+
+vec3 vertex_color;  // for varying parameters
+
+Surface surface_of_fragment() {
+  vertex_color = surface_color;
+  Surface surface;
+  surface.position = surface_position;
+  surface.object = times(nodes[drawn_node].object_from_scene, vec4(surface_position, 1.0));
+  surface.normal = normalize(surface_normal);
+  surface.to_eye = normalize(eye_and_weight.xyz - surface_position);
+  surface.uv = surface_uv;
+  vec2 across = dFdx(surface_uv), up = dFdy(surface_uv);
+  surface.footprint = footprint_of(footprint_code(sqrt(max(dot(across, across), dot(up, up)))));
+  kiln_material = nodes[drawn_node].material.x;
+  return surface;
+}

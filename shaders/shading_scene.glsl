@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// The scene as the parts of a frame read it, and the words in which shaders are written (docs/shaders.md).
+#include "shading_words.glsl"
+
+// A sample of a surface, in the scene's space.
+struct Surface {
+  vec3 position;
+  vec3 object;      // the same place in the object's space
+  vec3 normal;      // unit, interpolated over the mesh
+  vec3 to_eye;      // unit
+  vec2 uv;
+  float footprint;  // width of a pixel in units of uv
+};
+
+// What a shader tells the light, before it.
+struct Appearance {
+  vec3 base_color;  // for the shader itself; the light does not read it
+  vec3 normal;      // unit
+  float shininess;  // power of the highlight's cosine [Phong 1975]; 0: no highlight is computed
+  float mirror;     // above 0: the reflection map is looked up
+  float blur;       // level of the reflection map: 0 is sharp
+};
+
+// What the light is, computed once for all shaders. A white surface would have the radiance `diffuse`.
+struct Light {
+  vec3 diffuse;     // all lights: those with a direction times visibility and cosine, and the rest
+  vec3 specular;    // highlights of the lights with a direction, times visibility
+  vec3 reflection;  // radiance from the mirror's direction
+  float visibility; // of the first light, 0 in its shadow to 1
+};
+
+struct Node {
+  vec4 scene_from_object[3];  // rows
+  vec4 object_from_scene[3];
+  ivec4 material;             // x: first of its values; y: number of its shader
+  ivec4 planes;               // x: first layer; y: layers, 0: none; z: first texel of its light
+  vec4 planes_place;          // xy: scale of uvs; zw: half a texel
+};
+
+layout(std430, binding = 0) readonly buffer Nodes {
+  Node nodes[];
+};
+
+layout(std140, binding = 0) uniform View {
+  mat4 clip_from_scene;     // column vectors; moved by a part of a pixel for each sample
+  mat4 scene_from_clip;
+  mat4 picture_from_scene;  // clip space of the camera itself, in which reflections are looked up
+  vec4 eye_and_weight;      // w: share of the sample in the picture
+  vec4 cut_plane;           // surfaces below it are not drawn, if cutting is on
+  vec2 picture_size;
+  float time;               // seconds
+  int frame;
+};
+
+// Values of all materials: the constants, then what was computed once a frame.
+// SHADING_UNIFORMS: defined in the pass that computes the latter.
+#ifdef SHADING_UNIFORMS
+layout(std430, binding = 1) buffer Values {
+  vec4 kiln_values[];
+};
+layout(std430, binding = 2) buffer Counts {
+  uint evaluations;
+};
+#else
+layout(std140, binding = 2) uniform Values {
+  vec4 kiln_values[1024];
+};
+#endif
+int kiln_material;    // first value of the material at hand
+vec4 kiln_varyings;   // varying parameters of the sample at hand
+
+vec3 times(vec4 rows[3], vec4 place) {
+  return vec3(dot(rows[0], place), dot(rows[1], place), dot(rows[2], place));
+}
+
+// Looks a picture up in the level of its mip map that has a texel a footprint [Williams 1983].
+vec4 mip_mapped(sampler2D picture, vec2 uv, float footprint) {
+  ivec2 size = textureSize(picture, 0);
+  return textureLod(picture, uv, max(0.0, log2(footprint * float(max(size.x, size.y)))));
+}
