@@ -11,14 +11,14 @@ vec3 vertex_color;  // for varying parameters
 
 Surface surface_of_fragment() {
   vertex_color = surface_color;
+  kiln_node = drawn_node;
   Surface surface;
   surface.position = surface_position;
-  surface.object = times(nodes[drawn_node].object_from_scene, vec4(surface_position, 1.0));
   surface.normal = normalize(surface_normal);
-  surface.to_eye = normalize(eye_and_weight.xyz - surface_position);
   surface.uv = surface_uv;
   vec2 across = dFdx(surface_uv), up = dFdy(surface_uv);
   surface.footprint = footprint_of(footprint_code(sqrt(max(dot(across, across), dot(up, up)))));
+  see(surface);
   kiln_material = nodes[drawn_node].material.x;
   return surface;
 }

@@ -54,13 +54,13 @@ float visibility(int light, Surface surface) {
   return sum / 9.0;
 }
 
-vec3 rest_of_light(Surface surface, vec3 normal, int node) {
+vec3 rest_of_light(Surface surface, vec3 normal) {
 #ifdef SHADING_PRT
-  prt_layers = nodes[node].planes.y;
+  prt_layers = nodes[kiln_node].planes.y;
   if (prt_layers > 0) {
-    prt_first_layer = nodes[node].planes.x;
-    prt_first_light = nodes[node].planes.z;
-    vec4 place = nodes[node].planes_place;
+    prt_first_layer = nodes[kiln_node].planes.x;
+    prt_first_light = nodes[kiln_node].planes.z;
+    vec4 place = nodes[kiln_node].planes_place;
     float contributions[PRT_SAMPLES];
     contributions[0] = 1.0;
     return prt_exit_radiance(clamp(place.xy * surface.uv, place.zw, place.xy - place.zw), contributions);
@@ -69,9 +69,9 @@ vec3 rest_of_light(Surface surface, vec3 normal, int node) {
   return irradiance_at(normal);
 }
 
-Light light_at(Surface surface, Appearance appearance, int node) {
+Light light_at(Surface surface, Appearance appearance) {
   Light light;
-  light.diffuse = rest_of_light(surface, appearance.normal, node);
+  light.diffuse = rest_of_light(surface, appearance.normal);
   light.specular = vec3(0.0);
   light.reflection = vec3(0.0);
   light.visibility = 1.0;

@@ -10,6 +10,7 @@ struct Surface {
   vec3 to_eye;      // unit
   vec2 uv;
   float footprint;  // width of a pixel in units of uv
+  float width;      // width of a pixel at that distance, facing the camera, in the scene's units
 };
 
 // What a shader tells the light, before it.
@@ -50,6 +51,7 @@ layout(std140, binding = 0) uniform View {
   vec2 picture_size;
   float time;               // seconds
   int frame;
+  float pixel_angle;        // width of a pixel at a distance of 1
 };
 
 // Values of all materials: the constants, then what was computed once a frame.
@@ -68,9 +70,27 @@ layout(std140, binding = 2) uniform Values {
 #endif
 int kiln_material;    // first value of the material at hand
 vec4 kiln_varyings;   // varying parameters of the sample at hand
+int kiln_node;        // the node at hand
 
 vec3 times(vec4 rows[3], vec4 place) {
   return vec3(dot(rows[0], place), dot(rows[1], place), dot(rows[2], place));
+}
+
+// Turns directions of the object's space into the scene's, and back; the length changes with the node's scale.
+vec3 to_scene(vec3 direction) {
+  return times(nodes[kiln_node].scene_from_object, vec4(direction, 0.0));
+}
+vec3 to_object(vec3 direction) {
+  return times(nodes[kiln_node].object_from_scene, vec4(direction, 0.0));
+}
+
+// Completes a surface of which all but these is known.
+void see(inout Surface surface) {
+  surface.object = times(nodes[kiln_node].object_from_scene, vec4(surface.position, 1.0));
+  vec3 to_eye = eye_and_weight.xyz - surface.position;
+  float distance_to_eye = length(to_eye);
+  surface.to_eye = to_eye / distance_to_eye;
+  surface.width = pixel_angle * distance_to_eye;
 }
 
 // Looks a picture up in the level of its mip map that has a texel a footprint [Williams 1983].

@@ -7,14 +7,14 @@
 #define SHADING_STEPS 3
 #endif
 
-vec4 shaded(Surface surface, int shader, int node) {
-  kiln_material = nodes[node].material.x;
+vec4 shaded(Surface surface, int shader) {
+  kiln_material = nodes[kiln_node].material.x;
   Appearance appearance = Appearance(vec3(1.0), surface.normal, 0.0, 0.0, 0.0);
 #if SHADING_STEPS >= 1
   run_before(shader, surface, appearance);
 #endif
 #if SHADING_STEPS >= 2
-  Light light = light_at(surface, appearance, node);
+  Light light = light_at(surface, appearance);
 #endif
 #if SHADING_STEPS >= 3
   return vec4(run_after(shader, surface, appearance, light), 1.0);

@@ -2,18 +2,20 @@
 #include "runtime/shading/part_times.h"
 
 #include <chrono>
+#include <ctime>
 
 namespace kiln {
 
 void PartTimes::begin(const std::string& part) {
   Mark mark{part};
-  if (is_software_) {
-    glFinish();
-    const auto now = std::chrono::steady_clock::now().time_since_epoch();
-    mark.milliseconds = std::chrono::duration<double, std::milli>(now).count();
-  } else {
+  if (clock_ == Clock::gpu) {
     glGenQueries(1, &mark.query);
     glQueryCounter(mark.query, GL_TIMESTAMP);
+  } else {
+    glFinish();
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    mark.milliseconds = clock_ == Clock::cpu ? 1000.0 * static_cast<double>(std::clock()) / CLOCKS_PER_SEC
+                                             : std::chrono::duration<double, std::milli>(now).count();
   }
   marks_.push_back(mark);
 }
@@ -23,7 +25,7 @@ std::map<std::string, double> PartTimes::take() {
   std::vector<double> at;
   for (const Mark& mark : marks_) {
     double milliseconds = mark.milliseconds;
-    if (!is_software_) {
+    if (clock_ == Clock::gpu) {
       GLuint64 nanoseconds = 0;
       glGetQueryObjectui64v(mark.query, GL_QUERY_RESULT, &nanoseconds);
       glDeleteQueries(1, &mark.query);

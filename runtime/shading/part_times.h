@@ -9,11 +9,17 @@
 
 namespace kiln {
 
-/// Measures the parts of frames: by timestamps of the GPU, or, where a CPU draws, whose timestamps do not say when work
-/// is done, by waiting for it and looking at the clock.
+/// Measures the parts of frames. A CPU that draws has timestamps that do not say when work is done; clocks are looked at
+/// instead, when it is.
 class PartTimes {
  public:
-  explicit PartTimes(bool is_software) : is_software_(is_software) {}
+  enum class Clock {
+    gpu,   ///< timestamps of the GPU
+    wall,  ///< the time that passes
+    cpu,   ///< the time that all threads of the program run, which other programs do not lengthen
+  };
+  explicit PartTimes(bool is_software) : clock_(is_software ? Clock::wall : Clock::gpu) {}
+  explicit PartTimes(Clock clock) : clock_(clock) {}
 
   /// Ends the part at hand, if any, and begins another; an empty name only ends.
   void begin(const std::string& part);
@@ -24,10 +30,10 @@ class PartTimes {
  private:
   struct Mark {
     std::string part;
-    double milliseconds = 0;  ///< of a software renderer
+    double milliseconds = 0;  ///< of the clocks but the GPU's
     GLuint query = 0;
   };
-  bool is_software_;
+  Clock clock_;
   std::vector<Mark> marks_;
 };
 

@@ -31,7 +31,7 @@ GlFramebuffer framebuffer(const GlTexture& color, const GlTexture* depth) {
   return made;
 }
 
-constexpr GLfloat nothing[4] = {0, 0, 0, 0}, farthest = 1;
+constexpr GLfloat nothing[4] = {0, 0, 0, 0}, farthest = 0;  // depths are reversed
 
 }  // namespace
 

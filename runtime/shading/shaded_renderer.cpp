@@ -50,6 +50,21 @@ Eigen::Matrix4f lookup_matrix() {
   return matrix;
 }
 
+/// Turns GL's clip space into one whose depths are 1 at the near plane and 0 at the far one: float32 then holds them as
+/// exactly far away as near, and places that are computed from them.
+Eigen::Matrix4d reversed_depth() {
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  matrix(2, 2) = -0.5;
+  matrix(2, 3) = 0.5;
+  return matrix;
+}
+
+/// Sets how depths are compared, for reversed ones or for shadow maps.
+void set_depth_order(bool reversed) {
+  glClipControl(GL_LOWER_LEFT, reversed ? GL_ZERO_TO_ONE : GL_NEGATIVE_ONE_TO_ONE);
+  glDepthFunc(reversed ? GL_GREATER : GL_LESS);
+}
+
 /// Lists the shaders that a scene's materials name, each once, in the order in which they were read.
 std::vector<SurfaceShader> used_shaders(const ShadedScene& scene, const std::vector<SurfaceShader>& shaders) {
   std::vector<SurfaceShader> used;
@@ -91,6 +106,8 @@ struct ShadedRenderer::View {
   Eigen::Vector2f picture_size;
   float time = 0;
   GLint frame = 0;
+  float pixel_angle = 0;
+  float unused[3] = {};
 };
 
 ShadedRenderer::ShadedRenderer(ShadedScene scene, const std::vector<SurfaceShader>& shaders,
@@ -324,6 +341,7 @@ void ShadedRenderer::shade_tiles(const ShadedFrame& frame, bool adds, PartTimes*
 void ShadedRenderer::draw_sample(const ShadedFrame& frame, const View& view, bool is_only_sample, int skipped_node,
                                  PartTimes* times) {
   set_view(view);
+  set_depth_order(true);
   glViewport(0, 0, frame.width(), frame.height());
   glEnable(GL_DEPTH_TEST);
   const bool forward = settings_.way == ShadingWay::forward;
@@ -349,7 +367,7 @@ void ShadedRenderer::draw_sample(const ShadedFrame& frame, const View& view, boo
 void ShadedRenderer::draw_reflection(const Camera& camera, double seconds, int frame_number) {
   const MirrorPlane& mirror = *scene_.mirror;
   const Eigen::Matrix4d matrix = mirror_matrix(mirror);
-  const Eigen::Matrix4d clip = camera.clip_from_object().cast<double>() * matrix;
+  const Eigen::Matrix4d clip = reversed_depth() * camera.clip_from_object().cast<double>() * matrix;
   const Eigen::Vector3d eye = (matrix * camera.position.cast<double>().homogeneous()).head<3>();
   View view;
   view.clip_from_scene = view.picture_from_scene = clip.cast<float>();
@@ -359,6 +377,7 @@ void ShadedRenderer::draw_reflection(const Camera& camera, double seconds, int f
   view.picture_size = Eigen::Vector2f(reflection_->width(), reflection_->height());
   view.time = static_cast<float>(seconds);
   view.frame = frame_number;
+  view.pixel_angle = 2 * camera.half_height / static_cast<float>(reflection_->height());
   bind_tables(no_reflection_);
   reflection_->clear();
   glEnable(GL_CLIP_DISTANCE0);
@@ -372,11 +391,11 @@ void ShadedRenderer::draw(const Camera& camera, const ShadedFrame& frame, double
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
   glDisable(GL_STENCIL_TEST);
-  glDepthFunc(GL_LESS);
+  set_depth_order(false);
   glDepthMask(GL_TRUE);
   glEnable(GL_DEPTH_TEST);
   glVertexAttrib3f(color_attribute, 1, 1, 1);
-  const Eigen::Matrix4d clip = camera.clip_from_object().cast<double>();
+  const Eigen::Matrix4d clip = reversed_depth() * camera.clip_from_object().cast<double>();
   View view;
   view.picture_from_scene = clip.cast<float>();
   view.cut_plane.setZero();
@@ -384,6 +403,7 @@ void ShadedRenderer::draw(const Camera& camera, const ShadedFrame& frame, double
   view.picture_size = Eigen::Vector2f(frame.width(), frame.height());
   view.time = static_cast<float>(seconds);
   view.frame = frame_number;
+  view.pixel_angle = 2 * camera.half_height / static_cast<float>(frame.height());
 
   begin_part(times, "uniforms");
   set_view(view);
@@ -407,6 +427,7 @@ void ShadedRenderer::draw(const Camera& camera, const ShadedFrame& frame, double
     draw_sample(frame, view, settings_.samples == 1, -1, times);
   }
   if (times != nullptr) times->begin("");
+  set_depth_order(false);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   check_gl("drawing shaded surfaces");
 }
