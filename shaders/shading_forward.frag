@@ -5,5 +5,5 @@ layout(location = 0) out vec4 radiance_and_coverage;
 void main() {
   Surface surface = surface_of_fragment();
   kiln_varyings = varyings_of(surface);
-  radiance_and_coverage = shaded(surface, nodes[drawn_node].material.y);
+  radiance_and_coverage = shaded(surface, int(node_vector(drawn_node, 6).y));
 }

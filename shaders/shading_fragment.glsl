@@ -19,6 +19,6 @@ Surface surface_of_fragment() {
   vec2 across = dFdx(surface_uv), up = dFdy(surface_uv);
   surface.footprint = footprint_of(footprint_code(sqrt(max(dot(across, across), dot(up, up)))));
   see(surface);
-  kiln_material = nodes[drawn_node].material.x;
+  kiln_material = int(node_vector(drawn_node, 6).x);
   return surface;
 }

@@ -56,11 +56,12 @@ float visibility(int light, Surface surface) {
 
 vec3 rest_of_light(Surface surface, vec3 normal) {
 #ifdef SHADING_PRT
-  prt_layers = nodes[kiln_node].planes.y;
+  ivec4 planes = ivec4(node_vector(kiln_node, 7));
+  prt_layers = planes.y;
   if (prt_layers > 0) {
-    prt_first_layer = nodes[kiln_node].planes.x;
-    prt_first_light = nodes[kiln_node].planes.z;
-    vec4 place = nodes[kiln_node].planes_place;
+    prt_first_layer = planes.x;
+    prt_first_light = planes.z;
+    vec4 place = node_vector(kiln_node, 8);
     float contributions[PRT_SAMPLES];
     contributions[0] = 1.0;
     return prt_exit_radiance(clamp(place.xy * surface.uv, place.zw, place.xy - place.zw), contributions);

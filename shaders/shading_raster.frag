@@ -7,7 +7,7 @@ layout(location = 1) out vec4 varyings;
 
 void main() {
   Surface surface = surface_of_fragment();
-  words = packed_surface(surface.uv, surface.normal, surface.footprint, nodes[drawn_node].material.y, drawn_node);
+  words = packed_surface(surface.uv, surface.normal, surface.footprint, int(node_vector(drawn_node, 6).y), drawn_node);
 #ifdef SHADING_VARYINGS
   varyings = varyings_of(surface);
 #endif

@@ -30,17 +30,15 @@ struct Light {
   float visibility; // of the first light, 0 in its shadow to 1
 };
 
-struct Node {
-  vec4 scene_from_object[3];  // rows
-  vec4 object_from_scene[3];
-  ivec4 material;             // x: first of its values; y: number of its shader
-  ivec4 planes;               // x: first layer; y: layers, 0: none; z: first texel of its light
-  vec4 planes_place;          // xy: scale of uvs; zw: half a texel
-};
+// Nodes, nine vectors each: three rows of the matrix from the object's space to the scene's, three of its inverse; the
+// material (x: first of its values; y: number of its shader); planes (x: first layer; y: layers, 0: none; z: first texel
+// of its light); where these are in their layers (xy: scale of uvs; zw: half a texel). Neighbouring samples show several
+// nodes, so a texture is faster than a buffer whose index is the same for all.
+layout(binding = 1) uniform samplerBuffer node_vectors;
 
-layout(std430, binding = 0) readonly buffer Nodes {
-  Node nodes[];
-};
+vec4 node_vector(int node, int which) {
+  return texelFetch(node_vectors, 9 * node + which);
+}
 
 layout(std140, binding = 0) uniform View {
   mat4 clip_from_scene;     // column vectors; moved by a part of a pixel for each sample
@@ -64,29 +62,30 @@ layout(std430, binding = 2) buffer Counts {
   uint evaluations;
 };
 #else
-layout(std140, binding = 2) uniform Values {
-  vec4 kiln_values[1024];
-};
+layout(binding = 8) uniform samplerBuffer material_values;
 #endif
 int kiln_material;    // first value of the material at hand
 vec4 kiln_varyings;   // varying parameters of the sample at hand
 int kiln_node;        // the node at hand
 
-vec3 times(vec4 rows[3], vec4 place) {
-  return vec3(dot(rows[0], place), dot(rows[1], place), dot(rows[2], place));
+vec3 from_object(vec4 place, int node) {
+  return vec3(dot(node_vector(node, 0), place), dot(node_vector(node, 1), place), dot(node_vector(node, 2), place));
+}
+vec3 into_object(vec4 place, int node) {
+  return vec3(dot(node_vector(node, 3), place), dot(node_vector(node, 4), place), dot(node_vector(node, 5), place));
 }
 
 // Turns directions of the object's space into the scene's, and back; the length changes with the node's scale.
 vec3 to_scene(vec3 direction) {
-  return times(nodes[kiln_node].scene_from_object, vec4(direction, 0.0));
+  return from_object(vec4(direction, 0.0), kiln_node);
 }
 vec3 to_object(vec3 direction) {
-  return times(nodes[kiln_node].object_from_scene, vec4(direction, 0.0));
+  return into_object(vec4(direction, 0.0), kiln_node);
 }
 
 // Completes a surface of which all but these is known.
 void see(inout Surface surface) {
-  surface.object = times(nodes[kiln_node].object_from_scene, vec4(surface.position, 1.0));
+  surface.object = into_object(vec4(surface.position, 1.0), kiln_node);
   vec3 to_eye = eye_and_weight.xyz - surface.position;
   float distance_to_eye = length(to_eye);
   surface.to_eye = to_eye / distance_to_eye;

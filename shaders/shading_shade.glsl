@@ -8,7 +8,7 @@
 #endif
 
 vec4 shaded(Surface surface, int shader) {
-  kiln_material = nodes[kiln_node].material.x;
+  kiln_material = int(node_vector(kiln_node, 6).x);
   Appearance appearance = Appearance(vec3(1.0), surface.normal, 0.0, 0.0, 0.0);
 #if SHADING_STEPS >= 1
   run_before(shader, surface, appearance);

@@ -6,7 +6,7 @@ layout(location = 0) in vec3 position_object;
 layout(location = 1) uniform mat4 clip_of_light;
 
 void main() {
-  gl_Position = clip_of_light * vec4(times(nodes[drawn_node].scene_from_object, vec4(position_object, 1.0)), 1.0);
+  gl_Position = clip_of_light * vec4(from_object(vec4(position_object, 1.0), drawn_node), 1.0);
 }
 #else
 layout(location = 1) in vec2 uv;
@@ -19,8 +19,8 @@ out vec3 surface_color;
 out vec2 surface_uv;
 
 void main() {
-  surface_position = times(nodes[drawn_node].scene_from_object, vec4(position_object, 1.0));
-  surface_normal = times(nodes[drawn_node].scene_from_object, vec4(normal_object, 0.0));
+  surface_position = from_object(vec4(position_object, 1.0), drawn_node);
+  surface_normal = from_object(vec4(normal_object, 0.0), drawn_node);
   surface_uv = uv;
   surface_color = color;
   gl_Position = clip_from_scene * vec4(surface_position, 1.0);

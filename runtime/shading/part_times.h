@@ -9,8 +9,8 @@
 
 namespace kiln {
 
-/// Measures the parts of frames. A CPU that draws has timestamps that do not say when work is done; clocks are looked at
-/// instead, when it is.
+/// Measures the parts of frames. A CPU that draws has timestamps that do not say when work is done; clocks are looked
+/// at instead, when it is.
 class PartTimes {
  public:
   enum class Clock {

@@ -15,8 +15,8 @@ namespace {
 
 using Kind = ShaderParameter::Kind;
 
-// What uniform blocks are sure to hold, in vectors of four floats; shading_scene.glsl has the same number.
-constexpr int most_values = 1024;
+// What buffer textures are sure to hold, in vectors of four floats.
+constexpr int most_values = 65536;
 constexpr GLuint color_location = 5;
 
 /// Throws WrongUsage unless a value is one of the constant's.
@@ -118,7 +118,7 @@ UploadedMaterials upload_materials(const std::vector<ShadedMaterial>& materials,
   if (values.size() > most_values)
     throw WrongUsage("materials: found " + std::to_string(values.size()) + " values in all; expected at most " +
                      std::to_string(most_values));
-  values.resize(most_values);
+  values.resize(values.size() + 1);  // a buffer is not empty
   uploaded.values = make_buffer(std::span<const ShaderValue>(values));
   return uploaded;
 }

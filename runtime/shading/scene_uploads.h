@@ -31,7 +31,7 @@ struct UploadedMaterials {
 };
 
 /// Uploads constants. Throws WrongUsage for a shader or a constant that is not there, a value out of its range, and
-/// more values than a uniform block is sure to hold.
+/// more values than a buffer texture is sure to hold.
 UploadedMaterials upload_materials(const std::vector<ShadedMaterial>& materials, const ShaderGlsl& glsl);
 
 /// Uploads the pictures of the shaders, with mip maps, in the order of their texture units. Throws BadInput.

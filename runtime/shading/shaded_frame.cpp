@@ -11,7 +11,7 @@ namespace {
 
 /// Command of glDrawArraysIndirect, as in shading_tiles.glsl.
 struct TileDraw {
-  GLuint vertices = 6, tiles = 0, first_vertex = 0, first_instance = 0;
+  GLuint vertices = 1, tiles = 0, first_vertex = 0, first_instance = 0;
 };
 
 GlTexture target(GLenum format, int width, int height, int levels = 1) {

@@ -16,18 +16,17 @@ namespace kiln {
 namespace {
 
 // Bindings of shaders/shading_* and common_prt.glsl.
-constexpr GLuint planes_unit = 0, node_light_unit = 2, words_unit = 3, varyings_unit = 4, depth_unit = 5,
-                 shadow_unit = 6, reflection_unit = 7;
-constexpr GLuint view_block = 0, lights_block = 1, values_block = 2;
-constexpr GLuint nodes_binding = 0, masks_binding = 1, commands_binding = 2, lists_binding = 3;
+constexpr GLuint planes_unit = 0, nodes_unit = 1, node_light_unit = 2, words_unit = 3, varyings_unit = 4,
+                 depth_unit = 5, shadow_unit = 6, reflection_unit = 7, values_unit = 8;
+constexpr GLuint view_block = 0, lights_block = 1;
+constexpr GLuint masks_binding = 1, commands_binding = 2, lists_binding = 3;
 constexpr GLuint values_binding = 1, counts_binding = 2;  // of the pass of uniform parameters
 constexpr GLuint color_attribute = 5;
 
-/// Node of shading_scene.glsl.
+/// Vectors of a node in shading_scene.glsl. Whole numbers are floats, which hold them up to 2^24.
 struct NodeBlock {
   Eigen::Matrix<float, 3, 4, Eigen::RowMajor> scene_from_object, object_from_scene;
-  std::array<GLint, 4> material, planes;
-  Eigen::Vector4f planes_place;
+  Eigen::Vector4f material, planes, planes_place;
 };
 static_assert(sizeof(NodeBlock) == 9 * 16);
 
@@ -119,6 +118,8 @@ ShadedRenderer::ShadedRenderer(ShadedScene scene, const std::vector<SurfaceShade
       view_(make_refilled_buffer(sizeof(View))),
       lights_(make_refilled_buffer(sizeof(LightsBlock))),
       shadows_(settings.shadow_size, std::max(1, direct_light_count(scene_))),
+      node_vectors_(make_texture(GL_TEXTURE_BUFFER)),
+      material_values_(make_texture(GL_TEXTURE_BUFFER)),
       no_reflection_(make_texture(GL_TEXTURE_2D)),
       no_vertices_(make_vertex_array()) {
   for (const ShadedMesh& mesh : scene_.meshes) boxes_.push_back(bounding_box(*mesh.mesh));
@@ -137,6 +138,7 @@ void ShadedRenderer::set_shaders(const std::vector<SurfaceShader>& shaders) {
   programs_ = std::move(programs);
   materials_ = std::move(materials);
   pictures_ = std::move(pictures);
+  glTextureBuffer(material_values_.name(), GL_RGBA32F, materials_.values.name());
   evaluations_ = make_zero_buffer(sizeof(GLuint));
   reflection_.reset();
   if (scene_.mirror) {
@@ -176,8 +178,8 @@ void ShadedRenderer::upload_nodes() {
     NodeBlock block;
     block.scene_from_object = matrix.topRows<3>().cast<float>();
     block.object_from_scene = matrix.inverse().topRows<3>().cast<float>();
-    block.material = {materials_.first[material], materials_.shaders[material], 0, 0};
-    block.planes = {place.first_layer, place.layers, node_light_.first_texel[k], 0};
+    block.material = Eigen::Vector4i(materials_.first[material], materials_.shaders[material], 0, 0).cast<float>();
+    block.planes = Eigen::Vector4i(place.first_layer, place.layers, node_light_.first_texel[k], 0).cast<float>();
     block.planes_place = place.place;
     blocks.push_back(block);
   }
@@ -185,7 +187,9 @@ void ShadedRenderer::upload_nodes() {
   if (blocks.size() > most_nodes)
     throw WrongUsage("scene: found " + std::to_string(blocks.size()) + " nodes; expected at most " +
                      std::to_string(most_nodes));
+  require_at_most(GL_MAX_TEXTURE_BUFFER_SIZE, static_cast<int>(9 * blocks.size()), "buffer textures with texels");
   nodes_ = make_buffer(std::span<const NodeBlock>(blocks));
+  glTextureBuffer(node_vectors_.name(), GL_RGBA32F, nodes_.name());
 }
 
 void ShadedRenderer::upload_lights() {
@@ -232,8 +236,8 @@ void ShadedRenderer::set_view(const View& view) {
 
 void ShadedRenderer::bind_tables(const GlTexture& reflection) const {
   glBindBufferBase(GL_UNIFORM_BUFFER, lights_block, lights_.name());
-  glBindBufferBase(GL_UNIFORM_BUFFER, values_block, materials_.values.name());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, nodes_binding, nodes_.name());
+  glBindTextureUnit(nodes_unit, node_vectors_.name());
+  glBindTextureUnit(values_unit, material_values_.name());
   glBindTextureUnit(planes_unit, planes_.planes.name());
   glBindTextureUnit(node_light_unit, node_light_.texture.name());
   glBindTextureUnit(shadow_unit, shadows_.texture().name());
@@ -255,7 +259,7 @@ void ShadedRenderer::compute_uniforms() {
     glUseProgram(used.name());
     glDispatchCompute(static_cast<GLuint>(count), 1, 1);
   }
-  glMemoryBarrier(GL_UNIFORM_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+  glMemoryBarrier(GL_TEXTURE_FETCH_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 void ShadedRenderer::draw_shadows() {
@@ -324,6 +328,8 @@ void ShadedRenderer::shade_tiles(const ShadedFrame& frame, bool adds, PartTimes*
   glBindTextureUnit(depth_unit, frame.depth().name());
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, frame.commands().name());
   glBindVertexArray(no_vertices_.name());
+  glEnable(GL_PROGRAM_POINT_SIZE);
+  glViewport(0, 0, shading_tile_side * frame.columns(), shading_tile_side * frame.rows());
   const std::vector<std::uint32_t> sets = programs_->sets();
   for (std::size_t list = 0; list < sets.size(); ++list) {
     const bool is_single = (sets[list] & (sets[list] - 1)) == 0;
@@ -331,10 +337,10 @@ void ShadedRenderer::shade_tiles(const ShadedFrame& frame, bool adds, PartTimes*
     const GlProgram& used = programs_->deferred(sets[list]);
     glProgramUniform2i(used.name(), 0, frame.columns(), frame.rows());
     glProgramUniform1i(used.name(), 1, static_cast<GLint>(list));
-    glProgramUniform2i(used.name(), 2, frame.width(), frame.height());
     glUseProgram(used.name());
-    glDrawArraysIndirect(GL_TRIANGLES, reinterpret_cast<const void*>(list * 4 * sizeof(GLuint)));
+    glDrawArraysIndirect(GL_POINTS, reinterpret_cast<const void*>(list * 4 * sizeof(GLuint)));
   }
+  glDisable(GL_PROGRAM_POINT_SIZE);
   glDisable(GL_BLEND);
 }
 

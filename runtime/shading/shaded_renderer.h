@@ -81,6 +81,7 @@ class ShadedRenderer {
   ShadowTable shadows_;
   std::vector<ShadowView> shadow_views_;
   std::optional<ShadedFrame> reflection_;
+  GlTexture node_vectors_, material_values_;
   GlTexture no_reflection_;
   GlVertexArray no_vertices_;
 };

@@ -71,7 +71,7 @@ std::string ShaderGlsl::head(bool computes_uniforms) const {
 }
 
 /// Defines what a shader's parameters stand for.
-std::string ShaderGlsl::names_of(int shader) const {
+std::string ShaderGlsl::names_of(int shader, bool computes_uniforms) const {
   std::string text;
   int unit = first_unit(shader), varying = 0, slot = 0;
   const auto define = [&](const ShaderParameter& parameter, const std::string& meaning) {
@@ -80,8 +80,10 @@ std::string ShaderGlsl::names_of(int shader) const {
   for (const Kind kind : {Kind::constant, Kind::uniform})
     for (const ShaderParameter& parameter : shaders_[static_cast<std::size_t>(shader)].parameters) {
       if (parameter.kind != kind) continue;
+      const std::string place = "kiln_material + " + std::to_string(slot++);
       const std::string value =
-          "kiln_values[kiln_material + " + std::to_string(slot++) + "]" + swizzle(0, component_count(parameter.type));
+          (computes_uniforms ? "kiln_values[" + place + "]" : "texelFetch(material_values, " + place + ")") +
+          swizzle(0, component_count(parameter.type));
       define(parameter, parameter.type == ShaderType::integer ? "int(" + value + ")" : value);
     }
   for (const ShaderParameter& parameter : shaders_[static_cast<std::size_t>(shader)].parameters) {
@@ -102,8 +104,8 @@ std::string ShaderGlsl::placed(const std::string& glsl, int line, int shader) co
 }
 
 /// Returns a shader's parameters and its own GLSL.
-std::string ShaderGlsl::body_of(int shader) const {
-  return names_of(shader) + placed(shaders_[static_cast<std::size_t>(shader)].text, 1, shader);
+std::string ShaderGlsl::body_of(int shader, bool computes_uniforms) const {
+  return names_of(shader, computes_uniforms) + placed(shaders_[static_cast<std::size_t>(shader)].text, 1, shader);
 }
 
 /// Returns a function that computes a shader's varying parameters.
@@ -168,7 +170,7 @@ std::string ShaderGlsl::deferred_fragment(std::uint32_t set) const {
 }
 
 std::string ShaderGlsl::uniforms_compute(int shader) const {
-  std::string text = head(true) + body_of(shader) + "void store_uniforms() {\n";
+  std::string text = head(true) + body_of(shader, true) + "void store_uniforms() {\n";
   int slot = 0;
   for (const Kind kind : {Kind::constant, Kind::uniform})
     for (const ShaderParameter& parameter : shaders_[static_cast<std::size_t>(shader)].parameters) {

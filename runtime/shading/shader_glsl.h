@@ -18,7 +18,7 @@ struct ShadingFeatures {
 };
 
 /// First texture unit of the pictures of shaders; those of shader k follow those of k - 1.
-inline constexpr int first_picture_unit = 8;
+inline constexpr int first_picture_unit = 9;
 
 /// Puts programs for a scene's shaders together, as texts; without GL. Names of shader k get a prefix of their own, so
 /// that shaders which share a program cannot meet. Lines keep their number and file by #line.
@@ -54,8 +54,8 @@ class ShaderGlsl {
 
  private:
   std::string head(bool computes_uniforms = false) const;
-  std::string names_of(int shader) const;
-  std::string body_of(int shader) const;
+  std::string names_of(int shader, bool computes_uniforms) const;
+  std::string body_of(int shader, bool computes_uniforms = false) const;
   std::string varyings_of(int shader) const;
   std::string choices(std::uint32_t set) const;
   std::string prefix(int shader) const { return "s" + std::to_string(shader) + "_"; }
