@@ -80,6 +80,17 @@ struct Stand {
     camera = camera_at(width, height);
   }
 
+  /// Gives all nodes shaders of constant `radiance`, without a mirror: quick to compile.
+  void make_constant(const std::string& radiance) {
+    const std::string text =
+        "void before_light(Surface surface, inout Appearance appearance) {}\n"
+        "vec3 after_light(Surface surface, Appearance appearance, Light light) { return " +
+        radiance + "; }\n";
+    for (SurfaceShader& shader : shaders) shader = parse_shader(text, shader.file);
+    for (ShadedMaterial& material : scene.materials) material.values.clear();
+    scene.mirror.reset();
+  }
+
   Camera camera_at(int width, int height) const {
     std::vector<Eigen::Vector3f> shape;
     for (const Eigen::Vector3f& vertex : ground.positions) shape.push_back(0.5f * vertex);
