@@ -161,8 +161,7 @@ class Bench {
   void shaders() const {
     std::printf(
         "\n| shader, ms for all pixels, one sample | reading the surface | before the light | the light | after the "
-        "light |\n| --- | --- | "
-        "--- | --- |\n");
+        "light |\n| --- | --- | --- | --- | --- |\n");
     for (const SurfaceShader& shader : scene_.shaders) {
       const Layers layers(1, 64, {shader.name}, nullptr);
       double at[4];
@@ -190,7 +189,7 @@ class Bench {
       shading.shadow_size = shading.reflection_size = 512;  // the paper's
       ShadedRenderer renderer(scene_.scene, scene_.shaders, shading);
       ways.push_back(time_parts(renderer, camera, arguments_.rounds, clock_));
-      for (const auto& [part, time] : ways.back()) parts[part];
+      for (const auto& [part, time] : ways.back()) ++parts[part];
       if (way != ShadingWay::factored) continue;
       const ShadedFrame frame = renderer.make_frame(width, height);
       renderer.draw(camera, frame);
@@ -198,9 +197,13 @@ class Bench {
     }
     std::printf(
         "\n| a frame of five samples a pixel, ms | forward | deferred | factored |\n| --- | --- | --- | --- |\n");
-    for (const auto& [part, none] : parts) {
+    for (const auto& [part, count] : parts) {
       std::printf("| %s |", part.c_str());
-      for (Times& times : ways) std::printf(times.count(part) > 0 ? " %.1f |" : "  |", times[part]);
+      for (const Times& times : ways)
+        if (const auto found = times.find(part); found != times.end())
+          std::printf(" %.1f |", found->second);
+        else
+          std::printf("  |");
       std::printf("\n");
     }
     std::printf("| the picture without its tables |");
