@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/errors.h"
+#include "runtime/shading/shaded_frame.h"
 
 namespace kiln {
 
@@ -26,6 +27,11 @@ ShaderPrograms::ShaderPrograms(std::vector<SurfaceShader> shaders, const Shading
     throw MachineLacks("the shaders look at " + std::to_string(glsl_.first_unit(glsl_.count()) - first_picture_unit) +
                        " pictures, and the GL device has units for " + std::to_string(units - first_picture_unit) +
                        "; put several into one picture");
+  GLfloat point_sizes[2] = {0, 0};
+  glGetFloatv(GL_POINT_SIZE_RANGE, point_sizes);
+  if (point_sizes[1] < shading_tile_side)
+    throw MachineLacks("the GL device draws points of at most " + std::to_string(point_sizes[1]) +
+                       " samples, and tiles have " + std::to_string(shading_tile_side) + "; try --gl-device software");
   for (int k = 0; k < glsl_.count(); ++k) {
     raster(k);
     deferred(1u << static_cast<unsigned>(k));

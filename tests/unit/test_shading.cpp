@@ -365,6 +365,29 @@ TEST(Shading, TransferIsTheLightOfNodesThatHaveIt) {
   }
 }
 
+TEST(Shading, MovedNodesAndLightsAreAsIfMadeThere) {
+  const EglContext context("software");
+  Stand stand;
+  stand.make_constant("light.diffuse");
+  ShadingSettings settings;
+  settings.samples = 1;
+  ShadedRenderer moved(stand.scene, stand.shaders, settings);
+  const Image<float> before = shaded_picture(moved, stand.camera, 200, 150);
+  std::vector<Placement> placements;
+  for (ShadedNode& node : stand.scene.nodes) {
+    node.placement.translation += Eigen::Vector3d(0.3, 0.1, -0.2);
+    placements.push_back(node.placement);
+  }
+  stand.scene.lights.specs = {parse_light_spec("-60,50"), parse_light_spec("20,70,0.2,0.3,0.4"),
+                              parse_light_spec("hemisphere:0,90,0.3,0.3,0.3,0.1,0.1,0.1")};
+  moved.set_placements(placements);
+  moved.set_lights(stand.scene.lights);
+  ShadedRenderer made(stand.scene, stand.shaders, settings);
+  const Image<float> expected = shaded_picture(made, stand.camera, 200, 150);
+  EXPECT_EQ(shaded_picture(moved, stand.camera, 200, 150).values(), expected.values());
+  EXPECT_GT(largest_difference(before, expected), 20);
+}
+
 TEST(Shading, ValuesOutOfRangeAndUnknownShadersAreRefused) {
   const EglContext context("software");
   const auto refused = [](const ShadedMaterial& material) -> std::string {

@@ -294,7 +294,8 @@ std::vector<PlacedPanel> Viewer::panels() {
   const Extent window = window_.framebuffer();
   const bool is_narrow = window.width - window.height < room_for_panel_pixels * scale;
   if (state_.readout && !(state_.help && is_narrow)) {
-    ViewFacts facts{setup_.folders.name, clock_.steady_milliseconds(), asset_->gpu_bytes(state_), 0, 0};
+    const std::string by = setup_.shader.empty() ? "" : ", by " + setup_.shader.filename().string();
+    ViewFacts facts{setup_.folders.name + by, clock_.steady_milliseconds(), asset_->gpu_bytes(state_), 0, 0};
     if (state_.show == Show::coefficient)
       std::tie(facts.coefficient_lowest, facts.coefficient_highest) =
           asset_->coefficient_range(state_.coefficient, state_.technique);
