@@ -28,6 +28,8 @@ constexpr std::array<std::pair<const char*, ShaderType>, 5> types = {{{"float", 
 constexpr const char* type_names = "float, int, vec2, vec3 or vec4";
 constexpr const char* before_name = "before_light";
 constexpr const char* after_name = "after_light";
+constexpr const char* before_signature = "void before_light(Surface surface, inout Appearance appearance)";
+constexpr const char* after_signature = "vec3 after_light(Surface surface, Appearance appearance, Light light)";
 
 /// Words that nothing can be named by.
 const std::set<std::string> keywords = {
@@ -51,9 +53,7 @@ class ShaderReader {
 
   SurfaceShader read() {
     while (at_ < tokens_.size()) read_statement();
-    for (const auto& [name, signature] :
-         {std::pair{before_name, "void before_light(Surface surface, inout Appearance appearance)"},
-          {after_name, "vec3 after_light(Surface surface, Appearance appearance, Light light)"}})
+    for (const auto& [name, signature] : {std::pair{before_name, before_signature}, {after_name, after_signature}})
       if (functions_.count(name) == 0)
         fail(1, std::string("has no function ") + name, std::string("'") + signature + " { ... }'", "add it");
     if (shader_.varying_components() > most_varying_components)
@@ -256,10 +256,12 @@ class ShaderReader {
         continue;
       }
       if (open.empty() && token.kind == Token::Kind::word && !is_assigned && !is_function && expects_name &&
-          is_name(first))
-        is_function = at_ + 1 < tokens_.size() && tokens_[at_ + 1].text == "(", define(token, is_function),
+          is_name(first)) {
+        is_function = at_ + 1 < tokens_.size() && tokens_[at_ + 1].text == "(";
+        define(token, is_function);
+        if (is_function) check_part(first, at_);
         expects_name = false;
-      else if (open.empty() && token.text == "=")
+      } else if (open.empty() && token.text == "=")
         is_assigned = true;
       else if (open.empty() && token.text == ",")
         is_assigned = false, expects_name = true;
@@ -278,6 +280,23 @@ class ShaderReader {
     const Token& left = open.empty() ? tokens_[first] : tokens_[open.front()];
     fail(left.line, "found '" + left.text + "' without its end", open.empty() ? "';'" : "its partner",
          "close it before the end of the file");
+  }
+
+  /// Throws unless the function from `first` on, named at `name`, is none of the two parts or has that part's
+  /// signature, whatever its parameters are called.
+  void check_part(std::size_t first, std::size_t name) const {
+    const bool is_before = tokens_[name].text == before_name;
+    if (!is_before && tokens_[name].text != after_name) return;
+    const std::string signature = is_before ? before_signature : after_signature;
+    const std::vector<Token> expected = shader_tokens(signature);
+    bool good = first + expected.size() <= tokens_.size();
+    for (std::size_t k = 0; good && k < expected.size(); ++k) {
+      const bool is_parameter = k + 1 < expected.size() && (expected[k + 1].text == "," || expected[k + 1].text == ")");
+      good = is_parameter ? tokens_[first + k].kind == Token::Kind::word : tokens_[first + k].text == expected[k].text;
+    }
+    if (!good)
+      fail(tokens_[name].line, "'" + tokens_[name].text + "' has other parameters or another result",
+           "'" + signature + "'", "write it so");
   }
 
   /// Tests whether the word at hand names something that the statement from `first` on defines: the second word that is

@@ -95,6 +95,12 @@ TEST(ShaderFile, FaultsNameTheLine) {
   expect(parts + "float f = 1.0", "a.glsl:3: ", "without its end");
   expect("#version 430\n" + parts, "a.glsl:1: ", "without #version");
   expect("in vec3 a;\n" + parts, "a.glsl:1: ", "docs/shaders.md");
+  expect("\nvoid before_light(Surface surface) {}\n" + parts.substr(parts.find("vec3")),
+         "a.glsl:2: ", "'before_light' has other parameters");
+  expect(parts.substr(0, parts.find("vec3")) + "vec4 after_light(Surface s, Appearance a, Light l) {}\n",
+         "a.glsl:2: ", "expected 'vec3 after_light(Surface surface, Appearance appearance, Light light)'");
+  EXPECT_EQ(fault_of("void before_light(Surface s, inout Appearance a) {}\n" + parts.substr(parts.find("vec3"))),
+            "none");
   expect("", "a.glsl:1: ", "has no function before_light");
   expect(parts.substr(0, parts.find("vec3")), "a.glsl:1: ", "has no function after_light");
 }
@@ -131,6 +137,16 @@ TEST(ShaderFile, CompilersFaultsNameTheLineOfTheFile) {
   expect("\n\nvarying vec2 place = surface.nowhere;\n" + parts, "shaders/bad.glsl:3: ", "nowhere");
   expect("float helper(float x) { return x; }\n" + parts + "float other() {\n  return helper(vec3(1.0));\n}\n",
          "shaders/bad.glsl:5: ", "");
+}
+
+TEST(ShaderFile, TheSamplesCompile) {
+  const EglContext context("software");
+  const std::vector<SurfaceShader> shaders = read_shaders(KILN_SOURCE_FOLDER "/samples/shaders");
+  ASSERT_EQ(shaders.size(), 3u);
+  ShaderPrograms programs(shaders, {.planes = true});
+  for (const std::uint32_t set : programs.sets()) programs.deferred(set);
+  for (int k = 0; k < 3; ++k) programs.forward(k);
+  EXPECT_EQ(programs.sets().size(), 7u);
 }
 
 }  // namespace test_shader_file
