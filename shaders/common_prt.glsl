@@ -21,7 +21,7 @@
 //
 // PRT_SAMPLES: number of incident-light samples ([Chapter 2010], 4.3.3 to 4.3.6); 1 unless defined.
 // PRT_CLUSTERED: defined only if there are several clusters.
-// PRT_PLACED: defined where several assets share the textures; the caller then says where those of one begin, for each
+// PRT_STACKED: defined where several assets share the textures; the caller then says where those of one begin, for each
 // pixel. Each has one cluster.
 #ifndef PRT_SAMPLES
 #define PRT_SAMPLES 1
@@ -29,7 +29,7 @@
 
 layout(binding = 0) uniform sampler2DArray prt_planes;
 layout(binding = 2) uniform sampler2D prt_light;
-#ifdef PRT_PLACED
+#ifdef PRT_STACKED
 int prt_layers, prt_first_layer, prt_first_light;
 const int prt_clusters = 1;
 #else

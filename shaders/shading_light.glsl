@@ -4,7 +4,7 @@
 // irradiance in nine harmonics [Ramamoorthi 2001].
 // SHADING_PRT: defined if a node has planes.
 #ifdef SHADING_PRT
-#define PRT_PLACED
+#define PRT_STACKED
 #include "common_prt.glsl"
 #endif
 
