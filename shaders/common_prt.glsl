@@ -21,14 +21,22 @@
 //
 // PRT_SAMPLES: number of incident-light samples ([Chapter 2010], 4.3.3 to 4.3.6); 1 unless defined.
 // PRT_CLUSTERED: defined only if there are several clusters.
+// PRT_STACKED: defined where several assets share the textures; the caller then says where those of one begin, for each
+// pixel. Each has one cluster.
 #ifndef PRT_SAMPLES
 #define PRT_SAMPLES 1
 #endif
 
 layout(binding = 0) uniform sampler2DArray prt_planes;
 layout(binding = 2) uniform sampler2D prt_light;
+#ifdef PRT_STACKED
+int prt_layers, prt_first_layer, prt_first_light;
+const int prt_clusters = 1;
+#else
 layout(location = 1) uniform int prt_layers;
 layout(location = 2) uniform int prt_clusters;
+const int prt_first_layer = 0, prt_first_light = 0;
+#endif
 
 const int prt_light_width = 1024;  // texels per row of prt_light
 
@@ -38,7 +46,7 @@ vec4 prt_light_at(int place) {
 
 // Finds where the light of a sample and a cluster begins.
 int prt_light_begin(int light_sample, int cluster) {
-  return (light_sample * prt_clusters + cluster) * (1 + 3 * prt_layers);
+  return prt_first_light + (light_sample * prt_clusters + cluster) * (1 + 3 * prt_layers);
 }
 
 // Mixes the constants of the samples; their `contributions` add up to 1.
@@ -64,7 +72,7 @@ vec3 prt_decoded(int cluster, int layer, vec4 stored, float contributions[PRT_SA
 vec3 prt_filtered(int cluster, vec2 uv, float contributions[PRT_SAMPLES]) {
   vec3 radiance = prt_constant(cluster, contributions);
   for (int layer = 0; layer < prt_layers; ++layer)
-    radiance += prt_decoded(cluster, layer, textureLod(prt_planes, vec3(uv, layer), 0.0), contributions);
+    radiance += prt_decoded(cluster, layer, textureLod(prt_planes, vec3(uv, prt_first_layer + layer), 0.0), contributions);
   return radiance;
 }
 

@@ -67,6 +67,10 @@ std::vector<float> looked_up_transfer(const PrtAsset& asset) {
 
 int layer_count(std::size_t planes) { return static_cast<int>((planes + planes_per_layer - 1) / planes_per_layer); }
 
+std::size_t weight_texels(const PlaneWeights& weights) {
+  return 1 + 3 * static_cast<std::size_t>(layer_count(weights.scales.size()));
+}
+
 void require_at_most(GLenum limit, int wanted, const char* what) {
   GLint most = 0;
   glGetIntegerv(limit, &most);
@@ -74,6 +78,19 @@ void require_at_most(GLenum limit, int wanted, const char* what) {
     throw MachineLacks(std::string("the GL device takes ") + what + " of at most " + std::to_string(most) + ", and " +
                        std::to_string(wanted) + " are needed; ask for less, or try --gl-device software");
 }
+
+void upload_planes_into(const PrtAsset& asset, const GlTexture& planes, int first_layer) {
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  const auto upload = [&](const auto& pictures) {
+    for (int layer = 0; layer < layer_count(asset.planes.size()); ++layer)
+      glTextureSubImage3D(planes.name(), 0, 0, 0, first_layer + layer, asset.width, asset.height, 1, GL_RGBA,
+                          asset.bits == 16 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE,
+                          interleaved(pictures, planes_per_layer * static_cast<std::size_t>(layer)).data());
+  };
+  std::visit(upload, asset.pictures);
+}
+
+void set_linear_sampling(const GlTexture& texture) { set_sampling(texture, GL_LINEAR); }
 
 UploadedTexture upload_planes(const PrtAsset& asset) {
   const int layers = layer_count(asset.planes.size());
@@ -83,14 +100,7 @@ UploadedTexture upload_planes(const PrtAsset& asset) {
   const bool deep = asset.bits == 16;
   glTextureStorage3D(planes.texture.name(), 1, deep ? GL_RGBA16 : GL_RGBA8, asset.width, asset.height, layers);
   check_gl("making room for the coefficient planes");
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  const auto upload = [&](const auto& pictures) {
-    for (int layer = 0; layer < layers; ++layer)
-      glTextureSubImage3D(planes.texture.name(), 0, 0, 0, layer, asset.width, asset.height, 1, GL_RGBA,
-                          deep ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE,
-                          interleaved(pictures, planes_per_layer * static_cast<std::size_t>(layer)).data());
-  };
-  std::visit(upload, asset.pictures);
+  upload_planes_into(asset, planes.texture, 0);
   set_sampling(planes.texture, GL_LINEAR);
   planes.bytes = std::uint64_t{planes_per_layer} * (deep ? 2u : 1u) * static_cast<std::uint64_t>(layers) *
                  static_cast<std::uint64_t>(asset.width) * static_cast<std::uint64_t>(asset.height);
@@ -186,22 +196,26 @@ UploadedVertexTransfer upload_vertex_transfer(const PrtAsset& asset) {
 }
 
 UploadedTexture upload_light(const std::vector<std::vector<PlaneWeights>>& samples) {
-  const auto layers = static_cast<std::size_t>(layer_count(samples.front().front().scales.size()));
-  const std::size_t clusters = samples.front().size(), stride = 1 + 3 * layers;  // texels of each cluster and sample
-  const std::size_t texels = samples.size() * clusters * stride;
+  std::vector<PlaneWeights> all;
+  for (const std::vector<PlaneWeights>& sample : samples) all.insert(all.end(), sample.begin(), sample.end());
+  return upload_weights(all);
+}
+
+UploadedTexture upload_weights(std::span<const PlaneWeights> all) {
+  std::size_t texels = 0;
+  for (const PlaneWeights& weights : all) texels += weight_texels(weights);
   const int rows = static_cast<int>((texels + light_width - 1) / light_width);
   std::vector<float> values(4 * static_cast<std::size_t>(light_width) * static_cast<std::size_t>(rows), 0.f);
   float* to = values.data();
-  for (const std::vector<PlaneWeights>& sample : samples)
-    for (const PlaneWeights& weights : sample) {
-      for (std::size_t color = 0; color < 3; ++color) {
-        to[color] = weights.constant[static_cast<Eigen::Index>(color)];
-        for (std::size_t plane = 0; plane < weights.scales.size(); ++plane)
-          to[4 * (1 + 3 * (plane / planes_per_layer) + color) + plane % planes_per_layer] =
-              weights.scales[plane][static_cast<Eigen::Index>(color)];
-      }
-      to += 4 * stride;
+  for (const PlaneWeights& weights : all) {
+    for (std::size_t color = 0; color < 3; ++color) {
+      to[color] = weights.constant[static_cast<Eigen::Index>(color)];
+      for (std::size_t plane = 0; plane < weights.scales.size(); ++plane)
+        to[4 * (1 + 3 * (plane / planes_per_layer) + color) + plane % planes_per_layer] =
+            weights.scales[plane][static_cast<Eigen::Index>(color)];
     }
+    to += 4 * weight_texels(weights);
+  }
   require_at_most(GL_MAX_TEXTURE_SIZE, rows, "textures with a side");
   UploadedTexture light{make_texture(GL_TEXTURE_2D), values.size() * sizeof(float)};
   glTextureStorage2D(light.texture.name(), 1, GL_RGBA32F, light_width, rows);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,12 @@ void require_at_most(GLenum limit, int wanted, const char* what);
 
 /// Uploads the planes, four to a layer, normalised to 0..1, with bilinear lookup, clamped at the edges.
 UploadedTexture upload_planes(const PrtAsset& asset);
+
+/// Uploads the planes into layers of an array of textures from `first_layer` on, into its lower left corner.
+void upload_planes_into(const PrtAsset& asset, const GlTexture& planes, int first_layer);
+
+/// Sets bilinear lookup, clamped at the edges.
+void set_linear_sampling(const GlTexture& texture);
 
 /// Uploads the cluster of every texel, clamped at the edges like the planes; no texture if there is only one cluster.
 UploadedTexture upload_cluster_ids(const PrtAsset& asset);
@@ -57,6 +64,10 @@ UploadedVertexTransfer upload_vertex_transfer(const PrtAsset& asset);
 /// Uploads the light for shaders/common_prt.glsl: the result of cluster_weights for each incident-light sample and
 /// cluster.
 UploadedTexture upload_light(const std::vector<std::vector<PlaneWeights>>& samples);
+
+/// Uploads weights one after another, each in weight_texels texels.
+UploadedTexture upload_weights(std::span<const PlaneWeights> all);
+std::size_t weight_texels(const PlaneWeights& weights);
 
 /// The mesh, and the contributions of incident-light samples at its vertices.
 struct UploadedMesh {

@@ -15,11 +15,6 @@ namespace {
 
 using Kind = LightSpec::Kind;
 
-bool is_direct(const LightSpec& spec) {
-  return spec.kind == Kind::directional || spec.kind == Kind::sphere ||
-         (spec.kind == Kind::cone && spec.half_angle_degrees <= 90);
-}
-
 /// Returns the first bands of a light; bands that it lacks are 0.
 LightCoefficients first_bands(const LightCoefficients& light, int bands) {
   LightCoefficients cut{bands, light.channels};
@@ -42,6 +37,11 @@ DirectLight direct_light(const LightSpec& spec, const Placement& placement) {
 }
 
 }  // namespace
+
+bool is_direct(const LightSpec& spec) {
+  return spec.kind == Kind::directional || spec.kind == Kind::sphere ||
+         (spec.kind == Kind::cone && spec.half_angle_degrees <= 90);
+}
 
 bool SceneLights::is_local() const {
   return probes != nullptr ||

@@ -37,6 +37,9 @@ struct DirectLight {
   std::array<float, 3> radiance = {};
 };
 
+/// Tests whether a light has a position or a direction, and so becomes a DirectLight.
+bool is_direct(const LightSpec& spec);
+
 /// Lights of a scene as one asset receives them at its place, in its object space.
 struct AssetLight {
   std::vector<LightCoefficients> samples;  ///< light at each incident-light sample

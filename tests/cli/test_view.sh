@@ -117,4 +117,29 @@ same second.png r_second.png 1
 differ second.png first.png 3
 differ message.png broken.png 255 # one has panels and a backdrop: RGB, not RGBA
 grep -q "not read again: .*ranges.json" said || fail "of the broken file it says: $(cat said)"
+
+echo "== a shader of one's own that changes"
+mkdir looks
+shader() { # shader COLOUR: what the file holds
+  printf 'void before_light(Surface surface, inout Appearance appearance) {\n  appearance.base_color = %s;\n}\n' "$1"
+  printf 'vec3 after_light(Surface surface, Appearance appearance, Light light) {\n  return appearance.base_color;\n}\n'
+}
+shader 'vec3(1.0, 0.0, 0.0)' >looks/own.glsl
+sed 's/first/red/; s/broken/kept/; s/message/fault/; s/second/blue/' script >shader_script
+display "$programs/kiln-view" hare --shader looks/own.glsl --width 240 --height 180 --script shader_script 2>said &
+viewer=$!
+wait_for red.png
+shader 'vec3(oops)' >broken.glsl
+mv broken.glsl looks/own.glsl
+wait_for fault.png
+shader 'vec3(0.0, 0.0, 1.0)' >blue.glsl
+mv blue.glsl looks/own.glsl
+wait $viewer || fail "the viewer ended with status $?: $(cat said)"
+same kept.png red.png 0
+differ blue.png red.png 200
+grep -q "not read again: looks/own.glsl:2: .*oops" said || fail "of the broken shader it says: $(cat said)"
+status=0
+shader 'vec3(oops)' >looks/own.glsl
+display "$programs/kiln-view" hare --shader looks/own.glsl --script shader_script 2>said || status=$?
+[ $status = 3 ] && grep -q "looks/own.glsl:2: .*oops" said || fail "of a broken shader the exit status is $status: $(cat said)"
 echo "all is as it should be"

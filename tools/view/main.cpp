@@ -19,6 +19,8 @@ int main(int argc, char** argv) {
                   "An asset's folder with prt/ in it, or an output folder of kiln-bake or kiln-compress");
     command.input_option("compressed", compressed,
                          "The asset as kiln-compress made it, where it does not lie beside prt/");
+    command.input_option("shader", setup.shader,
+                         "Draws the asset by this shader of your own (docs/shaders.md), read again when it changes");
     command.input_option("script", script,
                          std::string("Does what the file says, one step a line, then closes: ") + script_grammar);
     add_light_options(command, setup.lights, light_file);

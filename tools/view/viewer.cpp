@@ -33,10 +33,11 @@ constexpr int frames_to_measure = 8;
 // Width left for panels on both sides of an asset, which is about as wide as the window is high; at 96 dots per inch.
 constexpr double room_for_panel_pixels = 440;
 
-std::vector<fs::path> watched(const AssetFolders& folders) {
+std::vector<fs::path> watched(const ViewerSetup& setup) {
   std::vector<fs::path> paths;
-  for (const fs::path& folder : {folders.plain, folders.compressed})
+  for (const fs::path& folder : {setup.folders.plain, setup.folders.compressed})
     if (!folder.empty()) paths.push_back(folder);
+  if (!setup.shader.empty()) paths.push_back(folder_of(setup.shader));
   return paths;
 }
 
@@ -77,7 +78,8 @@ Viewer::Viewer(const ViewerSetup& setup, ViewScene scene, int software_threads)
       home_(first_state(scene, setup.lights, setup.look)),
       state_(home_),
       asset_(std::make_unique<AssetView>(std::move(scene), setup.look, state_)),
-      watch_(watched(setup.folders)) {
+      watch_(watched(setup)) {
+  if (!setup.shader.empty()) asset_->set_shader(setup.shader);
   window_.listen({[this](char key) { press_key(key); },
                   [this](Drag what, double right, double down) {
                     const Extent size = window_.framebuffer();
@@ -204,6 +206,7 @@ bool Viewer::reload_if_changed() {
     ViewScene scene = load_view_scene(setup_.folders, setup_.lights);
     const bool had_all_bands = state_.bands == asset_->limits().bands;
     auto asset = std::make_unique<AssetView>(std::move(scene), setup_.look, state_);
+    if (!setup_.shader.empty()) asset->set_shader(setup_.shader);
     asset_ = std::move(asset);
     home_.bands = asset_->limits().bands;
     if (had_all_bands) state_.bands = home_.bands;
@@ -291,7 +294,8 @@ std::vector<PlacedPanel> Viewer::panels() {
   const Extent window = window_.framebuffer();
   const bool is_narrow = window.width - window.height < room_for_panel_pixels * scale;
   if (state_.readout && !(state_.help && is_narrow)) {
-    ViewFacts facts{setup_.folders.name, clock_.steady_milliseconds(), asset_->gpu_bytes(state_), 0, 0};
+    const std::string by = setup_.shader.empty() ? "" : ", by " + setup_.shader.filename().string();
+    ViewFacts facts{setup_.folders.name + by, clock_.steady_milliseconds(), asset_->gpu_bytes(state_), 0, 0};
     if (state_.show == Show::coefficient)
       std::tie(facts.coefficient_lowest, facts.coefficient_highest) =
           asset_->coefficient_range(state_.coefficient, state_.technique);

@@ -27,6 +27,7 @@ struct ViewerSetup {
   LightSettings lights;
   RenderSettings look;
   std::string screenshots = ".";                ///< folder for screenshots
+  std::filesystem::path shader;                 ///< the asset is drawn by it; empty: by a technique
   std::function<void(const std::string&)> say;  ///< called with lines for the terminal
 };
 

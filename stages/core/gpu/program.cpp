@@ -38,31 +38,45 @@ GLenum stage_of(std::string_view file) {
 
 }  // namespace
 
-GlProgram load_program(std::initializer_list<std::string_view> files, const ShaderDefines& defines) {
+GlProgram compile_program(std::span<const ShaderText> shaders) {
   GlProgram program(glCreateProgram());
   std::string log(8192, '\0');
   GLint good = 0;
-  for (std::string_view file : files) {
-    std::string text = "#version 450 core\n";
-    for (const auto& [name, value] : defines) text += "#define " + name + " " + value + "\n";
-    text += expand(file);
-    const char* pointer = text.c_str();
-    const GLuint shader = glCreateShader(stage_of(file));
+  GLsizei length = 0;
+  for (const ShaderText& part : shaders) {
+    const char* pointer = part.text.c_str();
+    const GLuint shader = glCreateShader(part.stage);
     glShaderSource(shader, 1, &pointer, nullptr);
     glCompileShader(shader);
     glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
-    if (good == 0) glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
+    if (good == 0) glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &length, log.data());
     glAttachShader(program.name(), shader);
     glDeleteShader(shader);
-    if (good == 0) throw std::runtime_error("shader " + std::string(file) + " does not compile: " + log);
+    if (good == 0) throw ShaderFault(log.substr(0, static_cast<std::size_t>(length)));
   }
   glLinkProgram(program.name());
   glGetProgramiv(program.name(), GL_LINK_STATUS, &good);
   if (good == 0) {
-    glGetProgramInfoLog(program.name(), static_cast<GLsizei>(log.size()), nullptr, log.data());
-    throw std::runtime_error("shader " + std::string(*files.begin()) + " does not link: " + log);
+    glGetProgramInfoLog(program.name(), static_cast<GLsizei>(log.size()), &length, log.data());
+    throw ShaderFault(log.substr(0, static_cast<std::size_t>(length)));
   }
   return program;
+}
+
+std::string expanded_shader(std::string_view file) { return expand(file); }
+
+GlProgram load_program(std::initializer_list<std::string_view> files, const ShaderDefines& defines) {
+  std::vector<ShaderText> shaders;
+  for (std::string_view file : files) {
+    std::string text = "#version 450 core\n";
+    for (const auto& [name, value] : defines) text += "#define " + name + " " + value + "\n";
+    shaders.push_back({stage_of(file), text + expand(file)});
+  }
+  try {
+    return compile_program(shaders);
+  } catch (const ShaderFault& fault) {
+    throw std::runtime_error("shader " + std::string(*files.begin()) + " and those linked to it: " + fault.what());
+  }
 }
 
 GLint uniform_location(const GlProgram& program, const char* name) {

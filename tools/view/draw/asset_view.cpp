@@ -99,6 +99,10 @@ void AssetView::draw(const ViewState& state, const Camera& camera, Canvas& canva
   const PrtAsset& main = scene_.forms.main();
   switch (state.show) {
     case Show::picture:
+      if (shaded_) {
+        shaded_->draw(lights_of(state.light, scene_.lights), camera, canvas.picture(), 0);
+        break;
+      }
       draw_lit(state, state.technique, state.bands, camera, canvas, canvas.picture());
       break;
     case Show::coefficient:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "runtime/draw/asset_renderer.h"
 #include "view/draw/canvas.h"
 #include "view/draw/inspection.h"
+#include "view/draw/shaded_view.h"
 #include "view/files/view_scene.h"
 #include "view/state/view_state.h"
 
@@ -23,6 +25,9 @@ class AssetView {
   /// Uploads the data of the state's technique. Throws as AssetRenderer does. Takes the surface's look and the number
   /// of incident-light samples from `settings`.
   AssetView(ViewScene scene, const RenderSettings& settings, const ViewState& state);
+
+  /// Draws pictures by a shader of one's own from now on, in place of the technique. Throws as ShadedView does.
+  void set_shader(const std::filesystem::path& shader) { shaded_.emplace(scene_.forms.main(), shader); }
 
   const ViewScene& scene() const { return scene_; }
   const ViewLimits& limits() const { return limits_; }
@@ -52,6 +57,7 @@ class AssetView {
   SurfaceLook look_;
   std::map<const PrtAsset*, std::unique_ptr<AssetRenderer>> renderers_;
   std::optional<Inspection> inspection_;
+  std::optional<ShadedView> shaded_;
   std::vector<std::pair<double, double>> decoded_ranges_;  // of the compressed form
   LightChoice lit_by_;                                     // the choice that lights_ were made for
   int lit_samples_ = 0;
