@@ -10,7 +10,11 @@ import struct
 import sys
 import zlib
 
-import numpy
+try:
+    import numpy
+except ImportError:
+    sys.exit(f"{sys.argv[0]}: found no numpy in {sys.executable}; expected it; install Debian's python3-numpy, and use "
+             "/usr/bin/python3")
 
 INCH = 0.0254
 # Heights and diameters of a pin, inches: equipment specifications of the United States Bowling Congress; a round head.
