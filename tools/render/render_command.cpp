@@ -51,7 +51,7 @@ void RenderCommand::check(const CommandLine& command) const {
     const auto is_scene = [](const std::filesystem::path& path) { return is_scene_file(path); };
     require(std::none_of(paths.assets.begin(), paths.assets.end(), is_scene),
             "found a scene beside other inputs; expected one scene, or assets");
-    for (const char* option : {"time", "fps", "shadows", "shadow-directions", "tree"})
+    for (const char* option : {"time", "fps", "shadows", "shadow-directions", "strip", "tree"})
       require(!command.given(option), std::string(option) + ": found it without a scene; expected a scene.yaml");
   }
   picture_of(settings);

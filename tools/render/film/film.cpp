@@ -32,6 +32,14 @@ void add_boxes(MovingScene& scene, const std::vector<BoundingBox>& boxes, std::v
   }
 }
 
+/// Copies a frame into a strip of them, which is wide enough.
+void put_beside(Image<float>& strip, const Image<float>& frame, int place) {
+  for (int j = 0; j < frame.height(); ++j)
+    for (int i = 0; i < frame.width(); ++i)
+      for (int channel = 0; channel < frame.channels(); ++channel)
+        strip.at(place * frame.width() + i, j, channel) = frame.at(i, j, channel);
+}
+
 void add_lines(const SceneTree& tree, int node, const std::string& indent, std::string& text) {
   const SceneNode& here = tree.nodes[static_cast<std::size_t>(node)];
   text += indent + here.name + (here.is_static ? " (static)" : "") + "\n";
@@ -136,13 +144,18 @@ Json film_to_files(OutputSet& outputs, const std::string& name, const Film& film
   view.supersample = settings.supersample;
   view.look = look_of(settings);
   view.shading = settings.shading;
+  Image<float> strip;
+  if (film_settings.strip) strip = Image<float>(settings.width * static_cast<int>(times.size()), settings.height, 4);
   Json metrics;
   for (std::size_t k = 0; k < times.size(); ++k) {
     scene.set_time(times[k]);
     view.camera = make_camera(shape_now(scene), camera, settings.width, settings.height);
     const std::vector<SceneAsset> drawn = assets.now(view.look);
     const Image<float> radiance = render_scene(drawn, scene.lights(), view);
-    write_picture(outputs.add(times.size() > 1 ? frame_name(name, static_cast<int>(k)) : name), radiance, picture);
+    if (film_settings.strip)
+      put_beside(strip, radiance, static_cast<int>(k));
+    else
+      write_picture(outputs.add(times.size() > 1 ? frame_name(name, static_cast<int>(k)) : name), radiance, picture);
     if (k == 0) {
       metrics = render_metrics(drawn, scene.lights().specs, radiance, context);
       metrics["camera"] = to_json(view.camera);
@@ -152,6 +165,7 @@ Json film_to_files(OutputSet& outputs, const std::string& name, const Film& film
     }
     progress(static_cast<double>(k + 1) / static_cast<double>(times.size()));
   }
+  if (film_settings.strip) write_picture(outputs.add(name), strip, picture);
   metrics["tree_changes"] = scene.tree_changes();
   return metrics;
 }

@@ -15,6 +15,7 @@ OptionSet film_options(FilmSettings& settings) {
   options.number("time", settings.time, 0, 1e6, "Of the picture, or of the first of several, seconds")
       .number_or_auto("fps", settings.frames_per_second, 1e-3, 1000,
                       "Pictures per second of --frames; auto: they span the scene from --time to its end")
+      .toggle("strip", settings.strip, "The frames side by side in one picture, in place of one picture each")
       .choice("shadows", settings.shadows, methods, "How the nodes' shadows on each other are computed")
       .integer("shadow-directions", settings.shadow_directions, 16, 1000000,
                "In which a point at which light is computed looks for what shadows it");

@@ -18,6 +18,7 @@ namespace kiln {
 struct FilmSettings {
   double time = 0;                          ///< of the first picture, seconds
   std::optional<double> frames_per_second;  ///< nothing: the frames span the scene's duration
+  bool strip = false;                       ///< whether the frames stand side by side in one picture
   ShadowMethod shadows = ShadowSettings{}.method;
   int shadow_directions = ShadowSettings{}.directions;
 };
