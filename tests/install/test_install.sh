@@ -75,11 +75,28 @@ for snippet in snippets/*.inc; do
   "build_snippets/$(basename "$snippet" .inc)" || fault "C++ in the documentation: $(basename "$snippet" .inc)"
 done
 
+# A scene moves, and its light is that of its place.
+cat > scene.yaml <<'EOF'
+nodes:
+  - {name: still, asset: prt}
+  - name: rig
+    translate: [0, 3, 0]
+    nodes: [{name: mover, asset: prt, scale: 0.5, animate: {keyframes: [{time: 0, translate: [4, 0, 0]}, {time: 2, translate: [8, 0, 0]}]}}]
+lights: [{ambient: 0.75}]
+EOF
+moved=$(examples/moving_scene scene.yaml 0 1)
+[ "$moved" = "0 still 0.0000 0.0000 0.0000 0.7500
+0 mover 4.0000 3.0000 0.0000 0.7500
+1 still 0.0000 0.0000 0.0000 0.7500
+1 mover 6.0000 3.0000 0.0000 0.7500" ] || fault "the scene moved to: $moved"
+if examples/moving_scene nowhere.yaml 0 2> error.txt; then fault "a missing scene is no fault"; fi
+[ "$(pkg-config --libs kiln-runtime-scene | grep -c kiln-runtime-scene)" = 1 ] || fault "pkg-config does not know kiln-runtime-scene"
+
 # Libraries export the runtime only, and contain nothing under the GPL.
 for library in "$build_folder"/lib/libkiln-runtime*.so; do
   nm -DC --defined-only "$library" | grep " T " | grep -v "kiln::runtime" && fault "$library shows more than its headers"
   nm -C "$library" | grep -E "CGAL::" && fault "$library has code of CGAL in it"
 done
-readelf -d "$build_folder/lib/libkiln-runtime.so" | grep NEEDED | grep -E "libGL|libOpenGL|libepoxy|libEGL|embree|gmp|OpenMesh" && fault "the plain runtime links more than it needs"
+readelf -d "$build_folder/lib/libkiln-runtime.so" | grep NEEDED | grep -E "libGL|libOpenGL|libepoxy|libEGL|embree|yaml|gmp|OpenMesh" && fault "the plain runtime links more than it needs"
 grep -rlE "nlohmann|CLI11|epoxy" prefix/include && fault "installed headers need libraries that users do not have"
 echo "installed, built against, and right"
