@@ -44,8 +44,10 @@ BlockedSum blocked_by_siblings(const ShadowStage& stage, int node, const Eigen::
   if (parent < 0) return {};
   for (const int sibling : node_of(stage.tree, parent).children) {
     if (sibling == node || stage.place_of(sibling).ball.radius < 0) continue;
-    if (composite_balls && node_of(stage.tree, sibling).asset < 0) {
-      if (for_static && stage.place_of(sibling).has_static) continue;
+    // From within its ball a composite node is its meshes: the ball would take all light.
+    const BoundingBall& ball = stage.place_of(sibling).ball;
+    if (composite_balls && node_of(stage.tree, sibling).asset < 0 && (point - ball.centre).norm() > ball.radius &&
+        !(for_static && stage.place_of(sibling).has_static)) {
       find(sibling);
       for (const std::uint32_t d : tested) blocked[d] = 1;
       continue;

@@ -15,8 +15,8 @@ namespace kiln {
 using BlockedSum = std::vector<double>;
 
 /// Computes what the siblings of `node` block at a point (scene's space), in the bands of the stage's directions. A
-/// composite sibling is all its meshes, or with `composite_balls` the ball around them (5.3). `for_static`: for static
-/// nodes, whose bakes hold the shadows of other static ones.
+/// composite sibling is all its meshes, or with `composite_balls` the ball around them where the point is outside
+/// (5.3). `for_static`: for static nodes, whose bakes hold the shadows of other static ones.
 BlockedSum blocked_by_siblings(const ShadowStage& stage, int node, const Eigen::Vector3d& point, bool composite_balls,
                                bool for_static);
 

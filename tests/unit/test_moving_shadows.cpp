@@ -259,6 +259,31 @@ TEST(MovingShadows, KeptLightIsThatOfANewComputation) {
   }
 }
 
+/// A ball passes a light in small steps: light falls to its least and rises again, and never goes back on its way by
+/// more than two directions' worth.
+TEST(MovingShadows, NothingFlickersAsABallPasses) {
+  const BallScene ball;
+  const SceneTree tree = make_tree({{0, 0}, {0, 0}});
+  const SceneLights lights = lights_of({light_from_above(12)});
+  MovingShadows shadows(tree, {ball.object}, settings_of(ShadowMethod::combined));
+  std::vector<double> means;
+  constexpr int steps = 200;
+  for (int step = 0; step <= steps; ++step) {
+    shadows.update({Placement{}, placed_at(0, 0, 0, 0.2), placed_at(-4 + 8.0 * step / steps, 8, 0)}, lights);
+    means.push_back(static_cast<double>(shadows.light_of(1)[0].channels[0][0]));
+  }
+  const auto least = std::min_element(means.begin(), means.end());
+  EXPECT_EQ(means.front(), means.back());
+  // Of 12 degrees of light a ball of 7.2 leaves all but a share of their squared sines.
+  EXPECT_NEAR(*least / means.front(), 1 - std::pow(std::sin(std::asin(1.0 / 8)) / std::sin(12 * pi / 180), 2), 0.01);
+  const double direction = means.front() / 1024;
+  for (auto value = means.begin() + 1; value != means.end(); ++value) {
+    const double change = value <= least ? *(value - 1) - *value : *value - *(value - 1);
+    EXPECT_GT(change, -2.01 * direction);
+    EXPECT_LT(change, 0.04 * means.front());  // of the steepest: 0.04 of a path, half of it in light
+  }
+}
+
 /// Compares caps with many rays; of two caps one behind the other only one counts.
 TEST(MovingShadows, SmallNodesAreCapsOfTheirSilhouette) {
   const BallScene ball;
