@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "base/errors.h"
+#include "base/one_thread.h"
 
 namespace kiln {
 
@@ -18,8 +19,7 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// Returns the device of all scenes, which is never released.
 RTCDevice device_of_all() {
-  // One thread builds, so that trees do not depend on the number of threads.
-  static const RTCDevice device = rtcNewDevice("threads=1");
+  static const RTCDevice device = rtcNewDevice(nullptr);
   return device;
 }
 
@@ -79,7 +79,8 @@ RayOccluder::RayOccluder(const TriangleMesh& mesh) : implementation_(std::make_u
     rtcAttachGeometry(implementation_->scene, geometry);
     rtcReleaseGeometry(geometry);
   }
-  rtcCommitScene(implementation_->scene);
+  // Builds the tree with one thread, so that it does not depend on their number.
+  on_one_thread([&] { rtcCommitScene(implementation_->scene); });
   if (rtcGetDeviceError(device) != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot build a scene of shadows");
 }
 
