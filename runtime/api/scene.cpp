@@ -11,7 +11,6 @@
 #include "asset/prt_asset.h"
 #include "runtime/play/moving_scene.h"
 #include "runtime/scene_file/scene_file.h"
-#include "runtime/shadow/shadow_methods.h"
 
 namespace kiln::runtime {
 
@@ -49,11 +48,10 @@ MovingSceneSettings settings_of(const SceneSettings& given) {
   settings.shadows.directions = given.shadow_directions;
   settings.shadows.threads = given.threads;
   if (given.shadows.empty()) return settings;
-  const auto found = std::find_if(shadow_method_names.begin(), shadow_method_names.end(),
-                                  [&](const auto& method) { return given.shadows == method.first; });
+  const auto found = std::find(shadow_method_names.begin(), shadow_method_names.end(), given.shadows);
   if (found == shadow_method_names.end())
     throw Error("SceneSettings: found shadows '" + given.shadows + "'; expected a method of kiln-render --shadows");
-  settings.shadows.method = found->second;
+  settings.shadows.method = static_cast<ShadowMethod>(found - shadow_method_names.begin());
   return settings;
 }
 

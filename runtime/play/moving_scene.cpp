@@ -147,11 +147,18 @@ void MovingScene::update() {
   if (!shadows_) {
     std::vector<ShadowObject> objects;
     for (std::size_t k = 0; k < assets_.size(); ++k)
-      objects.push_back({&assets_[k]->mesh, points_[k], assets_[k]->bands});
+      objects.push_back({&assets_[k]->mesh, points_[k], assets_[k]->bands, normals_at(k)});
     shadows_.emplace(found_tree_ ? found_tree_->tree() : given_tree_, std::move(objects), settings_.shadows);
   }
   shadows_->update(tree_poses(), lights_);
   is_lit_ = true;
+}
+
+/// Returns the normals of an asset's points, where these are its vertices.
+std::vector<Eigen::Vector3f> MovingScene::normals_at(std::size_t asset) const {
+  const bool has_normals = assets_[asset]->mesh.normals.size() == points_[asset].size();
+  if (settings_.incident_samples != samples_at_vertices || !has_normals) return {};
+  return assets_[asset]->mesh.normals;
 }
 
 const Placement& MovingScene::pose(int item) {

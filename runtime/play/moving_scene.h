@@ -60,6 +60,7 @@ class MovingScene {
   void place();
   void update();
   std::vector<NodeSphere> spheres() const;
+  std::vector<Eigen::Vector3f> normals_at(std::size_t asset) const;
   ScenePoses tree_poses() const;
   int node_of(int item) const;
 

@@ -300,15 +300,16 @@ def keyframe(time, pose, height):
 
 
 HEAD = """# A ball rolls into ten pins. Every body shadows the others and the alley as it moves; each is an asset of its own, with its
-# own shadows on itself. Build the assets (strike-assets.yaml), then:
+# own shadows on itself. Build the assets (strike-assets.yaml), then, with light at every vertex of them:
 #
-#     build/release/bin/kiln-render samples/strike.yaml --time 0.35 --frames 6 --fps 6 --strip -o strike.png
-#     build/release/bin/kiln-view samples/strike.yaml
+#     build/release/bin/kiln-render samples/strike.yaml --incident-samples vertices --time 0.35 --frames 6 --fps 6 --strip \\
+#         --width 260 --height 200 --background 0.02 -o strike.png
+#     build/release/bin/kiln-view samples/strike.yaml --incident-samples vertices
 #
 # The motion is made by samples/strike/simulate.py.
 lights:
-  - {directional: [35, 55], radiance: 0.9, radius: 12}
-  - {hemisphere: [0, 90], radiance: 0.35, ground: 0.1}
+  - {directional: [112, 50], radiance: 1.3, radius: 10}
+  - {hemisphere: [0, 90], radiance: 0.3, ground: 0.1}
 camera: {azimuth: 14, elevation: 21, target: [0, 0.05, -0.42], distance: 3.6, field-of-view: 30}
 duration: %g
 nodes:

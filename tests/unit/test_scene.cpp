@@ -14,6 +14,7 @@
 #include "runtime/scene_file/scene_file.h"
 #include "scratch.h"
 #include "sh/directions.h"
+#include "sh/lights.h"
 #include "shapes.h"
 
 namespace kiln {
@@ -306,7 +307,7 @@ nodes:
 lights: [{sphere: [3, 3, 0], radius: 0.5, animate: {orbit: {radius: 1, period: 2}}}, {ambient: 0.1}]
 )");
   const PrtAsset asset = box_asset();
-  MovingScene scene(description, {&asset}, {{}, samples_at_vertices});
+  MovingScene scene(description, {&asset}, {{.method = ShadowMethod::none}, samples_at_vertices});
   scene.set_time(1);
   const int ball = scene.find("ball");
   ASSERT_EQ(ball, 2);
@@ -370,6 +371,26 @@ TEST(MovingScene, AFoundTreeFollowsWhatMoves) {
   scene.light(0);
   EXPECT_EQ(scene.tree_changes(), 1);
   EXPECT_EQ(scene.light(1).samples.size(), 8u);
+}
+
+TEST(MovingScene, WhatPassesTakesLightAndWhatIsStaticDoesNot) {
+  const SceneFolder folder;
+  const auto scene_of = [&](const std::string& flag) {
+    return folder.read(
+        "nodes:\n  - {name: low, asset: a, static: true}\n  - {name: high, asset: a, translate: [0, 4, 0], scale: 2" +
+        flag + "}\nlights: [{directional: [0, 90], radius: 5}]\n");
+  };
+  PrtAsset ball;
+  ball.mesh = shapes::cube_sphere(6);
+  ball.bands = 4;
+  const auto above = [&](const std::string& flag) {
+    MovingScene scene(scene_of(flag), {&ball}, {{.method = ShadowMethod::combined, .directions = 256}, 1});
+    return evaluate_at(scene.light(0).samples.front().channels[0], Eigen::Vector3f::UnitY());
+  };
+  const double alone = above(", animate: {keyframes: [{time: 0, translate: [50, 4, 0]}]}");
+  EXPECT_GT(alone, 1);
+  EXPECT_LT(std::abs(above("")), 0.02 * alone);  // the light is behind the other
+  EXPECT_EQ(above(", static: true"), alone);     // the bake holds that already
 }
 
 TEST(MovingScene, NodesMoveByHandUnlessTheyAreStatic) {

@@ -10,7 +10,6 @@
 #include "base/json.h"
 #include "base/outputs.h"
 #include "image/image_file.h"
-#include "runtime/shadow/shadow_methods.h"
 #include "view/state/readout.h"
 
 namespace kiln {
@@ -27,9 +26,7 @@ constexpr double pause_seconds = 0.1;  // while nothing happens
 constexpr double room_for_both_panels = 440;
 
 std::string method_name(ShadowMethod method) {
-  for (const auto& [name, named] : shadow_method_names)
-    if (named == method) return name;
-  return "";
+  return std::string(shadow_method_names[static_cast<std::size_t>(method)]);
 }
 
 std::string samples_text(int samples) {

@@ -3,15 +3,18 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <string_view>
+#include <utility>
 
 #include "base/errors.h"
-#include "runtime/shadow/shadow_methods.h"
 
 namespace kiln {
 
 OptionSet film_options(FilmSettings& settings) {
   OptionSet options;
-  std::vector<std::pair<std::string, ShadowMethod>> methods(shadow_method_names.begin(), shadow_method_names.end());
+  std::vector<std::pair<std::string, ShadowMethod>> methods;
+  for (const std::string_view name : shadow_method_names)
+    methods.emplace_back(name, static_cast<ShadowMethod>(methods.size()));
   options.number("time", settings.time, 0, 1e6, "Of the picture, or of the first of several, seconds")
       .number_or_auto("fps", settings.frames_per_second, 1e-3, 1000,
                       "Pictures per second of --frames; auto: they span the scene from --time to its end")
@@ -55,7 +58,11 @@ void use_camera(RenderSettings& settings, const SceneCamera& camera,
 }
 
 ShadowSettings shadow_settings_of(const FilmSettings& film, int threads) {
-  return {film.shadows, film.shadow_directions, threads};
+  ShadowSettings settings;
+  settings.method = film.shadows;
+  settings.directions = film.shadow_directions;
+  settings.threads = threads;
+  return settings;
 }
 
 int film_samples_of(const RenderSettings& settings, const FilmSettings& film, const SceneDescription& scene) {
