@@ -138,7 +138,9 @@ class Contact:
 def surfaces(c, r):
     """Yields (normal, depth) of what stands still and touches a sphere: lane, gutters, pit, boards, wall."""
     x, y, z = c
-    if z > END:
+    in_gutter = abs(abs(x) - LANE - GUTTER) < GUTTER and y > -GUTTER - 0.02  # which is open at its end
+    behind = z < END + 0.06 and y < -0.03 and not in_gutter  # the wall under the lane's end, by a rounding
+    if z > END and not behind:
         across = abs(x) - (LANE + GUTTER)
         if abs(across) < GUTTER and y < r:
             length = math.hypot(across, y)
@@ -154,7 +156,7 @@ def surfaces(c, r):
     else:
         if y + PIT_DEPTH < r:
             yield (0, 1, 0), r - y - PIT_DEPTH
-        if y < 0 and END - z < r:
+        if y < 0 and END - z < r and not in_gutter:
             yield (0, 0, -1), r - (END - z)
         elif y >= 0 and abs(x) < LANE:  # the lane's last edge
             away = math.hypot(y, z - END)
@@ -313,7 +315,7 @@ lights:
 camera: {azimuth: 14, elevation: 21, target: [0, 0.05, -0.42], distance: 3.6, field-of-view: 30}
 duration: %g
 nodes:
-  - {name: alley, asset: ../out/strike/alley/prt}
+  - {name: alley, asset: ../out/strike/alley/prt, static: true}
 """
 
 
