@@ -33,6 +33,12 @@ StateKey key_of(int node, std::span<const int> others, const ScenePoses& poses, 
   return key;
 }
 
+void add_ball(StateKey& key, int node, const BoundingBall& ball, const Placement& own, double unit) {
+  key.nodes.push_back(node);
+  for (int axis = 0; axis < 3; ++axis) key.numbers.push_back((ball.centre - own.translation)[axis] / unit);
+  key.numbers.push_back(ball.radius / unit);
+}
+
 std::vector<double> numbers_of(const SceneLights& lights) {
   std::vector<double> numbers = {static_cast<double>(lights.window),
                                  static_cast<double>(reinterpret_cast<std::uintptr_t>(lights.probes)),

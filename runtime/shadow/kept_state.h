@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "runtime/light/scene_lights.h"
 #include "runtime/scene/scene_tree.h"
+#include "runtime/shadow/placed_nodes.h"
 
 namespace kiln {
 
@@ -25,6 +26,9 @@ struct StateKey {
 /// the version of the lights. Lengths count in `unit`. With local lights the node's own place counts, too.
 StateKey key_of(int node, std::span<const int> others, const ScenePoses& poses, double unit, bool is_local,
                 int lights_version);
+
+/// Adds a ball (of `node`, relative to the place of the key's own node) to a key.
+void add_ball(StateKey& key, int node, const BoundingBall& ball, const Placement& own, double unit);
 
 /// Returns all numbers of lights, for comparing them.
 std::vector<double> numbers_of(const SceneLights& lights);

@@ -178,6 +178,7 @@ void MovingShadows::Implementation::update_trees(const ShadowStage& stage) {
   };
   std::vector<Job> jobs;
   const std::size_t sorts = placed.front().has_static ? 2 : 1;
+  std::vector<std::array<SiblingOccluders, 2>> siblings(tree.nodes.size());
   for (int node = 1; node < tree.count(); ++node) {
     const auto k = static_cast<std::size_t>(node);
     TreeState& state = tree_states[k];
@@ -185,11 +186,14 @@ void MovingShadows::Implementation::update_trees(const ShadowStage& stage) {
     const std::size_t points = is_mesh ? object_of(node).points.size() : 1;
     for (std::size_t sort = 0; sort < sorts; ++sort) {
       if (is_mesh && node_of(node).is_static != (sort == 1)) continue;
-      // Where a composite node's filter is computed follows from the places of all under it.
-      std::vector<int> others = sibling_meshes(tree, node, sort == 1);
-      if (!is_mesh)
-        for (const int mesh : meshes_under(tree, node)) others.push_back(mesh);
-      StateKey key = key_of(node, others, stage.poses, std::max(placed[k].ball.radius, 1e-30), false, 0);
+      siblings[k][sort] = sibling_occluders(stage, node, settings.composite_balls, sort == 1);
+      const double unit = std::max(placed[k].ball.radius, 1e-30);
+      StateKey key = key_of(node, siblings[k][sort].meshes, stage.poses, unit, false, 0);
+      // Of composite nodes the balls count: the own one's centre is the point. What moves within them changes nothing.
+      std::vector<int> composites = siblings[k][sort].balls;
+      if (!is_mesh) composites.push_back(node);
+      for (const int composite : composites)
+        add_ball(key, composite, placed[static_cast<std::size_t>(composite)].ball, stage.pose_of(node), unit);
       if (key.is_same(state.key[sort]) && state.blocked[sort].size() == points) continue;
       state.key[sort] = std::move(key);
       state.blocked[sort].assign(points, {});
@@ -202,8 +206,7 @@ void MovingShadows::Implementation::update_trees(const ShadowStage& stage) {
     const Eigen::Vector3d position = node_of(node).asset < 0
                                          ? placed[k].ball.centre
                                          : stage.pose_of(node).to_scene(object_of(node).points[point].cast<double>());
-    tree_states[k].blocked[sort][point] =
-        blocked_by_siblings(stage, node, position, settings.composite_balls, sort == 1);
+    tree_states[k].blocked[sort][point] = blocked_by(stage, siblings[k][sort], position);
   });
   statistics.computed = jobs.size();
 }

@@ -18,20 +18,26 @@ const SceneNode& node_of(const SceneTree& tree, int node) { return tree.nodes[st
 
 }  // namespace
 
-std::vector<int> sibling_meshes(const SceneTree& tree, int node, bool for_static) {
-  std::vector<int> meshes;
-  const int parent = node_of(tree, node).parent;
-  if (parent < 0) return meshes;
-  for (const int sibling : node_of(tree, parent).children) {
-    if (sibling == node) continue;
-    for (const int mesh : meshes_under(tree, sibling))
-      if (!(for_static && node_of(tree, mesh).is_static)) meshes.push_back(mesh);
+SiblingOccluders sibling_occluders(const ShadowStage& stage, int node, bool composite_balls, bool for_static) {
+  SiblingOccluders found;
+  const int parent = node_of(stage.tree, node).parent;
+  if (parent < 0) return found;
+  const BoundingBall& own = stage.place_of(node).ball;
+  for (const int sibling : node_of(stage.tree, parent).children) {
+    const PlacedNode& place = stage.place_of(sibling);
+    if (sibling == node || place.ball.radius < 0) continue;
+    const bool is_clear = (place.ball.centre - own.centre).norm() > place.ball.radius + own.radius;
+    if (composite_balls && is_clear && node_of(stage.tree, sibling).asset < 0 && !(for_static && place.has_static)) {
+      found.balls.push_back(sibling);
+      continue;
+    }
+    for (const int mesh : meshes_under(stage.tree, sibling))
+      if (!(for_static && node_of(stage.tree, mesh).is_static)) found.meshes.push_back(mesh);
   }
-  return meshes;
+  return found;
 }
 
-BlockedSum blocked_by_siblings(const ShadowStage& stage, int node, const Eigen::Vector3d& point, bool composite_balls,
-                               bool for_static) {
+BlockedSum blocked_by(const ShadowStage& stage, const SiblingOccluders& siblings, const Eigen::Vector3d& point) {
   thread_local std::vector<std::uint8_t> blocked;
   thread_local std::vector<std::uint32_t> tested;
   blocked.assign(stage.sky.count(), 0);
@@ -40,23 +46,13 @@ BlockedSum blocked_by_siblings(const ShadowStage& stage, int node, const Eigen::
     tested.clear();
     find_in_cone(stage.sky, cone.axis.cast<float>(), static_cast<float>(cone.half_angle), blocked, tested);
   };
-  const int parent = node_of(stage.tree, node).parent;
-  if (parent < 0) return {};
-  for (const int sibling : node_of(stage.tree, parent).children) {
-    if (sibling == node || stage.place_of(sibling).ball.radius < 0) continue;
-    // From within its ball a composite node is its meshes: the ball would take all light.
-    const BoundingBall& ball = stage.place_of(sibling).ball;
-    if (composite_balls && node_of(stage.tree, sibling).asset < 0 && (point - ball.centre).norm() > ball.radius &&
-        !(for_static && stage.place_of(sibling).has_static)) {
-      find(sibling);
-      for (const std::uint32_t d : tested) blocked[d] = 1;
-      continue;
-    }
-    for (const int mesh : meshes_under(stage.tree, sibling)) {
-      if (for_static && node_of(stage.tree, mesh).is_static) continue;
-      find(mesh);
-      if (!tested.empty()) stage.mesh_of(mesh).block(stage.pose_of(mesh), point, stage.sky, tested, {}, blocked);
-    }
+  for (const int ball : siblings.balls) {
+    find(ball);
+    for (const std::uint32_t d : tested) blocked[d] = 1;
+  }
+  for (const int mesh : siblings.meshes) {
+    find(mesh);
+    if (!tested.empty()) stage.mesh_of(mesh).block(stage.pose_of(mesh), point, stage.sky, tested, {}, blocked);
   }
   BlockedSum sum;
   for (std::uint32_t d = 0; d < stage.sky.count(); ++d) {

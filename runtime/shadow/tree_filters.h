@@ -14,14 +14,19 @@ namespace kiln {
 /// what a filter loses on its way from the node's parent to the node ([Chapter 2010], 5.1.6). Empty: nothing.
 using BlockedSum = std::vector<double>;
 
-/// Computes what the siblings of `node` block at a point (scene's space), in the bands of the stage's directions. A
-/// composite sibling is all its meshes, or with `composite_balls` the ball around them where the point is outside
-/// (5.3). `for_static`: for static nodes, whose bakes hold the shadows of other static ones.
-BlockedSum blocked_by_siblings(const ShadowStage& stage, int node, const Eigen::Vector3d& point, bool composite_balls,
-                               bool for_static);
+/// What may block a node's filter: its siblings.
+struct SiblingOccluders {
+  std::vector<int> meshes;  ///< mesh nodes that rays are cast at
+  std::vector<int> balls;   ///< composite nodes of which only the ball around them counts
+};
 
-/// Returns the nodes that blocked_by_siblings casts rays at.
-std::vector<int> sibling_meshes(const SceneTree& tree, int node, bool for_static);
+/// Finds the siblings of `node`. A composite sibling is all its meshes, or with `composite_balls` the ball around them
+/// where that is clear of the node's own (5.3). `for_static`: for static nodes, whose bakes hold the shadows of other
+/// static ones.
+SiblingOccluders sibling_occluders(const ShadowStage& stage, int node, bool composite_balls, bool for_static);
+
+/// Computes what siblings block at a point (scene's space), in the bands of the stage's directions.
+BlockedSum blocked_by(const ShadowStage& stage, const SiblingOccluders& siblings, const Eigen::Vector3d& point);
 
 /// Returns the filter that is left of light from everywhere when the sums of a node and of all above it are taken.
 std::vector<float> filter_of(const BlockedSum& blocked);

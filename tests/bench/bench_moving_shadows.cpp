@@ -30,10 +30,13 @@ struct MethodSetup {
   int product_bands = 0;
   bool composite_balls = false, has_sky = false;
   int error_directions = 10000;  ///< 0: its error is not measured
+  LightWindow window = LightWindow::none;
+  bool is_timed = true;
 };
 constexpr MethodSetup setups[] = {
-    {"thesis", ShadowMethod::thesis},
-    {"thesis, composite nodes as balls", ShadowMethod::thesis, 0, true},
+    {"thesis", ShadowMethod::thesis, 0, false, false, 10000, LightWindow::hann},
+    {"thesis, composite nodes as balls", ShadowMethod::thesis, 0, true, false, 10000, LightWindow::hann},
+    {"thesis, Hann on filters alone", ShadowMethod::thesis, 0, false, false, 10000, LightWindow::none, false},
     {"product", ShadowMethod::product},
     {"product of 9 bands", ShadowMethod::product, 9},
     {"subtraction", ShadowMethod::subtraction},
@@ -41,7 +44,9 @@ constexpr MethodSetup setups[] = {
     {"fields", ShadowMethod::fields},
     {"**combined**", ShadowMethod::combined},
     {"combined, and a sky", ShadowMethod::combined, 0, false, true, 0},
-    {"combined, 1,024 directions", ShadowMethod::combined, 0, false, false, 1024},
+    {"combined, 1,024 directions", ShadowMethod::combined, 0, false, false, 1024, LightWindow::none, false},
+    {"combined, light under Hann", ShadowMethod::combined, 0, false, false, 10000, LightWindow::hann, false},
+    {"combined, light deringed", ShadowMethod::combined, 0, false, false, 10000, LightWindow::dering, false},
 };
 
 ShadowSettings settings_of(const MethodSetup& setup, int directions, int threads) {
@@ -54,9 +59,9 @@ ShadowSettings settings_of(const MethodSetup& setup, int directions, int threads
   return settings;
 }
 
-SceneLights lights_of(const ShadowStand& stand, double half_angle, bool has_sky) {
-  SceneLights lights{{stand_light(stand, half_angle)}, std::nullopt, LightWindow::none};
-  if (has_sky) {
+SceneLights lights_of(const ShadowStand& stand, double half_angle, const MethodSetup& setup) {
+  SceneLights lights{{stand_light(stand, half_angle)}, std::nullopt, setup.window};
+  if (setup.has_sky) {
     LightSpec sky;
     sky.kind = LightSpec::Kind::hemisphere;
     sky.elevation_degrees = 90;
@@ -72,7 +77,7 @@ struct Speed {
 /// Runs through the motion, 60 frames long, until the time is over.
 Speed speed_of(const ShadowStand& stand, const MethodSetup& setup, int directions, int threads, double seconds) {
   MovingShadows shadows = shadows_of(stand, settings_of(setup, directions, threads));
-  const SceneLights lights = lights_of(stand, 12, setup.has_sky);
+  const SceneLights lights = lights_of(stand, 12, setup);
   shadows.update(stand.poses(0), lights);
   std::size_t computed = 0;
   int frames = 0;
@@ -92,7 +97,7 @@ void print_speeds(const std::vector<ShadowStand>& stands, const Arguments& argum
     std::printf("| method | 625, 1 thread | 2,500 | 10,000 | 625, 2 threads | 2,500 | 10,000 |\n");
     std::printf("| --- | --- | --- | --- | --- | --- | --- |\n");
     for (const MethodSetup& setup : setups) {
-      if (setup.error_directions == 1024) continue;
+      if (!setup.is_timed) continue;
       std::printf("| %s |", setup.caption);
       for (const int threads : {1, 2})
         for (const int directions : {625, 2500, 10000}) {
@@ -169,7 +174,7 @@ void print_jumps(const ShadowStand& stand, const Film& film) {
     FrameErrors step, of_error;
     FrameRadiance before, error_before;
     for (std::size_t k = 0; k < slow.poses.size(); ++k) {
-      shadows.update(slow.poses[k], lights_of(stand, 12, false));
+      shadows.update(slow.poses[k], lights_of(stand, 12, setup));
       const FrameRadiance frame = frame_of(stand, shadows), error = less(frame, slow.truth[k].exact);
       if (k > 0) step.add(slow.share(frame, before));
       if (k > 0) of_error.add(slow.share(error, error_before));
@@ -198,7 +203,7 @@ void print_errors(const ShadowStand& stand, int frames) {
       MovingShadows shadows = shadows_of(stand, settings_of(setup, setup.error_directions, 0));
       FrameErrors error, added;
       for (std::size_t k = 0; k < film.poses.size(); ++k) {
-        shadows.update(film.poses[k], lights_of(stand, half_angle, false));
+        shadows.update(film.poses[k], lights_of(stand, half_angle, setup));
         const FrameRadiance frame = frame_of(stand, shadows);
         error.add(film.share(frame, film.truth[k].exact));
         added.add(film.share(frame, film.truth[k].bands));
@@ -236,7 +241,7 @@ void print_growth(const StandBodies& bodies, const Arguments& arguments) {
   for (std::size_t k = 0; k <= counts.size(); ++k) std::printf(" --- |");
   std::printf("\n");
   for (const MethodSetup& setup : setups) {
-    if (setup.error_directions == 1024) continue;
+    if (!setup.is_timed) continue;
     std::printf("| %s |", setup.caption);
     double x = 0, y = 0, xx = 0, xy = 0;
     for (const int count : counts) {

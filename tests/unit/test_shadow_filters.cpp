@@ -180,6 +180,31 @@ TEST(TreeFilters, SeeCompositeNodesAsMeshesOrAsBalls) {
   EXPECT_NEAR(taken(), share(3 / 5.0), 0.003);
 }
 
+/// A ball moves inside the ball around its composite node ([Chapter 2010], 5.3): with balls, only the filters of its
+/// own level are computed anew; with meshes, that of the node beside the composite one, too.
+TEST(TreeFilters, MotionWithinABallStaysWithinIt) {
+  const TriangleMesh ball = shapes::icosphere(3);
+  const std::vector<ShadowObject> objects = {{&ball, {Eigen::Vector3f::Zero()}, 5, {}}};
+  const SceneTree tree = make_tree({{0, 0}, {0, -1}, {2, 0}, {2, 0}});
+  const SceneLights lights{{ambient_light()}, std::nullopt, LightWindow::hann};
+  for (const bool balls : {false, true}) {
+    ShadowSettings settings = settings_of(ShadowMethod::thesis);
+    settings.composite_balls = balls;
+    MovingShadows shadows(tree, objects, settings);
+    ScenePoses poses = {Placement{}, placed_at(-8, 0, 0), Placement{}, placed_at(0, 0, 0, 2), placed_at(1, 0, 0, 0.3)};
+    shadows.update(poses, lights);
+    EXPECT_EQ(shadows.statistics().computed, 4u);
+    shadows.update(poses, lights);
+    EXPECT_EQ(shadows.statistics().computed, 0u);
+    poses[4].translation.y() = 0.5;
+    shadows.update(poses, lights);
+    EXPECT_EQ(shadows.statistics().computed, balls ? 2u : 3u);  // both in the composite node, and the one beside it
+    poses[4].translation.y() = 4;  // leaves the ball: the composite node's own filter has another place
+    shadows.update(poses, lights);
+    EXPECT_EQ(shadows.statistics().computed, 4u);
+  }
+}
+
 /// The study that the methods were chosen by: discs of light and of occluders, exit radiance of all normals, against
 /// the product that is cut last. Prints, in % of the unshadowed: thesis, product, product of nine bands.
 TEST(TreeFilters, WindowsAndEarlyCutsCostAccuracy) {
