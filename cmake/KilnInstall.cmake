@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 
 set(KILN_PROGRAMS kiln kiln-check kiln-export kiln-serve kiln-web-export ${stage_programs} kiln-render kiln-shade kiln-view)
 install(TARGETS ${KILN_PROGRAMS} RUNTIME)
-install(TARGETS kiln-runtime kiln-runtime-gl EXPORT kilnTargets LIBRARY)
+install(TARGETS kiln-runtime kiln-runtime-gl kiln-runtime-scene EXPORT kilnTargets LIBRARY)
 install(TARGETS kiln-openimageio LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/kiln)
 install(DIRECTORY runtime/include/kiln TYPE INCLUDE)
 install(DIRECTORY shaders/ DESTINATION ${CMAKE_INSTALL_DATADIR}/kiln/shaders
@@ -32,7 +32,7 @@ foreach(program ${KILN_PROGRAMS})
 endforeach()
 add_custom_target(pages ALL DEPENDS ${pages})
 
-# CMake package: find_package(kiln) defines kiln::runtime and kiln::runtime-gl.
+# CMake package: find_package(kiln) defines kiln::runtime, kiln::runtime-gl and kiln::runtime-scene.
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/kiln)
 install(EXPORT kilnTargets NAMESPACE kiln:: DESTINATION ${package_folder})
 configure_package_config_file(cmake/kilnConfig.cmake.in ${PROJECT_BINARY_DIR}/kilnConfig.cmake
@@ -46,6 +46,7 @@ function(kiln_pkg_config PC_NAME PC_DESCRIPTION PC_REQUIRES)
   install(FILES ${PROJECT_BINARY_DIR}/${PC_NAME}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endfunction()
 kiln_pkg_config(kiln-runtime "Loads and relights assets that Kiln baked" "")
+kiln_pkg_config(kiln-runtime-scene "Moves scenes of assets that Kiln baked, which shadow each other" "Requires: kiln-runtime")
 kiln_pkg_config(kiln-runtime-gl "Draws assets that Kiln baked, by OpenGL 4.5" "Requires: kiln-runtime")
 
 set(CPACK_GENERATOR DEB)

@@ -20,6 +20,7 @@
 // three texels for each layer: the scales of its four planes for red, for green and for blue.
 //
 // PRT_SAMPLES: number of incident-light samples ([Chapter 2010], 4.3.3 to 4.3.6); 1 unless defined.
+// PRT_PLACES: defined only if the samples of a point are not the first of prt_light; prt_places then says which.
 // PRT_CLUSTERED: defined only if there are several clusters.
 // PRT_STACKED: defined where several assets share the textures; the caller then says where those of one begin, for each
 // pixel. Each has one cluster.
@@ -44,8 +45,15 @@ vec4 prt_light_at(int place) {
   return texelFetch(prt_light, ivec2(place % prt_light_width, place / prt_light_width), 0);
 }
 
+#ifdef PRT_PLACES
+int prt_places[PRT_SAMPLES];
+#endif
+
 // Finds where the light of a sample and a cluster begins.
 int prt_light_begin(int light_sample, int cluster) {
+#ifdef PRT_PLACES
+  light_sample = prt_places[light_sample];
+#endif
   return prt_first_light + (light_sample * prt_clusters + cluster) * (1 + 3 * prt_layers);
 }
 

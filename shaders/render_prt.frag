@@ -6,7 +6,10 @@
 #include "render_opacity.glsl"
 
 in vec2 surface_uv;
-#if PRT_SAMPLES > 1
+#ifdef PRT_PLACES
+in vec3 surface_shares;
+flat in ivec3 surface_vertices;
+#elif PRT_SAMPLES > 1
 in vec4 surface_contributions_low;
 in vec4 surface_contributions_high;
 #else
@@ -18,6 +21,13 @@ layout(location = 0) out vec4 radiance_and_coverage;
 void main() {
   discard_clear(surface_uv);
   float contributions[PRT_SAMPLES];
+#ifdef PRT_PLACES
+  for (int k = 0; k < 3; ++k) {
+    contributions[k] = surface_shares[k];
+    prt_places[k] = surface_vertices[k];
+  }
+#else
   unpack_contributions(surface_contributions_low, surface_contributions_high, contributions);
+#endif
   radiance_and_coverage = vec4(surface_albedo(surface_uv) * prt_exit_radiance(surface_uv, contributions), 1.0);
 }

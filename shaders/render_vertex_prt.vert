@@ -17,6 +17,9 @@ out vec3 vertex_radiance;
 void main() {
   float contributions[PRT_SAMPLES];
   unpack_contributions(contributions_low, contributions_high, contributions);
+#ifdef PRT_PLACES
+  prt_places[0] = gl_VertexID;
+#endif
   vertex_radiance = prt_constant(0, contributions);
   for (int layer = 0; layer < prt_layers; ++layer)
     vertex_radiance +=

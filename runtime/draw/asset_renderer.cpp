@@ -16,7 +16,7 @@ namespace {
 
 // Bindings and locations of shaders/common_prt.glsl and shaders/render_*.
 constexpr GLuint planes_unit = 0, cluster_ids_unit = 1, light_unit = 2, albedo_unit = 3, vertex_transfer_unit = 4,
-                 normal_map_unit = 5, opacity_unit = 9, phong_binding = 1;
+                 normal_map_unit = 5, opacity_unit = 9, triangles_unit = 12, phong_binding = 1;
 constexpr GLint clip_from_object_location = 0, layers_location = 1, clusters_location = 2, asset_number_location = 3;
 
 bool is_textured(Technique technique) {
@@ -45,12 +45,14 @@ AssetRenderer::AssetRenderer(const PrtAsset& asset, int incident_samples)
       mesh_(upload_mesh(asset.mesh, samples_)),
       albedo_map_(upload_albedo(asset.albedo.picture, albedo_levels(asset))),
       white_(upload_albedo(Image<std::uint8_t>(1, 1, 3, 255))),
-      opacity_map_(upload_opacity(asset.opacity)) {}
+      opacity_map_(upload_opacity(asset.opacity)) {
+  if (samples_.are_vertices() && !asset.is_per_vertex()) corners_ = upload_corners(asset.mesh, mesh_);
+}
 
-std::array<float, 3> AssetRenderer::albedo() const {
+std::array<float, 3> AssetRenderer::albedo(const SurfaceLook& look) const {
   constexpr float grey = 0.8f;
-  const bool own = look_.own_albedo && asset_.albedo.known;
-  std::array<float, 3> albedo = look_.albedo.value_or(own ? std::array{1.f, 1.f, 1.f} : std::array{grey, grey, grey});
+  const bool own = look.own_albedo && asset_.albedo.known;
+  std::array<float, 3> albedo = look.albedo.value_or(own ? std::array{1.f, 1.f, 1.f} : std::array{grey, grey, grey});
   for (std::size_t c = 0; own && c < 3; ++c) albedo[c] *= asset_.albedo.constant[static_cast<Eigen::Index>(c)];
   return albedo;
 }
@@ -58,12 +60,12 @@ std::array<float, 3> AssetRenderer::albedo() const {
 void AssetRenderer::bind_surface_maps() const {
   if (opacity_map_.texture.name() != 0) glBindTextureUnit(opacity_unit, opacity_map_.texture.name());
   if (albedo_map_.texture.name() != 0)
-    glBindTextureUnit(albedo_unit, (look_.own_albedo ? albedo_map_ : white_).texture.name());
+    glBindTextureUnit(albedo_unit, (!lit_ || lit_->look.own_albedo ? albedo_map_ : white_).texture.name());
 }
 
 const GlProgram& AssetRenderer::program(Pass pass) {
   if (const auto found = programs_.find(pass); found != programs_.end()) return found->second;
-  ShaderDefines defines = {{"PRT_SAMPLES", std::to_string(samples_.count())}};
+  ShaderDefines defines = {{"PRT_SAMPLES", std::to_string(samples_.are_vertices() ? 1 : samples_.count())}};
   if (is_clustered()) defines.emplace_back("PRT_CLUSTERED", "1");
   if (albedo_map_.texture.name() != 0) defines.emplace_back("ALBEDO_MAP", "1");
   if (opacity_map_.texture.name() != 0) defines.emplace_back("OPACITY_MAP", "1");
@@ -71,6 +73,8 @@ const GlProgram& AssetRenderer::program(Pass pass) {
   phong.emplace_back("PHONG", "1");
   ShaderDefines normal_mapped = phong;
   normal_mapped.emplace_back("NORMAL_MAP", "1");
+  ShaderDefines at_vertices = defines;
+  at_vertices.emplace_back("PRT_PLACES", "1");
   GlProgram made;
   switch (pass) {
     case Pass::phong:
@@ -80,10 +84,13 @@ const GlProgram& AssetRenderer::program(Pass pass) {
       made = load_program({"render_surface.vert", "render_phong.frag"}, normal_mapped);
       break;
     case Pass::vertex_prt:
-      made = load_program({"render_vertex_prt.vert", "render_vertex_prt.frag"}, defines);
+      made = load_program({"render_vertex_prt.vert", "render_vertex_prt.frag"},
+                          samples_.are_vertices() ? at_vertices : defines);
       break;
     case Pass::prt:
-      made = load_program({"render_surface.vert", "render_prt.frag"}, defines);
+      at_vertices.front().second = "3";  // the vertices around a point
+      made = samples_.are_vertices() ? load_program({"render_corners.vert", "render_prt.frag"}, at_vertices)
+                                     : load_program({"render_surface.vert", "render_prt.frag"}, defines);
       break;
     case Pass::appearance:
       made = load_program({"render_surface.vert", "render_appearance.frag"}, defines);
@@ -106,18 +113,21 @@ void AssetRenderer::prepare(Technique technique) {
     vertex_transfer_ = upload_vertex_transfer(asset_);
 }
 
-void AssetRenderer::set_light(const AssetLight& light, const SurfaceLook& look) {
+std::shared_ptr<const UploadedLight> AssetRenderer::upload_asset_light(const AssetLight& light,
+                                                                       const SurfaceLook& look) const {
   if (light.samples.size() != samples_.points.size())
     throw std::invalid_argument("AssetRenderer: the light must have one sample for each of the asset's points");
-  set_light_ = light;
-  look_ = look;
+  auto lit = std::make_shared<UploadedLight>();
+  lit->light = light;
+  lit->look = look;
   std::vector<std::vector<PlaneWeights>> plane_weights, vertex_weights;
   for (const LightCoefficients& sample : light.samples) {
-    if (!asset_.is_per_vertex()) plane_weights.push_back(cluster_weights(asset_, sample, albedo()));
-    vertex_weights.push_back({vector_weights(asset_, sample, albedo())});
+    if (!asset_.is_per_vertex()) plane_weights.push_back(cluster_weights(asset_, sample, albedo(look)));
+    vertex_weights.push_back({vector_weights(asset_, sample, albedo(look))});
   }
-  if (!plane_weights.empty()) light_ = upload_light(plane_weights);
-  vertex_light_ = upload_light(vertex_weights);
+  if (!plane_weights.empty()) lit->planes = upload_light(plane_weights);
+  lit->vertices = upload_light(vertex_weights);
+  return lit;
 }
 
 void AssetRenderer::bind_prt(const GlProgram& used, const UploadedTexture& light, int layers, int clusters) const {
@@ -133,33 +143,44 @@ void AssetRenderer::draw_triangles(const GlProgram& used, const Eigen::Matrix4f&
   glDrawElements(GL_TRIANGLES, mesh_.index_count, GL_UNSIGNED_INT, nullptr);
 }
 
+void AssetRenderer::draw_corners(const GlProgram& used, const Eigen::Matrix4f& clip_from_object) const {
+  glProgramUniformMatrix4fv(used.name(), clip_from_object_location, 1, GL_FALSE, clip_from_object.data());
+  glUseProgram(used.name());
+  glBindTextureUnit(triangles_unit, corners_.triangles.name());
+  glBindVertexArray(corners_.vertices.name());
+  glDrawArrays(GL_TRIANGLES, 0, corners_.count);
+}
+
 void AssetRenderer::draw(Technique technique, const Eigen::Matrix4f& clip_from_object,
                          const Eigen::Vector3f& eye_object) {
   prepare(technique);
-  if (!set_light_) throw std::logic_error("AssetRenderer: no light was set");
+  if (!lit_) throw std::logic_error("AssetRenderer: no light was set");
   bind_surface_maps();
   if (technique == Technique::phong || technique == Technique::normal_map) {
     const GlProgram& used = program(technique == Technique::phong ? Pass::phong : Pass::normal_map);
-    std::vector<float> values = phong_buffer(*set_light_, albedo(), look_, eye_object);
+    std::vector<float> values = phong_buffer(lit_->light, albedo(lit_->look), lit_->look, eye_object);
     phong_lights_ = make_buffer(std::span<const float>(values));
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, phong_binding, phong_lights_.name());
     glBindTextureUnit(normal_map_unit, normal_map_.texture.name());
     draw_triangles(used, clip_from_object);
   } else if (technique == Technique::vertex_prt) {
     const GlProgram& used = program(Pass::vertex_prt);
-    bind_prt(used, vertex_light_, layer_count(asset_.vector_length()), 1);
+    bind_prt(used, lit_->vertices, layer_count(asset_.vector_length()), 1);
     glBindTextureUnit(vertex_transfer_unit, vertex_transfer_.texture.name());
     draw_triangles(used, clip_from_object);
   } else {
     const GlProgram& used = program(Pass::prt);
     bind_planes(used);
-    draw_triangles(used, clip_from_object);
+    if (samples_.are_vertices())
+      draw_corners(used, clip_from_object);
+    else
+      draw_triangles(used, clip_from_object);
   }
   check_gl("drawing the asset");
 }
 
 void AssetRenderer::bind_planes(const GlProgram& used) const {
-  bind_prt(used, light_, layer_count(asset_.planes.size()), asset_.clusters ? asset_.clusters->count : 1);
+  bind_prt(used, lit_->planes, layer_count(asset_.planes.size()), asset_.clusters ? asset_.clusters->count : 1);
   glBindTextureUnit(planes_unit, planes_.texture.name());
   if (is_clustered()) glBindTextureUnit(cluster_ids_unit, cluster_ids_.texture.name());
 }
@@ -173,7 +194,7 @@ void AssetRenderer::draw_appearance(const Eigen::Matrix4f& clip_from_object, int
 
 void AssetRenderer::shade_appearance(int number) {
   prepare(natural_technique(asset_));
-  if (!set_light_) throw std::logic_error("AssetRenderer: no light was set");
+  if (!lit_) throw std::logic_error("AssetRenderer: no light was set");
   const GlProgram& used = program(Pass::deferred);
   bind_planes(used);
   bind_surface_maps();
@@ -192,14 +213,15 @@ GpuMemory AssetRenderer::memory(Technique technique) const {
   const bool phong = technique == Technique::phong || technique == Technique::normal_map;
   if (phong) memory.per_vertex += 3 * number;
   if (technique != Technique::phong && technique != Technique::vertex_prt) memory.per_vertex += 2 * number;
-  if (!phong && samples_.count() > 1) memory.per_vertex += most_incident_samples * number;
+  if (!phong && samples_.count() > 1 && !samples_.are_vertices()) memory.per_vertex += most_incident_samples * number;
   if (technique == Technique::normal_map) memory.per_mesh += normal_map_.bytes;
   if (technique == Technique::vertex_prt) {
-    memory.per_mesh += vertex_light_.bytes;
+    memory.per_mesh += lit_ ? lit_->vertices.bytes : 0;
     memory.per_vertex += vertex_transfer_.bytes / std::max<std::size_t>(1, mesh_.vertex_count);
   }
   memory.per_mesh += albedo_map_.bytes + opacity_map_.bytes;
-  if (is_textured(technique)) memory.per_mesh += planes_.bytes + cluster_ids_.bytes + light_.bytes;
+  if (is_textured(technique))
+    memory.per_mesh += planes_.bytes + cluster_ids_.bytes + corners_.bytes + (lit_ ? lit_->planes.bytes : 0);
   return memory;
 }
 

@@ -5,7 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <optional>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "asset/prt_asset.h"
@@ -25,13 +26,20 @@ struct GpuMemory {
   std::uint64_t indices = 0;     ///< indices of the triangles
 };
 
+/// Light of an asset at one place, on the GPU.
+struct UploadedLight {
+  AssetLight light;
+  SurfaceLook look;
+  UploadedTexture planes, vertices;  ///< for transfer in planes, and for transfer at vertices
+};
+
 /// Draws an asset on the GPU, by any technique under any light, with shaders/render_*. Draws into the bound
 /// framebuffer, with the current depth test and state (draw/frame.h). The GL context that is current at construction
 /// must be current in every call and at destruction.
 class AssetRenderer {
  public:
-  /// Uploads the mesh. `incident_samples`, 1 to most_incident_samples, is the number of points at which the incident
-  /// light is computed.
+  /// Uploads the mesh. `incident_samples`, 1 to most_incident_samples or samples_at_vertices, is the number of points
+  /// at which the incident light is computed.
   explicit AssetRenderer(const PrtAsset& asset, int incident_samples = 1);
 
   const PrtAsset& asset() const { return asset_; }
@@ -43,7 +51,12 @@ class AssetRenderer {
 
   /// Sets the light of all following draws; its number of samples must be incident_samples. Throws as cluster_weights
   /// does.
-  void set_light(const AssetLight& light, const SurfaceLook& look);
+  void set_light(const AssetLight& light, const SurfaceLook& look) { use_light(upload_asset_light(light, look)); }
+
+  /// Does the same in two steps, for an asset that stands at several places: its light there is uploaded once, and
+  /// used whenever it is drawn there.
+  std::shared_ptr<const UploadedLight> upload_asset_light(const AssetLight& light, const SurfaceLook& look) const;
+  void use_light(std::shared_ptr<const UploadedLight> light) { lit_ = std::move(light); }
 
   /// Draws all triangles, both sides. `clip_from_object` is a matrix for column vectors, `eye_object` the camera's
   /// position.
@@ -62,23 +75,23 @@ class AssetRenderer {
   enum class Pass { phong, normal_map, vertex_prt, prt, appearance, deferred };
   const GlProgram& program(Pass pass);
   void bind_prt(const GlProgram& program, const UploadedTexture& light, int layers, int clusters) const;
-  std::array<float, 3> albedo() const;
+  std::array<float, 3> albedo(const SurfaceLook& look) const;
   /// Binds the albedo and the opacity.
   void bind_surface_maps() const;
   void bind_planes(const GlProgram& program) const;
   void draw_triangles(const GlProgram& program, const Eigen::Matrix4f& clip_from_object) const;
+  void draw_corners(const GlProgram& program, const Eigen::Matrix4f& clip_from_object) const;
   bool is_clustered() const { return asset_.clusters && asset_.clusters->count > 1; }
 
   const PrtAsset& asset_;
   IncidentSamples samples_;
   UploadedMesh mesh_;
+  UploadedCorners corners_;  // if light is computed at vertices
   std::map<Pass, GlProgram> programs_;
   UploadedTexture planes_, cluster_ids_, normal_map_, albedo_map_, white_, opacity_map_;
   UploadedVertexTransfer vertex_transfer_;
-  UploadedTexture light_, vertex_light_;
   GlBuffer phong_lights_;
-  std::optional<AssetLight> set_light_;
-  SurfaceLook look_;
+  std::shared_ptr<const UploadedLight> lit_;
 };
 
 }  // namespace kiln

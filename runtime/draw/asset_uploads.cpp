@@ -240,7 +240,7 @@ UploadedMesh upload_mesh(const TriangleMesh& mesh, const IncidentSamples& sample
     uploaded.uvs = make_buffer(std::span<const Eigen::Vector2f>(mesh.uvs));
     add_attribute(vertices, uv_location, uploaded.uvs, 2);
   }
-  if (samples.count() > 1) {
+  if (samples.count() > 1 && !samples.are_vertices()) {
     const auto count = static_cast<std::size_t>(samples.count());
     std::vector<float> padded(most_incident_samples * mesh.positions.size(), 0.f);
     for (std::size_t v = 0; v < mesh.positions.size(); ++v)
@@ -253,6 +253,29 @@ UploadedMesh upload_mesh(const TriangleMesh& mesh, const IncidentSamples& sample
   glVertexArrayElementBuffer(vertices, uploaded.indices.name());
   check_gl("uploading the mesh");
   return uploaded;
+}
+
+UploadedCorners upload_corners(const TriangleMesh& mesh, const UploadedMesh& uploaded) {
+  require_at_most(GL_MAX_TEXTURE_BUFFER_SIZE, static_cast<int>(mesh.triangles.size()), "buffer textures with texels");
+  std::vector<Eigen::Vector3f> positions;
+  std::vector<Eigen::Vector2f> uvs;
+  for (const Triangle& triangle : mesh.triangles)
+    for (const std::uint32_t vertex : triangle) {
+      positions.push_back(mesh.positions[vertex]);
+      uvs.push_back(mesh.uvs[vertex]);
+    }
+  UploadedCorners corners;
+  corners.count = static_cast<GLsizei>(positions.size());
+  corners.bytes = positions.size() * (sizeof(Eigen::Vector3f) + sizeof(Eigen::Vector2f));
+  corners.positions = make_buffer(std::span<const Eigen::Vector3f>(positions));
+  corners.uvs = make_buffer(std::span<const Eigen::Vector2f>(uvs));
+  corners.vertices = make_vertex_array();
+  add_attribute(corners.vertices.name(), position_location, corners.positions, 3);
+  add_attribute(corners.vertices.name(), uv_location, corners.uvs, 2);
+  corners.triangles = make_texture(GL_TEXTURE_BUFFER);
+  glTextureBuffer(corners.triangles.name(), GL_RGB32UI, uploaded.indices.name());
+  check_gl("uploading the corners");
+  return corners;
 }
 
 }  // namespace kiln

@@ -78,4 +78,14 @@ struct UploadedMesh {
 };
 UploadedMesh upload_mesh(const TriangleMesh& mesh, const IncidentSamples& samples);
 
+/// Corners of the triangles, three after three, for light at vertices (shaders/render_corners.vert).
+struct UploadedCorners {
+  GlBuffer positions, uvs;
+  GlVertexArray vertices;
+  GlTexture triangles;  ///< buffer texture of `mesh.indices`: a triangle's vertices per texel
+  GLsizei count = 0;
+  std::uint64_t bytes = 0;
+};
+UploadedCorners upload_corners(const TriangleMesh& mesh, const UploadedMesh& uploaded);
+
 }  // namespace kiln

@@ -56,6 +56,7 @@ std::vector<Eigen::Vector3f> scene_shape(const std::vector<SceneAsset>& assets) 
 
 void light_scene(const std::vector<SceneAsset>& assets, const SceneLights& lights, const SurfaceLook& look) {
   for (const SceneAsset& asset : assets) {
+    if (asset.light) continue;
     SceneLights there = lights;
     there.probes = asset.probes;
     asset.renderer->set_light(
@@ -73,12 +74,21 @@ void draw_scene(const std::vector<SceneAsset>& assets, const Eigen::Matrix4d& cl
     if (appearance != nullptr && asset.technique != Technique::textured_prt && asset.technique != Technique::compressed)
       throw WrongUsage("shading deferred: found technique " + technique_name(asset.technique) +
                        "; expected textured-prt or compressed, whose shading is worth deferring");
+    if (appearance != nullptr && asset.renderer->samples().are_vertices())
+      throw WrongUsage(
+          "shading deferred: found light at vertices, which it does not keep; expected incident samples, or shading "
+          "forward");
   }
+  const auto use_light = [](const SceneAsset& asset) {
+    if (asset.light) asset.renderer->use_light(asset.light);
+  };
   if (appearance == nullptr) {
     frame.begin();
-    for (const SceneAsset& asset : assets)
+    for (const SceneAsset& asset : assets) {
+      use_light(asset);
       asset.renderer->draw(asset.technique, clip_from_object(asset),
                            asset.placement.to_object(eye_scene).cast<float>());
+    }
     return;
   }
   const auto number = [](std::size_t k) { return static_cast<int>(k) + 1; };
@@ -90,6 +100,7 @@ void draw_scene(const std::vector<SceneAsset>& assets, const Eigen::Matrix4d& cl
   appearance->begin_shading(frame);
   for (std::size_t k = 0; k < assets.size(); ++k) {
     appearance->begin_shading_asset(number(k));
+    use_light(assets[k]);
     assets[k].renderer->shade_appearance(number(k));
   }
   appearance->end_shading(frame);

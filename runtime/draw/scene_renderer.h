@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "image/image.h"
@@ -21,12 +22,14 @@ struct SceneAsset {
   Technique technique = Technique::textured_prt;
   /// Light where the asset stands, shadowed by what kiln-probes was given; null: unshadowed.
   const ProbeSet* probes = nullptr;
+  /// Light at this place, for an asset that stands at several; null: that which the renderer was given last.
+  std::shared_ptr<const UploadedLight> light = nullptr;
 };
 
 /// Lists the vertices of all assets, placed in the scene.
 std::vector<Eigen::Vector3f> scene_shape(const std::vector<SceneAsset>& assets);
 
-/// Gives every asset the light at its place.
+/// Gives every asset that has none of its own the light at its place.
 void light_scene(const std::vector<SceneAsset>& assets, const SceneLights& lights, const SurfaceLook& look);
 
 /// Draws lit assets into `frame` as `clip_from_scene` and `eye_scene` see them. Deferred shading needs an `appearance`
@@ -35,8 +38,8 @@ void light_scene(const std::vector<SceneAsset>& assets, const SceneLights& light
 void draw_scene(const std::vector<SceneAsset>& assets, const Eigen::Matrix4d& clip_from_scene,
                 const Eigen::Vector3d& eye_scene, const Frame& frame, const AppearanceFrame* appearance = nullptr);
 
-/// Lights and draws a scene in tiles. Returns linear exit radiance RGB times coverage, and coverage, rows from the
-/// bottom, box-filtered. Radiance may be below 0 where truncated harmonics ring.
+/// Lights and draws a scene in tiles; assets with a light of their own keep it. Returns linear exit radiance RGB times
+/// coverage, and coverage, rows from the bottom, box-filtered. Radiance may be below 0 where truncated harmonics ring.
 Image<float> render_scene(const std::vector<SceneAsset>& assets, const SceneLights& lights, const SceneView& view);
 
 }  // namespace kiln

@@ -67,6 +67,7 @@ std::vector<double> contributions_at(const Eigen::Vector3f& place, const std::ve
 }  // namespace
 
 IncidentSamples place_incident_samples(const TriangleMesh& mesh, int count) {
+  if (count == samples_at_vertices) return {mesh.positions, {}};
   if (count < 1 || count > most_incident_samples || mesh.positions.empty())
     throw std::invalid_argument("place_incident_samples: 1 to 8 samples, of a mesh with vertices");
   IncidentSamples samples;

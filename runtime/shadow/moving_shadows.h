@@ -2,52 +2,56 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "mesh/triangle_mesh.h"
 #include "runtime/light/scene_lights.h"
 #include "runtime/scene/scene_tree.h"
+#include "runtime/shadow/shadow_settings.h"
 #include "sh/lights.h"
 
 namespace kiln {
 
-/// Ways to find the light that the other nodes of a scene leave to a node.
-enum class ShadowMethod {
-  none,  ///< all of it
-};
-
-struct ShadowSettings {
-  ShadowMethod method = ShadowMethod::none;
-  int directions = 1024;  ///< rays of a sample point
-  int threads = 0;        ///< 0: all
-};
-
 /// What an asset is to shadows; object space.
 struct ShadowObject {
-  const TriangleMesh* mesh = nullptr;   ///< casts shadows
-  std::vector<Eigen::Vector3f> points;  ///< receives them: incident-light samples, or all vertices
-  int bands = 5;                        ///< of its transfer
+  const TriangleMesh* mesh = nullptr;    ///< casts shadows
+  std::vector<Eigen::Vector3f> points;   ///< receives them: incident-light samples, or all vertices
+  int bands = 5;                         ///< of its transfer
+  std::vector<Eigen::Vector3f> normals;  ///< of the points; empty: light may come from all sides
 };
 
 /// Shadows that the nodes of a scene cast on each other while they move.
 class MovingShadows {
  public:
-  /// `objects` are the scene's assets, in the order that the tree's nodes name them; their meshes must live on.
+  /// `objects` are the scene's assets, in the order that the tree's nodes name them; their meshes must live on. Builds
+  /// what the method needs of each: hierarchies for rays, balls that stand for it, fields of visibility.
   MovingShadows(SceneTree tree, std::vector<ShadowObject> objects, const ShadowSettings& settings);
+  ~MovingShadows();
+  MovingShadows(MovingShadows&&) noexcept;
+  MovingShadows& operator=(MovingShadows&&) noexcept;
 
-  /// Computes the light at all points of all mesh nodes.
+  /// Computes the light at all points of all mesh nodes. What has not changed is kept: of `combined`, `exponentiation`
+  /// and `fields` a node's light, as long as the lights, its own place in them, and the places relative to it of all
+  /// nodes that may take light from it are the same to rounding; of the filters of trees (`thesis`, `product`,
+  /// `subtraction`) what siblings block. No bit depends on the number of threads.
   void update(const ScenePoses& poses, const SceneLights& lights);
 
   /// Returns the light at the points of a mesh node, in its own space, three channels, as light_asset does where no
-  /// other node stands.
-  std::span<const LightCoefficients> light_of(int node) const { return light_[static_cast<std::size_t>(node)]; }
+  /// other node stands: the same to the bit where none takes light. Light that others take is not deringed again, so it
+  /// may be below 0 in some directions; clamp exit radiance.
+  std::span<const LightCoefficients> light_of(int node) const;
+
+  /// Tells what the last update did.
+  const ShadowStatistics& statistics() const;
+
+  /// Tells how far the balls of `exponentiation` are off the silhouettes of an asset (SphereSet); 0 for other methods.
+  double sphere_mismatch(int asset) const;
 
  private:
-  SceneTree tree_;
-  std::vector<ShadowObject> objects_;
-  ShadowSettings settings_;
-  std::vector<std::vector<LightCoefficients>> light_;  ///< by node and point
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
 };
 
 }  // namespace kiln

@@ -81,6 +81,46 @@ for name in compressed phong vertex difference; do differ $name.png textured.png
 differ turned.png back.png 3
 differ keys.png readout.png 3
 
+echo "== a scene"
+cat >scene.yaml <<'EOF'
+nodes:
+  - {name: still, asset: hare/prt, static: true}
+  - {name: mover, asset: hare/prt, scale: 0.5, animate: {keyframes: [{time: 0, translate: [1.5, 0, 0]}, {time: 1, translate: [1.5, 1, 0], rotate: {axis: [0, 0, 1], degrees: 90}}]}}
+lights: [{directional: [60, 35]}, {ambient: 0.2}]
+camera: {azimuth: 0, elevation: 0, target: [0.6, 0, 0], distance: 8}
+EOF
+cat >script <<'EOF'
+screenshot s0.png
+key up
+screenshot s1.png
+key space
+frames 3
+key space
+screenshot s2.png
+move 210 86 30 -20
+screenshot s3.png
+move 240 66 -30 20
+screenshot s4.png
+key r
+screenshot s5.png
+move 126 120 30 0
+screenshot s6.png
+EOF
+display "$programs/kiln-view" scene.yaml --width 320 --height 240 --script script --screenshots shots --json >result ||
+  fail "the script of a scene ended with status $?"
+scene() { "$programs/kiln-render" scene.yaml --gl-device software --quiet --width 320 --height 240 "$@"; }
+scene -o r_s0.png
+scene -o r_s1.png --time 0.5
+scene -o r_s2.png --time 0.6
+for k in 0 1 2; do same s$k.png r_s$k.png 1; done
+differ s1.png s0.png 3
+differ s3.png s2.png 3
+same s4.png s2.png 1 # dragged there and back
+same s5.png s0.png 1
+differ s6.png s5.png 3 # what is static stays, and the camera turns
+if display "$programs/kiln-view" scene.yaml --light 1,2 2>said; then fail "lights beside a scene are taken"; fi
+grep -q "beside a scene" said || fail "of lights beside a scene it says: $(cat said)"
+
 echo "== a file that is read when it is needed"
 cp -r hare torn
 head -c 100 hare/prt/normal.png >torn/prt/normal.png

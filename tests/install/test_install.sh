@@ -75,11 +75,36 @@ for snippet in snippets/*.inc; do
   "build_snippets/$(basename "$snippet" .inc)" || fault "C++ in the documentation: $(basename "$snippet" .inc)"
 done
 
+# A scene moves, and each of two balls takes from an even sky the share that its cap of directions has, a half of
+# 1 - cosine; its facets are within it.
+cat > scene.yaml <<'EOF'
+nodes:
+  - {name: still, asset: prt}
+  - name: rig
+    translate: [0, 3, 0]
+    nodes: [{name: mover, asset: prt, scale: 0.5, animate: {keyframes: [{time: 0, translate: [4, 0, 0]}, {time: 2, translate: [8, 0, 0]}]}}]
+lights: [{ambient: 0.75}]
+EOF
+examples/moving_scene scene.yaml 0 1 > moved.txt
+awk '
+  function cap(radius, distance) { return (1 - sqrt(1 - radius * radius / distance / distance)) / 2 }
+  function check(time, name, x, y, share) {
+    ++rows; found = $6 / 0.75 - 1 + share
+    if ($1 != time || $2 != name || $3 != x || $4 != y || $5 != 0 || found > 0.0015 || found < -0.0015) bad = 1
+  }
+  NR == 1 { check(0, "still", 0, 0, cap(0.5, 5)) }
+  NR == 2 { check(0, "mover", 4, 3, cap(1, 5)) }
+  NR == 3 { check(1, "still", 0, 0, cap(0.5, sqrt(45))) }
+  NR == 4 { check(1, "mover", 6, 3, cap(1, sqrt(45))) }
+  END { exit !(rows == 4 && NR == 4 && !bad) }' moved.txt || fault "the scene moved to: $(cat moved.txt)"
+if examples/moving_scene nowhere.yaml 0 2> error.txt; then fault "a missing scene is no fault"; fi
+[ "$(pkg-config --libs kiln-runtime-scene | grep -c kiln-runtime-scene)" = 1 ] || fault "pkg-config does not know kiln-runtime-scene"
+
 # Libraries export the runtime only, and contain nothing under the GPL.
 for library in "$build_folder"/lib/libkiln-runtime*.so; do
   nm -DC --defined-only "$library" | grep " T " | grep -v "kiln::runtime" && fault "$library shows more than its headers"
   nm -C "$library" | grep -E "CGAL::" && fault "$library has code of CGAL in it"
 done
-readelf -d "$build_folder/lib/libkiln-runtime.so" | grep NEEDED | grep -E "libGL|libOpenGL|libepoxy|libEGL|embree|gmp|OpenMesh" && fault "the plain runtime links more than it needs"
+readelf -d "$build_folder/lib/libkiln-runtime.so" | grep NEEDED | grep -E "libGL|libOpenGL|libepoxy|libEGL|embree|yaml|gmp|OpenMesh" && fault "the plain runtime links more than it needs"
 grep -rlE "nlohmann|CLI11|epoxy" prefix/include && fault "installed headers need libraries that users do not have"
 echo "installed, built against, and right"

@@ -119,6 +119,47 @@ TEST(ShProduct, HasTheKnownTriples) {
   EXPECT_LT(ShProduct::of_bands(6).nonzero_triples(), 1000u);  // of 8,436: sparse
 }
 
+/// Compares all triples with a quadrature of a higher degree, whose places are others.
+TEST(ShProduct, TriplesAgreeWithExactQuadrature) {
+  for (int bands = 3; bands <= 10; ++bands) {
+    const ShProduct& product = ShProduct::of_bands(bands);
+    const ShBasis basis(bands);
+    const SphereQuadrature quadrature = exact_quadrature(3 * (bands - 1) + 4);
+    const Eigen::Index size = basis.size(), places = static_cast<Eigen::Index>(quadrature.directions.size());
+    Eigen::MatrixXd values(size, places);
+    std::vector<double> there(basis.size());
+    for (Eigen::Index s = 0; s < places; ++s) {
+      basis.evaluate<double>(quadrature.directions[static_cast<std::size_t>(s)], there);
+      values.col(s) = Eigen::Map<const Eigen::VectorXd>(there.data(), size);
+    }
+    const Eigen::Map<const Eigen::ArrayXd> weights(quadrature.weights.data(), places);
+    double largest = 0;
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const Eigen::MatrixXd weighted = values.array().rowwise() * (values.row(i).array() * weights.transpose());
+      const Eigen::MatrixXd wanted = weighted * values.transpose();
+      for (Eigen::Index j = i; j < size; ++j)
+        for (Eigen::Index k = j; k < size; ++k)
+          largest = std::max(largest, std::abs(wanted(j, k) - product.triple(static_cast<int>(i), static_cast<int>(j),
+                                                                             static_cast<int>(k))));
+    }
+    EXPECT_LT(largest, 1e-10) << bands << " bands";
+  }
+}
+
+/// Band l of a product takes no band of the second factor above l plus the first's bands: nine bands of both are exact
+/// for five of the result where one has five.
+TEST(ShProduct, OfManyBandsIsExactInTheFirst) {
+  const ShProduct &product = ShProduct::of_bands(9, 5), &whole = ShProduct::of_bands(14);
+  const std::vector<float> g = random_function(14, 9);
+  std::vector<float> f = random_function(5, 8), g_cut(g.begin(), g.begin() + 81), f_long = f;
+  f.resize(81);
+  f_long.resize(14 * 14);
+  const std::vector<float> cut = product(f, g_cut), exact = whole(f_long, g);
+  ASSERT_EQ(cut.size(), 25u);
+  for (std::size_t i = 0; i < cut.size(); ++i) EXPECT_NEAR(cut[i], exact[i], 1e-5) << i;
+  EXPECT_GT(std::abs(ShProduct::of_bands(5)(std::span(f).first(25), std::span(g).first(25))[20] - exact[20]), 1e-3);
+}
+
 TEST(ShProduct, WithOneChangesNothing) {
   const std::vector<float> f = random_function(5, 6);
   const LightCoefficients one = constant_light(5, white);

@@ -28,6 +28,7 @@
 #include "kiln/schema.h"
 #include "kiln/step.h"
 #include "kiln/sweep/sweep.h"
+#include "runtime/scene_file/scene_file.h"
 
 namespace kiln {
 
@@ -45,6 +46,7 @@ struct Commands::Values {
   fs::path file = "pipeline.yaml";
   fs::path plan, archive, mesh;
   std::string member;
+  std::string schema_of = "pipeline";
   double half_size = 0;
   int threads = 0;
 };
@@ -305,10 +307,12 @@ Commands::Commands(CLI::App& app) : values_(std::make_unique<Values>()) {
   add_sibling("serve", "Show a folder of assets in a browser");
   add_sibling("web-export", "Write a folder of assets as a web site");
 
-  // `kiln schema` makes docs/schema/pipeline.schema.json.
-  app.add_subcommand("schema", "Print the JSON Schema of pipeline.yaml")->group("")->callback([] {
-    std::printf("%s\n", json_text(pipeline_schema(), 2).c_str());
-  });
+  // `kiln schema` makes docs/schema/pipeline.schema.json, and `kiln schema scene` that of scene.yaml.
+  CLI::App& schema =
+      *app.add_subcommand("schema", "Print the JSON Schema of pipeline.yaml, or of scene.yaml")->group("");
+  schema.add_option("file", v.schema_of)->check(CLI::IsMember({"pipeline", "scene"}));
+  schema.callback(
+      [&v] { std::printf("%s\n", json_text(v.schema_of == "scene" ? scene_schema() : pipeline_schema(), 2).c_str()); });
 
   // `kiln step` is for the Makefile to call.
   CLI::App& step = *app.add_subcommand("step", "Run one stage")->group("");

@@ -14,7 +14,7 @@
 #include "kiln/presets.h"
 #include "kiln/setting_checks.h"
 #include "kiln/settings_layer.h"
-#include "kiln/yaml_file.h"
+#include "yaml/yaml_file.h"
 
 namespace kiln {
 

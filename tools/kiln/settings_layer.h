@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "kiln/stages.h"
-#include "kiln/yaml_file.h"
+#include "yaml/yaml_file.h"
 
 namespace kiln {
 

@@ -15,6 +15,7 @@
 #include "lights/light_command.h"
 #include "mesh/camera_record.h"
 #include "render/output/contact_sheet.h"
+#include "render/output/frame_name.h"
 #include "render/output/picture.h"
 #include "render/render_metrics.h"
 #include "render/texture_space.h"
@@ -38,12 +39,6 @@ struct Uploaded {
     assets.push_back({renderers.back().get(), placement, technique, probes});
   }
 };
-
-/// Names a frame: "picture_007.png" from "picture.png".
-std::string frame_name(const std::string& name, int frame) {
-  const fs::path path(name);
-  return fmt::format("{}_{:03}{}", path.stem().string(), frame, path.extension().string());
-}
 
 /// Returns the vertices of some assets' own meshes in the scene, which cameras frame.
 std::vector<Eigen::Vector3f> framed_shape(const RenderScene& scene, std::size_t first, std::size_t last) {

@@ -11,6 +11,18 @@
 
 namespace kiln {
 
+namespace {
+
+int parse_incident_samples(const std::string& text) {
+  if (text == "auto") return 0;
+  if (text == "vertices") return samples_at_vertices;
+  if (text.size() == 1 && text[0] >= '1' && text[0] <= '0' + most_incident_samples) return text[0] - '0';
+  throw WrongUsage("incident-samples: found '" + text + "'; expected auto, vertices, or 1 to " +
+                   std::to_string(most_incident_samples));
+}
+
+}  // namespace
+
 OptionSet render_options(RenderSettings& settings) {
   OptionSet options;
   options
@@ -29,9 +41,15 @@ OptionSet render_options(RenderSettings& settings) {
                "Of detail of each asset: 0 for its own mesh, 1 for the finest of its coarser ones; the camera stands "
                "where it would for 0")
       .toggle("side-by-side", settings.side_by_side, "Each asset by itself on a sheet, with its folder's name")
-      .integer_or_auto("incident-samples", settings.incident_samples, 1, most_incident_samples,
-                       "Points around each asset at which the incident light is computed; auto: 8 if a light is a "
-                       "sphere, else 1")
+      .parsed(
+          "incident-samples", "auto, vertices, or 1 to 8",
+          "Points around each asset at which the incident light is computed; vertices: at every vertex of its mesh, "
+          "for shadows smaller than it; auto: 8 if a light is a sphere, or things shadow each other, else 1",
+          [&settings](const std::string& text) { settings.incident_samples = parse_incident_samples(text); },
+          [&settings] {
+            if (settings.incident_samples == samples_at_vertices) return std::string("vertices");
+            return settings.incident_samples == 0 ? std::string("auto") : std::to_string(settings.incident_samples);
+          })
       .choice("shading", settings.shading, {{"forward", Shading::forward}, {"deferred", Shading::deferred}},
               "deferred lights only what is visible, after all is drawn: faster where many surfaces lie behind one "
               "another")
@@ -45,7 +63,8 @@ OptionSet render_options(RenderSettings& settings) {
   add_framing_options(options, settings.framing);
   options
       .integer("frames", settings.frames, 1, 3600,
-               "More than 1: a turntable of so many pictures, NAME_000.png and so on, the camera once around")
+               "More than 1: a turntable of so many pictures, NAME_000.png and so on, the camera once around; of a "
+               "scene that moves, a film")
       .integer("width", settings.width, 1, 8192, "Of the picture, pixels")
       .integer("height", settings.height, 1, 8192, "Of the picture, pixels")
       .integer("supersample", settings.supersample, 1, 8,
@@ -145,7 +164,7 @@ Technique technique_of(const RenderSettings& settings, const PrtAsset& asset) {
 }
 
 int incident_samples_of(const RenderSettings& settings, bool local_lights) {
-  return settings.incident_samples > 0 ? settings.incident_samples : local_lights ? most_incident_samples : 1;
+  return settings.incident_samples != 0 ? settings.incident_samples : local_lights ? most_incident_samples : 1;
 }
 
 }  // namespace kiln

@@ -30,7 +30,8 @@ struct RenderSettings {
   PictureSpace space = PictureSpace::camera;
   int level = 0;              ///< of detail, of each asset; 0: its own mesh
   bool side_by_side = false;  ///< several assets, each by itself on a sheet
-  int incident_samples = 0;   ///< points of incident light around each asset; 0: 8 if a light is local, else 1
+  /// Points of incident light around each asset, or samples_at_vertices; 0: 8 if a light is local, else 1.
+  int incident_samples = 0;
   Shading shading = Shading::forward;
   double specular = 0;  ///< Phong techniques only: reflectance of the highlight
   double shininess = 32;

@@ -7,8 +7,8 @@
 #include "base/errors.h"
 #include "base/numbers.h"
 #include "import/uv_mesh.h"
-#include "kiln/yaml_file.h"
 #include "sh/light_spec.h"
+#include "yaml/yaml_file.h"
 
 namespace kiln {
 

@@ -4,19 +4,21 @@
 #include "base/json.h"
 #include "base/stopwatch.h"
 #include "lights/light_command.h"
+#include "view/scene_command.h"
+#include "view/state/scene_state.h"
 #include "view/viewer.h"
 
 int main(int argc, char** argv) {
   using namespace kiln;
   return run_program("kiln-view", [&] {
     // Step 1: parse.
-    CommandLine command("kiln-view", "Shows a baked asset in a window, under lights that can be moved.");
+    CommandLine command("kiln-view", "Shows a baked asset, or a scene that moves, in a window.");
     ViewerSetup setup;
     setup.look.width = 1280;
     setup.look.height = 800;
     std::filesystem::path folder, compressed, light_file, script;
     command.input("FOLDER", folder,
-                  "An asset's folder with prt/ in it, or an output folder of kiln-bake or kiln-compress");
+                  "An asset's folder with prt/ in it, an output folder of kiln-bake or kiln-compress, or a scene.yaml");
     command.input_option("compressed", compressed,
                          "The asset as kiln-compress made it, where it does not lie beside prt/");
     command.input_option("shader", setup.shader,
@@ -27,8 +29,11 @@ int main(int argc, char** argv) {
     // Leaves out options that the window decides: its GL device and its frames.
     command.options("Picture", render_options(setup.look).without({"frames", "gl-device"}));
     command.options("Window", viewer_options(setup));
-    command.footer("Keys:\n" + key_help_text());
+    FilmSettings film;
+    command.options("Scene", film_options(film).without({"fps", "strip"}));
+    command.footer("Keys:\n" + key_help_text() + "\nKeys of a scene:\n" + scene_key_help_text());
     command.parse(argc, argv);
+    if (is_scene_file(folder)) return view_scene_file(command, folder, script, setup, film);
 
     // Step 2: load, before a window is opened, so that bad input is reported without a display, too.
     setup.say = [&](const std::string& line) { command.say(line); };

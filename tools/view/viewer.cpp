@@ -28,7 +28,6 @@ constexpr auto message_time = std::chrono::seconds(6);
 constexpr auto watch_interval = std::chrono::milliseconds(300);
 constexpr double idle_seconds = 0.1;
 constexpr auto reload_patience = std::chrono::seconds(300);
-constexpr auto resize_patience = std::chrono::seconds(60);
 constexpr int frames_to_measure = 8;
 // Width left for panels on both sides of an asset, which is about as wide as the window is high; at 96 dots per inch.
 constexpr double room_for_panel_pixels = 440;
@@ -132,7 +131,7 @@ void Viewer::do_step(const ScriptStep& step) {
       zoom_orbit(state_.orbit, step.x);
       break;
     case Kind::resize:
-      resize_window(static_cast<int>(step.x), static_cast<int>(step.y));
+      window_.resize_and_wait(static_cast<int>(step.x), static_cast<int>(step.y));
       break;
     case Kind::frames:
       for (int k = 1; k < static_cast<int>(step.x); ++k) draw();
@@ -141,6 +140,8 @@ void Viewer::do_step(const ScriptStep& step) {
     case Kind::window:
       write_picture_file(step.file, step.kind == Kind::window);
       return;
+    case Kind::move:
+      break;  // no word of an asset's scripts
     case Kind::reload:
       wait_for_reload();
       break;
@@ -185,17 +186,6 @@ void Viewer::write_picture_file(const fs::path& file, bool with_panels) {
   write_png(outputs.add(file.filename().string()), with_panels ? screen_.window() : screen_.picture());
   outputs.commit();
   screenshots_.push_back(file.string());
-}
-
-void Viewer::resize_window(int width, int height) {
-  window_.resize(width, height);
-  const auto begun = Clock::now();
-  while (!(window_.framebuffer() == Extent(width, height))) {
-    throw_if_interrupted();
-    if (Clock::now() - begun > resize_patience)
-      throw MachineLacks(fmt::format("the display gave no window of {} x {} pixels", width, height));
-    window_.wait(idle_seconds);
-  }
 }
 
 bool Viewer::reload_if_changed() {

@@ -58,7 +58,6 @@ class Viewer {
   void take_screenshot();
   void write_picture_file(const std::filesystem::path& file, bool with_panels);
   void do_step(const ScriptStep& step);
-  void resize_window(int width, int height);
   bool reload_if_changed();
   void wait_for_reload();
   void draw();

@@ -39,6 +39,9 @@ class CommandLine {
   /// Adds `-o OUTPUT`, required.
   void output(std::filesystem::path& path, const std::string& help);
 
+  /// Adds `-o OUTPUT`, which the program itself requires where it writes one.
+  void optional_output(std::filesystem::path& path, const std::string& help);
+
   /// Adds an optional input named by an option: `--detail FOLDER`.
   void input_option(const std::string& name, std::filesystem::path& path, const std::string& help);
   void input_option(const std::string& name, std::vector<std::filesystem::path>& paths, const std::string& help);
@@ -72,6 +75,7 @@ class CommandLine {
   /// BadInput where an input does not exist.
   void parse(int argc, char** argv);
 
+  bool json() const { return json_; }
   bool quiet() const { return quiet_; }
   int threads() const { return threads_; }
   int seed() const { return seed_; }

@@ -5,6 +5,9 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
+
+#include "base/one_thread.h"
 
 #ifdef KILN_TELL_THREAD_SANITIZER
 extern "C" {  // sanitizer/tsan_interface.h
@@ -72,5 +75,11 @@ void parallel_invoke(FunctionRef<void()> one, FunctionRef<void()> other) {
 
 ThreadLimit::ThreadLimit(std::size_t threads)
     : control_(std::make_shared<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads)) {}
+
+void on_one_thread(FunctionRef<void()> body) {
+  SharedWork work;
+  tbb::task_arena arena(1);
+  arena.execute([&] { work.run(body); });
+}
 
 }  // namespace kiln

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <new>
 #include <stdexcept>
-#include <tbb/task_arena.h>
 
 #include "base/errors.h"
+#include "base/one_thread.h"
 #include "raycast/exact_side.h"
 
 namespace kiln {
@@ -44,8 +44,7 @@ EmbreeScene::EmbreeScene(std::span<const Eigen::Vector3f> positions, std::span<c
     : surface_{positions, triangles, doubtful_share * bounding_box(positions).diagonal()}, device_(device_of_all()) {
   build(positions, triangles, RTC_BUILD_QUALITY_HIGH, nullptr, this, refuse_behind);
   // Builds the tree with one thread, so that it does not depend on their number.
-  tbb::task_arena one_thread(1);
-  one_thread.execute([&] { commit(); });
+  on_one_thread([&] { commit(); });
 }
 
 EmbreeScene::EmbreeScene(std::span<const Eigen::Vector3f> positions, std::span<const Triangle> triangles,

@@ -5,6 +5,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <mutex>
 
@@ -15,35 +16,59 @@ namespace kiln {
 
 namespace {
 
-constexpr int most_bands = 6;
+constexpr int most_bands = 19;  // twice ten, less one: all bands of a product of ten
+
+/// Tells whether the product of three basis functions can differ from zero: their bands form a triangle of even
+/// circumference, one of their orders equals the others' sum or difference, and an even number of them are sines.
+bool may_differ_from_zero(int i, int j, int k) {
+  const std::array<int, 3> bands = {band_of(i), band_of(j), band_of(k)};
+  const std::array<int, 3> orders = {i - coefficient_index(bands[0], 0), j - coefficient_index(bands[1], 0),
+                                     k - coefficient_index(bands[2], 0)};
+  if ((bands[0] + bands[1] + bands[2]) % 2 != 0 || bands[2] > bands[0] + bands[1] ||
+      bands[2] < std::abs(bands[0] - bands[1]))
+    return false;
+  const int sines = (orders[0] < 0) + (orders[1] < 0) + (orders[2] < 0);
+  const int a = std::abs(orders[0]), b = std::abs(orders[1]), c = std::abs(orders[2]);
+  return sines % 2 == 0 && (c == a + b || c == std::abs(a - b));
+}
 
 }  // namespace
 
-ShProduct::ShProduct(int bands) : bands_(bands) {
-  assert(bands >= 1 && bands <= most_bands);
+ShProduct::ShProduct(int bands, int result_bands) : bands_(bands), result_bands_(result_bands) {
+  assert(bands >= 1 && bands <= most_bands && result_bands >= 1 && result_bands <= bands);
   const ShBasis basis(bands);
   const SphereQuadrature quadrature = exact_quadrature(3 * (bands - 1));
-  std::vector<std::vector<double>> values(quadrature.directions.size(), std::vector<double>(basis.size()));
-  for (std::size_t s = 0; s < values.size(); ++s) basis.evaluate<double>(quadrature.directions[s], values[s]);
-  for (int i = 0; i < basis.size(); ++i)
-    for (int j = i; j < basis.size(); ++j)
+  const std::size_t places = quadrature.directions.size();
+  std::vector<std::vector<double>> values(basis.size(), std::vector<double>(places));  // by function, then place
+  std::vector<double> there(basis.size());
+  for (std::size_t s = 0; s < places; ++s) {
+    basis.evaluate<double>(quadrature.directions[s], there);
+    for (int i = 0; i < basis.size(); ++i) values[i][s] = there[i];
+  }
+  std::vector<double> pair(places);
+  for (int i = 0; i < coefficient_count(result_bands); ++i)
+    for (int j = i; j < basis.size(); ++j) {
+      for (std::size_t s = 0; s < places; ++s) pair[s] = quadrature.weights[s] * values[i][s] * values[j][s];
       for (int k = j; k < basis.size(); ++k) {
+        if (!may_differ_from_zero(i, j, k)) continue;
         double sum = 0;
-        for (std::size_t s = 0; s < values.size(); ++s)
-          sum += quadrature.weights[s] * values[s][i] * values[s][j] * values[s][k];
-        // Products that vanish by symmetry come out at some 1e-16; the least of the others is above 0.005.
+        for (std::size_t s = 0; s < places; ++s) sum += pair[s] * values[k][s];
+        // Products that vanish all the same come out at some 1e-15.
         if (std::abs(sum) > 1e-10)
           entries_.push_back(
-              {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j), static_cast<std::uint8_t>(k), sum});
+              {static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j), static_cast<std::uint16_t>(k), sum});
       }
+    }
 }
 
-const ShProduct& ShProduct::of_bands(int bands) {
-  assert(bands >= 1 && bands <= most_bands);
-  static std::array<std::once_flag, most_bands + 1> once;
-  static std::array<std::unique_ptr<const ShProduct>, most_bands + 1> products;
-  std::call_once(once[bands], [&] { products[bands] = std::make_unique<const ShProduct>(bands); });
-  return *products[bands];
+const ShProduct& ShProduct::of_bands(int bands, int result_bands) {
+  assert(bands >= 1 && bands <= most_bands && result_bands >= 1 && result_bands <= bands);
+  constexpr std::size_t side = most_bands + 1;
+  static std::array<std::once_flag, side * side> once;
+  static std::array<std::unique_ptr<const ShProduct>, side * side> products;
+  const std::size_t slot = static_cast<std::size_t>(bands) * side + static_cast<std::size_t>(result_bands);
+  std::call_once(once[slot], [&] { products[slot] = std::make_unique<const ShProduct>(bands, result_bands); });
+  return *products[slot];
 }
 
 std::vector<float> ShProduct::operator()(std::span<const float> f, std::span<const float> g) const {
@@ -65,7 +90,7 @@ std::vector<float> ShProduct::operator()(std::span<const float> f, std::span<con
       sums[i] += value * (f[j] * g[k] + f[k] * g[j]);
     }
   }
-  return {sums.begin(), sums.end()};
+  return {sums.begin(), sums.begin() + coefficient_count(result_bands_)};
 }
 
 double ShProduct::triple(int i, int j, int k) const {

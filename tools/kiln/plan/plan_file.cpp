@@ -9,7 +9,7 @@
 #include "kiln/overrides.h"
 #include "kiln/settings_layer.h"
 #include "kiln/text_file.h"
-#include "kiln/yaml_file.h"
+#include "yaml/yaml_file.h"
 
 namespace kiln {
 

@@ -11,6 +11,8 @@
 namespace kiln {
 
 inline constexpr char escape_key = '\x1b';
+/// Arrows, by codes that no key types.
+inline constexpr char left_key = '\x11', right_key = '\x12', up_key = '\x13', down_key = '\x14';
 
 /// Wish of a key that does not change the state.
 enum class Wish { none, screenshot, close };

@@ -40,9 +40,9 @@ bool read_numbers(const Words& words, std::size_t first, double lowest, double h
   return true;
 }
 
-bool read_keys(const Words& words, std::vector<ScriptStep>& steps) {
+bool read_keys(const Words& words, const ScriptWords& known, std::vector<ScriptStep>& steps) {
   for (std::size_t k = 1; k < words.size(); ++k) {
-    ScriptStep step{.kind = ScriptStep::Kind::key, .key = key_named(words[k]), .file = {}};
+    ScriptStep step{.kind = ScriptStep::Kind::key, .key = known.key_named(words[k]), .file = {}};
     if (step.key == 0) return false;
     steps.push_back(step);
   }
@@ -50,8 +50,8 @@ bool read_keys(const Words& words, std::vector<ScriptStep>& steps) {
 }
 
 /// Tests whether the words are a step, and adds it.
-bool read_step(const Words& words, std::vector<ScriptStep>& steps) {
-  if (words[0] == "key") return read_keys(words, steps);
+bool read_step(const Words& words, const ScriptWords& known, std::vector<ScriptStep>& steps) {
+  if (words[0] == "key") return read_keys(words, known, steps);
   ScriptStep step;
   bool good = false;
   if (words[0] == "drag" && words.size() == 4) {
@@ -72,7 +72,11 @@ bool read_step(const Words& words, std::vector<ScriptStep>& steps) {
     step.kind = words[0] == "window" ? ScriptStep::Kind::window : ScriptStep::Kind::screenshot;
     good = words.size() == 2 && words[1].ends_with(".png");
     step.file = words.back();
-  } else if (words[0] == "reload") {
+  } else if (words[0] == "move" && words.size() == 5 && known.is_scene) {
+    step.kind = ScriptStep::Kind::move;
+    good = read_numbers({words[0], words[1], words[2]}, 1, 0, 8192, step.from_x, &step.from_y) &&
+           read_numbers({words[0], words[3], words[4]}, 1, -10000, 10000, step.x, &step.y);
+  } else if (words[0] == "reload" && !known.is_scene) {
     step.kind = ScriptStep::Kind::reload;
     good = words.size() == 1;
   }
@@ -82,7 +86,9 @@ bool read_step(const Words& words, std::vector<ScriptStep>& steps) {
 
 }  // namespace
 
-std::vector<ScriptStep> read_script(const fs::path& file) {
+ScriptWords asset_script_words() { return {key_named, false, script_grammar}; }
+
+std::vector<ScriptStep> read_script(const fs::path& file, const ScriptWords& known) {
   std::vector<ScriptStep> steps;
   std::istringstream text(read_text(file));
   std::string line;
@@ -90,9 +96,9 @@ std::vector<ScriptStep> read_script(const fs::path& file) {
     std::istringstream part(line.substr(0, line.find('#')));
     Words words;
     for (std::string word; part >> word;) words.push_back(word);
-    if (!words.empty() && !read_step(words, steps))
-      throw BadInput(file.string(), "line " + std::to_string(number) + " is '" + line + "'",
-                     std::string("one of: ") + script_grammar, "see tools/view/README.md");
+    if (!words.empty() && !read_step(words, known, steps))
+      throw BadInput(file.string(), "line " + std::to_string(number) + " is '" + line + "'", "one of: " + known.grammar,
+                     "see tools/view/README.md");
   }
   return steps;
 }

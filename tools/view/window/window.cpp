@@ -5,10 +5,15 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <algorithm>
+#include <chrono>
 #include <cstdlib>
+#include <string>
+#include <utility>
 
 #include "base/errors.h"
 #include "base/extent.h"
+#include "base/interruption.h"
 #include "view/state/keys.h"
 
 namespace kiln {
@@ -58,6 +63,14 @@ struct Window::Implementation {
     });
     glfwSetKeyCallback(window, [](GLFWwindow* from, int key, int, int action, int) {
       if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS) of(from).key(escape_key);
+      if (action == GLFW_RELEASE) return;
+      if (key == GLFW_KEY_LEFT) of(from).key(left_key);
+      if (key == GLFW_KEY_RIGHT) of(from).key(right_key);
+      if (key == GLFW_KEY_UP) of(from).key(up_key);
+      if (key == GLFW_KEY_DOWN) of(from).key(down_key);
+    });
+    glfwSetMouseButtonCallback(window, [](GLFWwindow* from, int button, int action, int) {
+      if (button == GLFW_MOUSE_BUTTON_LEFT && action == GLFW_PRESS) of(from).hold();
     });
     glfwSetScrollCallback(window, [](GLFWwindow* from, double, double steps) {
       if (of(from).events.wheel) of(from).events.wheel(steps);
@@ -77,19 +90,29 @@ struct Window::Implementation {
   void key(char character) const {
     if (events.key) events.key(character);
   }
+  void hold() const {
+    double x = 0, y = 0;
+    glfwGetCursorPos(window, &x, &y);
+    const auto [across, down] = pixels_per_unit();
+    if (events.hold) events.hold(x * across, y * down);
+  }
   void redraw() const {
     if (events.redraw) events.redraw();
+  }
+  /// Returns what converts the pointer's coordinates, which on some displays are not pixels.
+  std::pair<double, double> pixels_per_unit() const {
+    int window_width = 1, window_height = 1, pixels_across = 1, pixels_up = 1;
+    glfwGetWindowSize(window, &window_width, &window_height);
+    glfwGetFramebufferSize(window, &pixels_across, &pixels_up);
+    return {static_cast<double>(pixels_across) / std::max(1, window_width),
+            static_cast<double>(pixels_up) / std::max(1, window_height)};
   }
   void move_pointer(double x, double y) {
     const auto is_down = [&](int button) { return glfwGetMouseButton(window, button) == GLFW_PRESS; };
     const bool shift =
         glfwGetKey(window, GLFW_KEY_LEFT_SHIFT) == GLFW_PRESS || glfwGetKey(window, GLFW_KEY_RIGHT_SHIFT) == GLFW_PRESS;
-    // Converts the pointer's coordinates, which on some displays are not pixels.
-    int window_width = 1, window_height = 1, pixels_across = 1, pixels_up = 1;
-    glfwGetWindowSize(window, &window_width, &window_height);
-    glfwGetFramebufferSize(window, &pixels_across, &pixels_up);
-    const double right = (x - pointer_x) * pixels_across / std::max(1, window_width);
-    const double down = (y - pointer_y) * pixels_up / std::max(1, window_height);
+    const auto [across, high] = pixels_per_unit();
+    const double right = (x - pointer_x) * across, down = (y - pointer_y) * high;
     pointer_x = x;
     pointer_y = y;
     if (!events.drag) return;
@@ -141,6 +164,18 @@ void Window::swap(bool wait_for_display) {
   glfwSwapBuffers(implementation_->window);
 }
 
-void Window::resize(int width, int height) { glfwSetWindowSize(implementation_->window, width, height); }
+void Window::resize_and_wait(int width, int height) {
+  using Clock = std::chrono::steady_clock;
+  constexpr auto patience = std::chrono::seconds(60);
+  glfwSetWindowSize(implementation_->window, width, height);
+  const auto begun = Clock::now();
+  while (!(framebuffer() == Extent(width, height))) {
+    throw_if_interrupted();
+    if (Clock::now() - begun > patience)
+      throw MachineLacks("the display gave no window of " + std::to_string(width) + " x " + std::to_string(height) +
+                         " pixels");
+    wait(0.1);
+  }
+}
 
 }  // namespace kiln

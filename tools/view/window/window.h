@@ -12,10 +12,11 @@ namespace kiln {
 
 /// Callbacks for what a person does at a window.
 struct WindowEvents {
-  std::function<void(char)> key;  ///< one character, as typed in the keyboard's layout; or escape
+  std::function<void(char)> key;  ///< one character, as typed in the keyboard's layout; or escape or an arrow
   std::function<void(Drag, double right, double down)> drag;  ///< pixels
   std::function<void(double)> wheel;                          ///< steps forwards
   std::function<void()> redraw;                               ///< the content was lost, or has another size
+  std::function<void(double, double)> hold = {};              ///< left button down, at pixels from the upper left
 };
 
 /// A window and its OpenGL 4.5 core context, current on the thread that made it for its lifetime. One at a time.
@@ -44,7 +45,8 @@ class Window {
   /// Shows what was drawn. `wait_for_display` waits until the display is ready for it.
   void swap(bool wait_for_display);
 
-  void resize(int width, int height);
+  /// Resizes the window, and waits until it has so many pixels. Throws MachineLacks if the display does not give them.
+  void resize_and_wait(int width, int height);
 
   /// Returns GL_RENDERER.
   const std::string& renderer() const { return renderer_; }

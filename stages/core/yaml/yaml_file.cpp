@@ -1,5 +1,5 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "kiln/yaml_file.h"
+// SPDX-License-Identifier: MIT
+#include "yaml/yaml_file.h"
 
 #include <algorithm>
 #include <charconv>
@@ -61,7 +61,7 @@ YAML::Node YamlFile::only_document(const std::string& text) const {
       if (content.starts_with("---")) begin = line;
     }
     throw BadInput(fmt::format("{}:{}", file_.string(), begin), "a second document", "one document",
-                   "put its assets into the first, or into a file of their own");
+                   "put all into the first, or that into a file of its own");
   }
   return documents[0];
 }

@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: MIT
+#include "runtime/shadow/combined_shadows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "sh/basis.h"
+#include "sh/directions.h"
+
+namespace kiln {
+
+namespace {
+
+using std::numbers::pi;
+constexpr float endless = std::numeric_limits<float>::infinity();
+
+/// Sine of the angle below the horizon from which light counts as none: texels near a vertex lean off its normal.
+constexpr double far_below_horizon = -0.35;
+
+/// Tests whether any ray from the receiver's ball to within a cone of directions can meet the occluder's ball: a ray
+/// from its centre at the occluder grown by the receiver (Minkowski sum).
+bool may_meet(const BoundingBall& receiver, const BoundingBall& occluder, const Eigen::Vector3d& axis,
+              double half_angle) {
+  const ViewCone grown = cone_of({occluder.centre, occluder.radius + receiver.radius}, receiver.centre);
+  if (grown.half_angle >= pi) return true;
+  return std::acos(std::clamp(grown.axis.dot(axis), -1.0, 1.0)) <= half_angle + grown.half_angle;
+}
+
+/// Tests whether an occluder may stand between a receiver and a ball of light: whether it comes near the segment
+/// between their centres.
+bool may_stand_between(const BoundingBall& receiver, const BoundingBall& occluder, const LightSpec& ball) {
+  const Eigen::Vector3d along = Eigen::Vector3d(ball.position.data()) - receiver.centre;
+  const double square = along.squaredNorm();
+  const double place = square > 0 ? std::clamp((occluder.centre - receiver.centre).dot(along) / square, 0.0, 1.0) : 0;
+  return (receiver.centre + place * along - occluder.centre).norm() <=
+         occluder.radius + std::max(receiver.radius, ball.radius);
+}
+
+bool may_take_light(const BoundingBall& receiver, const BoundingBall& occluder, const LightSources& sources) {
+  for (const ConeLight& cone : sources.cones)
+    if (may_meet(receiver, occluder, cone.axis, cone.half_angle)) return true;
+  return std::any_of(sources.balls.begin(), sources.balls.end(),
+                     [&](const LightSpec& ball) { return may_stand_between(receiver, occluder, ball); });
+}
+
+/// Directions that are blocked, and how many.
+struct BlockedDirections {
+  std::vector<std::uint8_t> blocked;
+  std::vector<std::uint32_t> tested;
+
+  void reset(std::uint32_t count) { blocked.assign(count, 0); }
+};
+
+/// Blocks directions of a set by a mesh node.
+void block_by_mesh(const ShadowStage& stage, int node, const Eigen::Vector3d& position, const DirectionSet& set,
+                   std::span<const float> farthest, BlockedDirections& state) {
+  const ViewCone cone = cone_of(stage.place_of(node).ball, position);
+  state.tested.clear();
+  find_in_cone(set, cone.axis.cast<float>(), static_cast<float>(cone.half_angle) + 1e-4f, state.blocked, state.tested);
+  if (!state.tested.empty())
+    stage.mesh_of(node).block(stage.pose_of(node), position, set, state.tested, farthest, state.blocked);
+}
+
+/// Adds a sum of coefficients times a light's window.
+class RemovedLight {
+ public:
+  explicit RemovedLight(int bands) : coefficients_(static_cast<std::size_t>(coefficient_count(bands))) {}
+
+  void add(std::size_t channel, std::span<const double> values, std::span<const double> window, double factor) {
+    if (!sum_) {
+      sum_.emplace();
+      for (std::vector<double>& own : *sum_) own.assign(coefficients_, 0.0);
+    }
+    for (std::size_t i = 0; i < coefficients_; ++i)
+      (*sum_)[channel][i] += factor * window[static_cast<std::size_t>(band_of(static_cast<int>(i)))] * values[i];
+  }
+  std::optional<LightSum>& sum() { return sum_; }
+
+ private:
+  std::size_t coefficients_;
+  std::optional<LightSum> sum_;
+};
+
+/// Takes the share of a cone of light that is blocked. `distance`: of the light, along the axis; `farthest`: by
+/// direction.
+void remove_cone(const ShadowStage& stage, std::span<const int> meshes, const ConeLight& light,
+                 std::span<const float> farthest, double distance, const ShadowPoint& point, RemovedLight& removed) {
+  const auto take = [&](std::span<const double> values) {
+    for (std::size_t c = 0; c < 3; ++c) removed.add(c, values, light.window, static_cast<double>(light.spec.color[c]));
+  };
+  const auto in_the_way = [&](int node) {
+    const BoundingBall& ball = stage.place_of(node).ball;
+    const ViewCone cone = cone_of(ball, point.position);
+    return cone.half_angle >= pi ||
+           (cone.distance - ball.radius < distance &&
+            cone.axis.dot(light.axis) >= std::cos(std::min(pi, cone.half_angle + light.half_angle)));
+  };
+  // A cone far below the horizon, which the node's own body hides, is decided by its axis alone.
+  const double lowest = std::acos(far_below_horizon) + light.half_angle;
+  const bool far_below = point.normal && lowest < pi && point.normal->dot(light.axis) < std::cos(lowest);
+  if (light.half_angle == 0 || far_below) {
+    for (const int node : meshes)
+      if (in_the_way(node) &&
+          stage.mesh_of(node).blocks(stage.pose_of(node), point.position, light.axis, static_cast<float>(distance)))
+        return take(light.zonal);
+    return;
+  }
+  thread_local BlockedDirections state;
+  state.reset(light.directions.count());
+  for (const int node : meshes)
+    if (in_the_way(node)) block_by_mesh(stage, node, point.position, light.directions, farthest, state);
+  std::uint32_t count = 0;
+  std::vector<double> values(light.zonal.size(), 0.0);
+  for (std::uint32_t d = 0; d < light.directions.count(); ++d) {
+    if (state.blocked[d] == 0) continue;
+    ++count;
+    const std::span<const float> row = light.directions.row(d);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] += static_cast<double>(row[i]);
+  }
+  if (count == 0) return;
+  if (count == light.directions.count()) return take(light.zonal);
+  const double share = cone_bands(1, light.half_angle)[0] / light.directions.count(),
+               blocked = static_cast<double>(count) / light.directions.count();
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = share * values[i] + blocked * light.closing[i];
+  take(values);
+}
+
+/// Takes what caps block of skies, each less what is blocked already.
+void remove_caps(const ShadowStage& stage, const NodeOccluders& occluders, std::span<const SkyLight> skies, int bands,
+                 const ShadowPoint& point, RemovedLight& removed) {
+  struct Cap {
+    Eigen::Vector3d axis;
+    double cosine;
+  };
+  std::vector<Cap> before;
+  const ShBasis basis(bands);
+  std::vector<double> values(static_cast<std::size_t>(basis.size()));
+  for (const int node : occluders.sky_caps) {
+    const PlacedNode& place = stage.place_of(node);
+    const Eigen::Vector3d away = place.ball.centre - point.position;
+    const double distance = away.norm(), half_angle = std::asin(std::min(1.0, place.silhouette / distance));
+    const Eigen::Vector3d axis = away / distance;
+    if (half_angle < 1e-9 || (point.normal && point.normal->dot(axis) < far_below_horizon)) continue;
+    // Tests the centre and six directions around it, of equal shares.
+    Eigen::Vector3d side, up;
+    side = axis.unitOrthogonal();
+    up = axis.cross(side);
+    int free = 0;
+    constexpr int probes = 7;
+    for (int k = 0; k < probes; ++k) {
+      const double radius = k == 0 ? 0 : std::sqrt(4.0 / 7) * std::tan(half_angle), azimuth = k * pi / 3;
+      const Eigen::Vector3d direction =
+          (axis + radius * (std::cos(azimuth) * side + std::sin(azimuth) * up)).normalized();
+      const bool taken = std::any_of(before.begin(), before.end(),
+                                     [&](const Cap& cap) { return cap.axis.dot(direction) >= cap.cosine; }) ||
+                         std::any_of(occluders.sky_meshes.begin(), occluders.sky_meshes.end(), [&](int mesh) {
+                           const ViewCone cone = cone_of(stage.place_of(mesh).ball, point.position);
+                           return (cone.half_angle >= pi || cone.axis.dot(direction) >= std::cos(cone.half_angle)) &&
+                                  stage.mesh_of(mesh).blocks(stage.pose_of(mesh), point.position, direction, endless);
+                         });
+      free += taken ? 0 : 1;
+    }
+    before.push_back({axis, std::cos(half_angle)});
+    if (free == 0) continue;
+    const double sine = std::sin(half_angle);
+    const std::vector<double> zonal = cone_bands(bands, half_angle);  // of a radiance of 1 / sin^2
+    basis.evaluate<double>(axis, values);
+    const std::vector<double> there = values;
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] *= zonal[static_cast<std::size_t>(band_of(static_cast<int>(i)))] * sine * sine * free / probes;
+    for (const SkyLight& sky : skies)
+      for (std::size_t c = 0; c < 3; ++c) {
+        double radiance = 0;
+        for (std::size_t i = 0; i < there.size(); ++i)
+          radiance += there[i] * static_cast<double>(sky.light.channels[c][i]);
+        removed.add(c, values, sky.window, radiance);
+      }
+  }
+}
+
+/// Takes the blocked share of all skies.
+void remove_skies(const ShadowStage& stage, const NodeOccluders& occluders, std::span<const SkyLight> skies, int bands,
+                  const ShadowPoint& point, RemovedLight& removed) {
+  thread_local BlockedDirections state;
+  state.reset(stage.sky.count());
+  for (const int node : occluders.sky_meshes) block_by_mesh(stage, node, point.position, stage.sky, {}, state);
+  std::vector<std::uint32_t>& taken = state.tested;
+  taken.clear();
+  for (std::uint32_t d = 0; d < stage.sky.count(); ++d)
+    if (state.blocked[d] != 0) taken.push_back(d);
+  const double blocked = static_cast<double>(taken.size()) / stage.sky.count();
+  if (!taken.empty())
+    for (const SkyLight& sky : skies) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        std::vector<double> values(static_cast<std::size_t>(coefficient_count(bands)), 0.0);
+        if (taken.size() == stage.sky.count()) {
+          values.assign(sky.light.channels[c].begin(), sky.light.channels[c].end());
+        } else {
+          for (const std::uint32_t d : taken) {
+            const auto radiance = static_cast<double>(sky.radiance[c][d]);
+            const std::span<const float> row = stage.sky.row(d);
+            for (std::size_t i = 0; i < values.size(); ++i) values[i] += radiance * static_cast<double>(row[i]);
+          }
+          for (std::size_t i = 0; i < values.size(); ++i) values[i] += blocked * sky.closing[c][i];
+        }
+        removed.add(c, values, sky.window, 1);
+      }
+    }
+  if (taken.size() < stage.sky.count()) remove_caps(stage, occluders, skies, bands, point, removed);
+}
+
+}  // namespace
+
+NodeOccluders find_occluders(const ShadowStage& stage, int receiver, const LightSources& sources, double cap) {
+  NodeOccluders found;
+  const BoundingBall& own = stage.place_of(receiver).ball;
+  const bool is_static = stage.tree.nodes[static_cast<std::size_t>(receiver)].is_static;
+  // Looks at a node; `capped`: a cap stands for it before the sky already.
+  const auto look = [&](const auto& self, int node, bool capped) -> void {
+    const PlacedNode& place = stage.place_of(node);
+    const SceneNode& of_node = stage.tree.nodes[static_cast<std::size_t>(node)];
+    if (node == receiver || place.ball.radius < 0 || (of_node.asset >= 0 && !may_shadow(stage.tree, node, receiver)))
+      return;
+    const bool holds_receiver = is_under(stage.tree, receiver, node);
+    if (sources.has_sky() && !capped && !holds_receiver && !(is_static && place.has_static)) {
+      const double nearest = (place.ball.centre - own.centre).norm() - own.radius;
+      if (nearest > place.ball.radius && std::asin(place.ball.radius / nearest) < cap) {
+        found.sky_caps.push_back(node);
+        capped = true;
+      }
+    }
+    const bool sky_meets = sources.has_sky() && !capped;
+    const bool takes = holds_receiver || may_take_light(own, place.ball, sources);
+    if (!sky_meets && !takes) return;
+    if (of_node.asset < 0) {
+      for (const int child : of_node.children) self(self, child, capped);
+      return;
+    }
+    if (takes) found.meshes.push_back(node);
+    if (sky_meets) found.sky_meshes.push_back(node);
+  };
+  look(look, 0, false);
+  std::stable_sort(found.sky_caps.begin(), found.sky_caps.end(), [&](int a, int b) {
+    return (stage.place_of(a).ball.centre - own.centre).squaredNorm() <
+           (stage.place_of(b).ball.centre - own.centre).squaredNorm();
+  });
+  return found;
+}
+
+std::optional<LightSum> removed_light(const ShadowStage& stage, const NodeOccluders& occluders,
+                                      const SceneLights& lights, const LightSources& sources, int bands,
+                                      const ShadowPoint& point) {
+  RemovedLight removed(bands);
+  if (!occluders.meshes.empty()) {
+    for (const ConeLight& cone : sources.cones)
+      remove_cone(stage, occluders.meshes, cone, {}, std::numeric_limits<double>::infinity(), point, removed);
+    for (const LightSpec& ball : sources.balls) {
+      const BoundingBall light{Eigen::Vector3d(ball.position.data()), ball.radius};
+      const ViewCone seen = cone_of(light, point.position);
+      const auto stands_between = [&](int node) {
+        return may_stand_between({point.position, 0}, stage.place_of(node).ball, ball);
+      };
+      if (seen.half_angle >= pi || std::none_of(occluders.meshes.begin(), occluders.meshes.end(), stands_between))
+        continue;  // from inside a ball of light nothing stands in front of it
+      const ConeLight cone = ball_at(ball, bands, lights.window, point.position, static_cast<int>(stage.sky.count()));
+      // Rays end where they reach the ball.
+      std::vector<float> farthest(cone.directions.count());
+      for (std::uint32_t d = 0; d < cone.directions.count(); ++d) {
+        const double along = cone.directions.direction(d).cast<double>().dot(light.centre - point.position);
+        const double inside = ball.radius * ball.radius - (seen.distance * seen.distance - along * along);
+        farthest[d] = static_cast<float>(along - std::sqrt(std::max(0.0, inside)));
+      }
+      remove_cone(stage, occluders.meshes, cone, farthest, seen.distance - ball.radius, point, removed);
+    }
+  }
+  if (!occluders.sky_meshes.empty() || !occluders.sky_caps.empty()) {
+    if (sources.has_probes)
+      remove_skies(stage, occluders, probed_skies(lights, bands, stage.sky, point.position), bands, point, removed);
+    else if (!sources.skies.empty())
+      remove_skies(stage, occluders, sources.skies, bands, point, removed);
+  }
+  return removed.sum();
+}
+
+}  // namespace kiln

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "render/film/film_settings.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <string_view>
+#include <utility>
+
+#include "base/errors.h"
+
+namespace kiln {
+
+OptionSet film_options(FilmSettings& settings) {
+  OptionSet options;
+  std::vector<std::pair<std::string, ShadowMethod>> methods;
+  for (const std::string_view name : shadow_method_names)
+    methods.emplace_back(name, static_cast<ShadowMethod>(methods.size()));
+  options.number("time", settings.time, 0, 1e6, "Of the picture, or of the first of several, seconds")
+      .number_or_auto("fps", settings.frames_per_second, 1e-3, 1000,
+                      "Pictures per second of --frames; auto: they span the scene from --time to its end")
+      .toggle("strip", settings.strip, "The frames side by side in one picture, in place of one picture each")
+      .choice("shadows", settings.shadows, methods, "How the nodes' shadows on each other are computed")
+      .integer("shadow-directions", settings.shadow_directions, 16, 1000000,
+               "In which a point at which light is computed looks for what shadows it");
+  return options;
+}
+
+bool is_scene_file(const std::filesystem::path& input) {
+  return input.extension() == ".yaml" || input.extension() == ".yml";
+}
+
+std::vector<double> film_times(const FilmSettings& film, int frames, const SceneDescription& scene) {
+  std::vector<double> times = {film.time};
+  if (frames == 1) return times;
+  const double end = duration_of(scene);
+  if (!film.frames_per_second && !(end > film.time))
+    throw WrongUsage(
+        fmt::format("frames: found a scene that ends after {} s, and --time {}; expected a later end "
+                    "('duration' of the scene), or --fps",
+                    end, film.time));
+  const double step = film.frames_per_second ? 1 / *film.frames_per_second : (end - film.time) / (frames - 1);
+  for (int k = 1; k < frames; ++k) times.push_back(film.time + k * step);
+  return times;
+}
+
+void use_camera(RenderSettings& settings, const SceneCamera& camera,
+                const std::function<bool(const std::string&)>& is_given) {
+  const CameraSettings own = camera_settings_of(settings);
+  if (!is_given("camera"))
+    settings.camera = fmt::format("{},{}", camera.azimuth_degrees.value_or(own.azimuth_degrees),
+                                  camera.elevation_degrees.value_or(own.elevation_degrees));
+  if (!is_given("field-of-view"))
+    settings.field_of_view_degrees = camera.field_of_view_degrees.value_or(settings.field_of_view_degrees);
+  if (!is_given("zoom")) settings.framing.zoom = camera.zoom.value_or(settings.framing.zoom);
+  if (!is_given("target") && camera.target)
+    settings.framing.target = fmt::format("{},{},{}", camera.target->x(), camera.target->y(), camera.target->z());
+  if (!is_given("distance") && camera.distance) settings.framing.distance = fmt::format("{}", *camera.distance);
+}
+
+ShadowSettings shadow_settings_of(const FilmSettings& film, int threads) {
+  ShadowSettings settings;
+  settings.method = film.shadows;
+  settings.directions = film.shadow_directions;
+  settings.threads = threads;
+  return settings;
+}
+
+int film_samples_of(const RenderSettings& settings, const FilmSettings& film, const SceneDescription& scene) {
+  const bool is_local = std::any_of(scene.lights.begin(), scene.lights.end(),
+                                    [](const SceneLight& light) { return light.spec.kind == LightSpec::Kind::sphere; });
+  return incident_samples_of(settings, is_local || film.shadows != ShadowMethod::none);
+}
+
+}  // namespace kiln

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/options.h"
+#include "render/render_settings.h"
+#include "runtime/scene/scene_description.h"
+#include "runtime/shadow/moving_shadows.h"
+
+namespace kiln {
+
+/// Settings of pictures of a scene that moves.
+struct FilmSettings {
+  double time = 0;                          ///< of the first picture, seconds
+  std::optional<double> frames_per_second;  ///< nothing: the frames span the scene's duration
+  bool strip = false;                       ///< whether the frames stand side by side in one picture
+  ShadowMethod shadows = ShadowSettings{}.method;
+  int shadow_directions = ShadowSettings{}.directions;
+};
+
+OptionSet film_options(FilmSettings& settings);
+
+/// Tests whether an input is a scene rather than an asset: a file that ends in .yaml or .yml.
+bool is_scene_file(const std::filesystem::path& input);
+
+/// Returns the times of the pictures, seconds: `frames` of them from the settings' time on, at a rate or, the last
+/// included, to the scene's end. Throws WrongUsage where nothing moves and no rate is given.
+std::vector<double> film_times(const FilmSettings& film, int frames, const SceneDescription& scene);
+
+/// Takes from a scene's camera what the command line leaves to it; `is_given` tells whether it has an option.
+void use_camera(RenderSettings& settings, const SceneCamera& camera,
+                const std::function<bool(const std::string&)>& is_given);
+
+/// Returns the shadows of the settings.
+ShadowSettings shadow_settings_of(const FilmSettings& film, int threads);
+
+/// Returns the number of incident-light samples of a scene's assets, or samples_at_vertices: as the settings say, else
+/// several where something shadows or a light is local.
+int film_samples_of(const RenderSettings& settings, const FilmSettings& film, const SceneDescription& scene);
+
+}  // namespace kiln
