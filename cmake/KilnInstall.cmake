@@ -2,7 +2,7 @@
 # Rules of `make install` and `make package`: programs, the runtime as libraries, shaders, licences.
 include(CMakePackageConfigHelpers)
 
-set(KILN_PROGRAMS kiln kiln-check kiln-export kiln-serve kiln-web-export ${stage_programs} kiln-render kiln-view)
+set(KILN_PROGRAMS kiln kiln-check kiln-export kiln-serve kiln-spectrum kiln-web-export ${stage_programs} kiln-render kiln-view)
 install(TARGETS ${KILN_PROGRAMS} RUNTIME)
 install(TARGETS kiln-runtime kiln-runtime-gl EXPORT kilnTargets LIBRARY)
 install(TARGETS kiln-openimageio LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/kiln)

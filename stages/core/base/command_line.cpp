@@ -93,6 +93,10 @@ void CommandLine::output(fs::path& path, const std::string& help) {
   app_->add_option("-o,--output", path, help)->required();
 }
 
+void CommandLine::optional_output(fs::path& path, const std::string& help) {
+  app_->add_option("-o,--output", path, help);
+}
+
 void CommandLine::input_option(const std::string& name, fs::path& path, const std::string& help) {
   app_->add_option("--" + name, path, help);
   inputs_.push_back(&path);

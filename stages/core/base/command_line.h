@@ -39,6 +39,9 @@ class CommandLine {
   /// Adds `-o OUTPUT`, required.
   void output(std::filesystem::path& path, const std::string& help);
 
+  /// Adds `-o OUTPUT` for programs that may run without; `path` stays as it is then.
+  void optional_output(std::filesystem::path& path, const std::string& help);
+
   /// Adds an optional input named by an option: `--detail FOLDER`.
   void input_option(const std::string& name, std::filesystem::path& path, const std::string& help);
   void input_option(const std::string& name, std::vector<std::filesystem::path>& paths, const std::string& help);
@@ -73,6 +76,7 @@ class CommandLine {
   void parse(int argc, char** argv);
 
   bool quiet() const { return quiet_; }
+  bool json() const { return json_; }
   int threads() const { return threads_; }
   int seed() const { return seed_; }
 
