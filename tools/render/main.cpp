@@ -36,8 +36,10 @@ int main(int argc, char** argv) {
     command.input_option("probes", paths.probes,
                          "Folder of kiln-probes: the light around the first asset, which stands at the origin, for the "
                          "others; for the only asset, that around what is not drawn");
+    add_lamp_options(command, paths.lamps);
     command.options("Picture", render_options(settings));
     command.parse(argc, argv);
+    command.also_read(lamp_files(paths.lamps));
     if (is_sheet(settings) && file.extension() != ".png")
       throw WrongUsage("output: found '" + file.string() + "'; expected a name that ends in .png for a sheet");
     require_picture_name(file);

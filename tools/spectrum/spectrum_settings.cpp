@@ -8,7 +8,7 @@ OptionSet spectrum_options(SpectrumSettings& settings) {
   options
       .text("lights", settings.lights,
             "Lights of the scene between commas: A to E, F1 to F12, D65 or D5600 for daylight, P2856 for a black body, "
-            "or files")
+            "sun:20 for the sun, or files")
       .text("reflectances", settings.reflectances,
             "Reflectances of its surfaces between commas: CIE-TCS, or files of one or more")
       .number("error", settings.error, 0.01, 100, "Difference that no light and surfaces may exceed, CIEDE2000")

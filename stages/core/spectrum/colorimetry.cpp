@@ -18,6 +18,16 @@ double hue(double a, double b) {
   return degrees < 0 ? degrees + 360 : degrees;
 }
 
+/// Returns the matrix to linear colours of primaries with these chromaticities, in which the white is 1, 1, 1.
+Eigen::Matrix3d rgb_from_xyz(const Eigen::Vector2d& red, const Eigen::Vector2d& green, const Eigen::Vector2d& blue,
+                             const Xyz& white) {
+  Eigen::Matrix3d primaries;
+  primaries << red.x(), green.x(), blue.x(), red.y(), green.y(), blue.y(), 1 - red.sum(), 1 - green.sum(),
+      1 - blue.sum();
+  const Eigen::Vector3d scale = primaries.inverse() * white;
+  return (primaries * scale.asDiagonal()).inverse();
+}
+
 }  // namespace
 
 Xyz xyz_of(const Spectrum& light, const SpectrumMatrix& observer) { return observer.transpose() * light.matrix(); }
@@ -66,10 +76,11 @@ double ciede2000(const Lab& first, const Lab& second) {
 }
 
 Eigen::Matrix3d srgb_from_xyz(const Xyz& white) {
-  Eigen::Matrix3d primaries;  // x, y and z of red, green and blue in columns
-  primaries << 0.64, 0.30, 0.15, 0.33, 0.60, 0.06, 0.03, 0.10, 0.79;
-  const Eigen::Vector3d scale = primaries.inverse() * white;
-  return (primaries * scale.asDiagonal()).inverse();
+  return rgb_from_xyz({0.64, 0.33}, {0.30, 0.60}, {0.15, 0.06}, white);
+}
+
+Eigen::Matrix3d bt2020_from_xyz(const Xyz& white) {
+  return rgb_from_xyz({0.708, 0.292}, {0.170, 0.797}, {0.131, 0.046}, white);
 }
 
 }  // namespace kiln

@@ -26,4 +26,7 @@ double ciede2000(const Lab& first, const Lab& second);
 /// chromaticities so that the white given becomes 1, 1, 1. The white of sRGB is that of D65.
 Eigen::Matrix3d srgb_from_xyz(const Xyz& white);
 
+/// Returns the same for the wider primaries of ITU-R BT.2020, which nearly all surfaces stay within.
+Eigen::Matrix3d bt2020_from_xyz(const Xyz& white);
+
 }  // namespace kiln

@@ -53,7 +53,8 @@ SmoothReflectance RgbLift::lift(const Eigen::Vector3d& albedo) const {
   SpectrumMatrix powers(wavelength_count, 3);
   powers << t.square().matrix(), t.matrix(), Eigen::VectorXd::Ones(wavelength_count);
   const auto miss = [&](const Eigen::Vector3d& coefficients, const Eigen::Vector3d& wanted) -> Eigen::Vector3d {
-    return wanted - albedo_of(SmoothReflectance{coefficients}.spectrum());
+    const Eigen::ArrayXd x = (powers * coefficients).array();
+    return wanted - albedo_of(0.5 + x / (2 * (1 + x.square()).sqrt()));
   };
 
   double reached = 0, stride = 0.25;

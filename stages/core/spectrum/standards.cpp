@@ -8,9 +8,12 @@
 #include <charconv>
 #include <cmath>
 #include <fmt/format.h>
+#include <numbers>
 #include <optional>
+#include <string_view>
 
 #include "base/errors.h"
+#include "base/numbers.h"
 #include "spectrum/spectrum_file.h"
 
 namespace kiln {
@@ -67,13 +70,14 @@ NamedSpectrum StandardSpectra::light(const std::string& name) const {
   } else if (const auto kelvin = number_after(capitals, 'P')) {
     require_within(name, *kelvin, 500, 100000);
     power = black_body(*kelvin);
+  } else if (capitals.starts_with("SUN:")) {
+    power = sunlight(parse_numbers("light sun", std::string_view(name).substr(4), 0, 90).front());
   } else if (std::error_code error; fs::is_regular_file(name, error)) {
     power = resample(read_spectrum(name, SpectrumKind::light));
   } else {
-    throw WrongUsage(
-        "light: found '" + name +
-        "'; expected A to E or F1 to F12 of the CIE, D50 or D5600 for daylight, P2856 for a black body, or "
-        "a file");
+    throw WrongUsage("light: found '" + name +
+                     "'; expected A to E or F1 to F12 of the CIE, D50 or D5600 for daylight, P2856 for a black body, "
+                     "sun:20 for the sun, or a file");
   }
   const double luminance = (power * observer(Observer::cie_1931).col(1).array()).sum();
   if (!(luminance > 0))
@@ -130,6 +134,19 @@ Spectrum black_body(double kelvin) {
   };
   Spectrum power(wavelength_count);
   for (int i = 0; i < wavelength_count; ++i) power(i) = planck(wavelength_nm(i)) / planck(560);
+  return power;
+}
+
+Spectrum sunlight(double elevation_degrees) {
+  // Relative mass of air on the way.
+  const double air =
+      1 / (std::sin(elevation_degrees * std::numbers::pi / 180) + 0.15 * std::pow(elevation_degrees + 3.885, -1.253));
+  constexpr double turbidity = 2, haze = 0.04608 * turbidity - 0.04586;
+  Spectrum power = black_body(5778);
+  for (int i = 0; i < wavelength_count; ++i) {
+    const double micrometres = wavelength_nm(i) / 1000;
+    power(i) *= std::exp(-air * (0.008735 * std::pow(micrometres, -4.08) + haze * std::pow(micrometres, -1.3)));
+  }
   return power;
 }
 

@@ -26,6 +26,7 @@ class StandardSpectra {
   /// - any other D and two digits (D75), the daylight of nominal temperature 7500 K, or D and four or five digits
   ///   (D5600), that of the correlated colour temperature: 4000 to 25000 K;
   /// - P and a temperature (P2856): a black body of 500 to 100000 K;
+  /// - sun:ELEVATION, the sun's disc at 0 to 90 degrees above the horizon in clear air (sunlight);
   /// - else a file of one spectrum.
   /// Throws WrongUsage for a name that is none, BadInput for a file.
   NamedSpectrum light(const std::string& name) const;
@@ -49,5 +50,10 @@ class StandardSpectra {
 
 /// Returns the radiance of a black body after Planck, 1 at 560 nm. Temperature in K, above 0; c2 is 1.4388e-2 m K.
 Spectrum black_body(double temperature_kelvin);
+
+/// Returns the light of the sun's disc at an elevation of 0 to 90 degrees, 1 at 560 nm above the air: a black body of
+/// 5778 K, dimmed by molecules and by aerosols of a turbidity of 2 (a clear sky), after the appendix of [Preetham
+/// 1999].
+Spectrum sunlight(double elevation_degrees);
 
 }  // namespace kiln
