@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 #include "base/function_ref.h"
 #include "spectrum/colorimetry.h"
@@ -49,21 +50,38 @@ ColorErrors errors_of(const SpectralScene& scene, const std::vector<ReflectionCh
   return errors;
 }
 
+/// Returns `count` chains: each surface again and again, as far as half of them go, then points of an additive
+/// recurrence, whose steps are powers of the root of x^(d + 1) = x + 1.
+std::vector<ReflectionChain> spread_chains(std::size_t surfaces, int reflections, std::size_t count) {
+  std::vector<ReflectionChain> chains;
+  for (std::size_t s = 0; s < std::min(surfaces, count / 2); ++s)
+    chains.emplace_back(static_cast<std::size_t>(reflections), s);
+  double root = 1.5;
+  for (int round = 0; round < 60; ++round) root = std::pow(1 + root, 1.0 / (reflections + 1));
+  for (double number = 1; chains.size() < count; ++number) {
+    ReflectionChain chain;
+    for (int k = 1; k <= reflections; ++k) {
+      const double place = number / std::pow(root, k);
+      chain.push_back(std::min(surfaces - 1,
+                               static_cast<std::size_t>((place - std::floor(place)) * static_cast<double>(surfaces))));
+    }
+    std::sort(chain.begin(), chain.end());
+    chains.push_back(std::move(chain));
+  }
+  return chains;
+}
+
 }  // namespace
 
 std::vector<ReflectionChain> reflection_chains(std::size_t surfaces, int reflections, std::size_t most) {
   // Count them first: n + k - 1 over k.
   double count = 1;
   for (int k = 1; k <= reflections; ++k) count *= (static_cast<double>(surfaces) + k - 1) / k;
-  const double stride = std::max(1.0, count / static_cast<double>(most));
+  if (count > static_cast<double>(most)) return spread_chains(surfaces, reflections, most);
   std::vector<ReflectionChain> chains;
   ReflectionChain chain(static_cast<std::size_t>(reflections), 0);
-  double next = 0;
-  for (double number = 0;; ++number) {
-    if (number >= next && chains.size() < most) {
-      chains.push_back(chain);
-      next += stride;
-    }
+  for (;;) {
+    chains.push_back(chain);
     auto last = chain.rbegin();
     while (last != chain.rend() && *last + 1 == surfaces) ++last;
     if (last == chain.rend()) return chains;

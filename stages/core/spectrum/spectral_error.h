@@ -20,8 +20,8 @@ struct ColorErrors {
 /// Surfaces in turn that light meets, by index.
 using ReflectionChain = std::vector<std::size_t>;
 
-/// Returns the combinations of `reflections` of `surfaces` surfaces, the same ones repeated; evenly thinned to at most
-/// `most`.
+/// Returns the combinations of `reflections` of `surfaces` surfaces, which may repeat; where they are more than `most`,
+/// so many that are spread evenly, and each surface with itself among them.
 std::vector<ReflectionChain> reflection_chains(std::size_t surfaces, int reflections, std::size_t most = 20000);
 
 /// Measures a basis: light vectors, surface matrices and a matrix that reads X, Y and Z.
