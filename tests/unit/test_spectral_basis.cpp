@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>

@@ -41,16 +41,16 @@ struct SensorChannels {
 class LampView {
  public:
   LampView(SensorChannels sensor, const NamedSpectrum& lamp)
-      : sensor_(std::move(sensor)),
-        weights_(lamp.values.matrix().asDiagonal() * sensor_.responses),
-        white_(weights_.colwise().sum().transpose()) {}
+      : sensor_(std::move(sensor)), weights_(sensor_.responses), white_(xyz_of(lamp.values, sensor_.responses)) {
+    for (int c = 0; c < 3; ++c) weights_.col(c).array() *= lamp.values;
+  }
 
   const SensorChannels& sensor() const { return sensor_; }
   const Eigen::Vector3d& white() const { return white_; }
 
   /// Returns the share of white that each channel sees; 0 for a channel that does not see the lamp.
   Eigen::Vector3d share(const Spectrum& reflectance) const {
-    const Eigen::Vector3d seen = weights_.transpose() * reflectance.matrix();
+    const Eigen::Vector3d seen = xyz_of(reflectance, weights_);
     Eigen::Vector3d shares;
     for (int c = 0; c < 3; ++c) shares(c) = white_(c) > 0 ? seen(c) / white_(c) : 0;
     return shares;
@@ -161,14 +161,21 @@ class SensorChoice {
   }
 
   LampView under(const NamedSpectrum& lamp) const {
-    if (camera_) return {{camera_->responses}, lamp};
+    if (camera_) return LampView({.responses = camera_->responses}, lamp);
     const Eigen::Matrix3d wide = bt2020_from_xyz(xyz_of(day_.values, observer_));
     const Eigen::Vector3d white = wide * xyz_of(lamp.values, observer_);
     const Eigen::Matrix3d channels = white.minCoeff() > 0.02 * white.maxCoeff() ? wide : Eigen::Matrix3d::Identity();
+    SensorChannels sensor;
+    sensor.responses = SpectrumMatrix::Zero(wavelength_count, 3);
+    for (int c = 0; c < 3; ++c)
+      for (int k = 0; k < 3; ++k) sensor.responses.col(c) += channels(c, k) * observer_.col(k);
+    const Eigen::Matrix3d to_xyz = channels.inverse();
+    sensor.rgb = lift_.rgb_from_xyz() * adapted_;
+    sensor.rgb *= to_xyz;
+    sensor.albedo = channels * lift_.rgb_from_xyz().inverse();
     const Eigen::Vector3d of_day = channels * xyz_of(day_.values, observer_);
-    return {{observer_ * channels.transpose(), lift_.rgb_from_xyz() * adapted_ * channels.inverse(),
-             of_day.cwiseInverse().asDiagonal() * channels * lift_.rgb_from_xyz().inverse()},
-            lamp};
+    for (int c = 0; c < 3; ++c) sensor.albedo.row(c) /= of_day(c);
+    return {std::move(sensor), lamp};
   }
 
  private:
