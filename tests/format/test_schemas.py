@@ -160,6 +160,7 @@ with tempfile.TemporaryDirectory() as folder:
     refuses("metrics", read("out/post/metrics.json"), [
         (("bake",), DROP), (("bake", "stage"), "atlas"), (("report", "budgets", 0, "met"), 1), (("more",), {})])
     refuses("spectrum", basis, [
+        (("channels", "wavelengths_nm", 0), 900),
         (("format",), "kiln-prt"), (("size",), 0), (("duals",), DROP), (("kind",), "red"), (("lights",), []),
         (("sensors", 0, "matrix"), DROP), (("surfaces", 0, "matrix", 0), []), (("more",), 1)])
     refuses("check", told, [(("folders",), []), (("folders", 0, "faults", 0, "remedy"), DROP)])

@@ -9,6 +9,7 @@
 #include "spectrum/optics.h"
 #include "spectrum/rgb_lift.h"
 #include "spectrum/spectral_error.h"
+#include "spectrum/wavelengths.h"
 
 namespace kiln {
 namespace test_spectral_basis {
@@ -42,6 +43,18 @@ TEST(SpectralBasis, SixFunctionsHoldSixLampsAndEightThreeReflections) {
   EXPECT_GT(rgb.mean, 2.5);
   EXPECT_GT(rgb.worst, 8);
   EXPECT_GT(rgb_thrice.worst, 20);
+}
+
+TEST(SpectralBasis, AFewWavelengthsBounceByThemselves) {
+  const SpectralScene scene = scene_of_lights({"D65", "A", "F11"});
+  const WavelengthSet set = find_wavelengths(scene, 8);
+  ASSERT_EQ(set.wavelengths_nm.size(), 8u);
+  EXPECT_LT(wavelength_errors(scene, set, reflection_chains(15, 1)).worst, 1.3);
+  EXPECT_LT(wavelength_errors(scene, set, reflection_chains(15, 3)).worst, 2.0);
+  for (std::size_t l = 0; l < 3; ++l) {
+    const Xyz white = set.readers[l].rowwise().sum();
+    EXPECT_LT((white - xyz_of(scene.lights[l].values, scene.observer)).norm(), 1e-8);
+  }
 }
 
 TEST(SpectralBasis, WhiteKeepsItsColorUnderEveryLamp) {
@@ -91,6 +104,8 @@ TEST(SpectralBasis, AGreySceneHasOneFunction) {
   EXPECT_EQ(finder.rank(), 1);
   const ColorErrors errors = basis_errors(scene, finder.characteristic(1), reflection_chains(1, 3));
   EXPECT_LT(errors.worst, 1e-6);
+  for (const int size : {1, 3, 8})  // wavelengths that all say the same
+    EXPECT_LT(wavelength_errors(scene, find_wavelengths(scene, size), reflection_chains(1, 3)).worst, 1e-4) << size;
 }
 
 TEST(SpectralBasis, MetamersSplitAsTheyDoInTruth) {

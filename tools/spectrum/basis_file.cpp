@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "spectrum/basis_file.h"
 
+#include <algorithm>
+
 #include "base/json.h"
+#include "spectrum/wavelengths.h"
 
 namespace kiln {
 
@@ -31,6 +34,9 @@ Json basis_json(const SpectralScene& scene, const SpectralBasis& basis, const st
     readers.push_back({{"name", sensor.name},
                        {"channels", sensor.channels},
                        {"matrix", rows_of(sensor_matrix(basis, sensor.responses))}});
+  const WavelengthSet set = find_wavelengths(scene, std::max(basis.size(), 3));
+  Json matrices = Json::array();
+  for (const Eigen::MatrixXd& reader : set.readers) matrices.push_back(rows_of(reader));
   return {{"format", "kiln-spectrum"},
           {"version", 1},
           {"kind", basis.kind},
@@ -40,7 +46,8 @@ Json basis_json(const SpectralScene& scene, const SpectralBasis& basis, const st
           {"duals", rows_of(basis.duals.transpose())},
           {"lights", lights},
           {"surfaces", surfaces},
-          {"sensors", readers}};
+          {"sensors", readers},
+          {"channels", {{"wavelengths_nm", set.wavelengths_nm}, {"xyz_by_light", matrices}}}};
 }
 
 }  // namespace kiln

@@ -6,6 +6,7 @@
 
 #include "base/errors.h"
 #include "base/json.h"
+#include "spectrum/wavelengths.h"
 
 namespace kiln {
 
@@ -79,13 +80,19 @@ SpectrumReport compare_colors(const StandardSpectra& standards, const SpectralSc
     if (!report.least_direct && compared.direct.worst <= settings.error) report.least_direct = compared.size;
     if (!report.least_reflected && compared.reflected.worst <= settings.error) report.least_reflected = compared.size;
   }
+  for (int size = fewest; size <= most_of_table; ++size) {
+    const WavelengthSet set = find_wavelengths(scene, size);
+    report.wavelengths.push_back(
+        {"wavelengths", size, wavelength_errors(scene, set, direct), wavelength_errors(scene, set, several)});
+  }
   return report;
 }
 
 Json to_json(const SpectrumReport& report, const SpectralScene& scene) {
-  Json lights = Json::array(), bases = Json::array();
+  Json lights = Json::array(), bases = Json::array(), wavelengths = Json::array();
   for (const NamedSpectrum& light : scene.lights) lights.push_back(light.name);
   for (const ComparedColors& basis : report.bases) bases.push_back(to_json(basis));
+  for (const ComparedColors& set : report.wavelengths) wavelengths.push_back(to_json(set));
   return {{"lights", lights},
           {"surfaces", scene.reflectances.size()},
           {"chains", report.chains},
@@ -93,6 +100,7 @@ Json to_json(const SpectrumReport& report, const SpectralScene& scene) {
           {"rgb", to_json(report.rgb)},
           {"lifted", to_json(report.lifted)},
           {"bases", bases},
+          {"wavelengths", wavelengths},
           {"least", {{"direct", least_json(report.least_direct)}, {"reflected", least_json(report.least_reflected)}}}};
 }
 
@@ -111,6 +119,7 @@ std::string to_text(const SpectrumReport& report, const SpectralScene& scene, co
   add("RGB", report.rgb);
   add("RGB lifted to spectra", report.lifted);
   for (const ComparedColors& basis : report.bases) add(fmt::format("{}, m = {}", basis.name, basis.size), basis);
+  for (const ComparedColors& set : report.wavelengths) add(fmt::format("wavelengths, m = {}", set.size), set);
   const auto answer = [](const std::optional<int>& least) {
     return !least        ? std::string("more functions than were tried")
            : *least == 0 ? "RGB is enough"

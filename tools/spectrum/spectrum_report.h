@@ -24,6 +24,7 @@ struct SpectrumReport {
   ComparedColors rgb = {};
   ComparedColors lifted = {};
   std::vector<ComparedColors> bases = {};
+  std::vector<ComparedColors> wavelengths = {};  ///< chosen ones, 3 to 8, each a channel that bounces by itself
   /// Least functions within the error, 0 where RGB is; nothing where none of `bases` is.
   std::optional<int> least_direct = {};
   std::optional<int> least_reflected = {};

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/function_ref.h"
 #include "spectrum/colorimetry.h"
 
 namespace kiln {
@@ -23,31 +22,6 @@ std::vector<Spectrum> values_of(const std::vector<NamedSpectrum>& named) {
   std::vector<Spectrum> values;
   for (const NamedSpectrum& spectrum : named) values.push_back(spectrum.values);
   return values;
-}
-
-/// Compares `computed(light, chain)` with the truth.
-ColorErrors errors_of(const SpectralScene& scene, const std::vector<ReflectionChain>& chains,
-                      FunctionRef<Xyz(std::size_t light, const ReflectionChain& chain)> computed) {
-  const std::vector<Spectrum> reflectances = values_of(scene.reflectances);
-  std::vector<SpectrumMatrix> readings;
-  for (const NamedSpectrum& light : scene.lights)
-    readings.push_back(light.values.matrix().asDiagonal() * scene.observer);
-  ColorErrors errors;
-  for (const ReflectionChain& chain : chains) {
-    const Spectrum reflected = product_of(reflectances, chain);
-    for (std::size_t l = 0; l < scene.lights.size(); ++l) {
-      const Xyz white = readings[l].colwise().sum();
-      const Xyz truth = readings[l].transpose() * reflected.matrix();
-      const double error = ciede2000(lab_of(truth, white), lab_of(computed(l, chain), white));
-      errors.mean += error;
-      if (error <= errors.worst && !errors.worst_at.empty()) continue;
-      errors.worst = error;
-      errors.worst_at = scene.lights[l].name + ",";
-      for (const std::size_t surface : chain) errors.worst_at += " " + scene.reflectances[surface].name;
-    }
-  }
-  errors.mean /= static_cast<double>(chains.size() * scene.lights.size());
-  return errors;
 }
 
 /// Returns `count` chains: each surface again and again, as far as half of them go, then points of an additive
@@ -72,6 +46,30 @@ std::vector<ReflectionChain> spread_chains(std::size_t surfaces, int reflections
 }
 
 }  // namespace
+
+ColorErrors color_errors(const SpectralScene& scene, const std::vector<ReflectionChain>& chains,
+                         FunctionRef<Xyz(std::size_t light, const ReflectionChain& chain)> computed) {
+  const std::vector<Spectrum> reflectances = values_of(scene.reflectances);
+  std::vector<SpectrumMatrix> readings;
+  for (const NamedSpectrum& light : scene.lights)
+    readings.push_back(light.values.matrix().asDiagonal() * scene.observer);
+  ColorErrors errors;
+  for (const ReflectionChain& chain : chains) {
+    const Spectrum reflected = product_of(reflectances, chain);
+    for (std::size_t l = 0; l < scene.lights.size(); ++l) {
+      const Xyz white = readings[l].colwise().sum();
+      const Xyz truth = readings[l].transpose() * reflected.matrix();
+      const double error = ciede2000(lab_of(truth, white), lab_of(computed(l, chain), white));
+      errors.mean += error;
+      if (error <= errors.worst && !errors.worst_at.empty()) continue;
+      errors.worst = error;
+      errors.worst_at = scene.lights[l].name + ",";
+      for (const std::size_t surface : chain) errors.worst_at += " " + scene.reflectances[surface].name;
+    }
+  }
+  errors.mean /= static_cast<double>(chains.size() * scene.lights.size());
+  return errors;
+}
 
 std::vector<ReflectionChain> reflection_chains(std::size_t surfaces, int reflections, std::size_t most) {
   // Count them first: n + k - 1 over k.
@@ -98,7 +96,7 @@ ColorErrors basis_errors(const SpectralScene& scene, const SpectralBasis& basis,
   for (const NamedSpectrum& reflectance : scene.reflectances)
     surfaces.push_back(surface_matrix(basis, reflectance.values));
   const Eigen::MatrixXd reader = sensor_matrix(basis, scene.observer);
-  return errors_of(scene, chains, [&](std::size_t l, const ReflectionChain& chain) -> Xyz {
+  return color_errors(scene, chains, [&](std::size_t l, const ReflectionChain& chain) -> Xyz {
     Eigen::VectorXd light = lights[l];
     for (const std::size_t surface : chain) light = surfaces[surface] * light;
     return reader * light;
@@ -111,7 +109,7 @@ ColorErrors rgb_errors(const SpectralScene& scene, const RgbLift& lift, const st
   std::vector<Eigen::Vector3d> albedos;
   for (const NamedSpectrum& reflectance : scene.reflectances)
     albedos.push_back(lift.albedo_of(reflectance.values).cwiseMax(0).cwiseMin(1));
-  return errors_of(scene, chains, [&](std::size_t l, const ReflectionChain& chain) -> Xyz {
+  return color_errors(scene, chains, [&](std::size_t l, const ReflectionChain& chain) -> Xyz {
     Eigen::Vector3d light = to_rgb * xyz_of(scene.lights[l].values, scene.observer);
     for (const std::size_t surface : chain) light = light.cwiseProduct(albedos[surface]);
     return to_xyz * light;
@@ -122,7 +120,7 @@ ColorErrors lifted_errors(const SpectralScene& scene, const RgbLift& lift, const
   std::vector<Spectrum> lifted;
   for (const NamedSpectrum& reflectance : scene.reflectances)
     lifted.push_back(lift.lift(lift.albedo_of(reflectance.values)).spectrum());
-  return errors_of(scene, chains, [&](std::size_t l, const ReflectionChain& chain) {
+  return color_errors(scene, chains, [&](std::size_t l, const ReflectionChain& chain) {
     return xyz_of(scene.lights[l].values * product_of(lifted, chain), scene.observer);
   });
 }

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "base/function_ref.h"
 #include "spectrum/basis.h"
+#include "spectrum/colorimetry.h"
 #include "spectrum/rgb_lift.h"
 
 namespace kiln {
@@ -23,6 +25,10 @@ using ReflectionChain = std::vector<std::size_t>;
 /// Returns the combinations of `reflections` of `surfaces` surfaces, which may repeat; where they are more than `most`,
 /// so many that are spread evenly, and each surface with itself among them.
 std::vector<ReflectionChain> reflection_chains(std::size_t surfaces, int reflections, std::size_t most = 20000);
+
+/// Compares what `computed` returns for a light and a chain, X, Y and Z, with the truth.
+ColorErrors color_errors(const SpectralScene& scene, const std::vector<ReflectionChain>& chains,
+                         FunctionRef<Xyz(std::size_t light, const ReflectionChain& chain)> computed);
 
 /// Measures a basis: light vectors, surface matrices and a matrix that reads X, Y and Z.
 ColorErrors basis_errors(const SpectralScene& scene, const SpectralBasis& basis,
