@@ -2,7 +2,7 @@
 # Rules of `make install` and `make package`: programs, the runtime as libraries, shaders, licences.
 include(CMakePackageConfigHelpers)
 
-set(KILN_PROGRAMS kiln kiln-check kiln-export kiln-serve kiln-web-export ${stage_programs} kiln-render kiln-shade kiln-view)
+set(KILN_PROGRAMS kiln kiln-check kiln-export kiln-serve kiln-spectrum kiln-web-export ${stage_programs} kiln-render kiln-shade kiln-view)
 install(TARGETS ${KILN_PROGRAMS} RUNTIME)
 install(TARGETS kiln-runtime kiln-runtime-gl kiln-runtime-scene EXPORT kilnTargets LIBRARY)
 install(TARGETS kiln-openimageio LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/kiln)
@@ -56,6 +56,7 @@ set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS colord-data)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR}/lib)
 set(CPACK_STRIP_FILES ON)

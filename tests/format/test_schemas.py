@@ -121,6 +121,7 @@ with tempfile.TemporaryDirectory() as folder:
         "--directions", "64", "--quiet")
     for asset in ("out/post/prt", "vertices", "pca"):
         run("kiln-export", asset, "-o", asset.split("/")[-1] + ".glb", "--quiet")
+    run("kiln-spectrum", "--lights", "D65,F11", "-o", "basis.json", "--size", "4", "--quiet")
     read = lambda name: json.loads(pathlib.Path(name).read_text())
 
     def extension(name):
@@ -137,6 +138,7 @@ with tempfile.TemporaryDirectory() as folder:
                    "out/post/small/compress.json", "out/post/probes/probes.json", "out/post/report.json", "vertices/bake.json", "probes/probes.json",
                    "fine/lod/lod.json"],
         "metrics": ["out/post/metrics.json"],
+        "spectrum": ["basis.json"],
     }.items():
         for file in files:
             fits(name, read(file), file)
@@ -154,6 +156,14 @@ with tempfile.TemporaryDirectory() as folder:
     for file in ("pipeline.yaml", "samples/scene.yaml"):
         fits("pipeline", yaml.safe_load((sources / file).read_text()), file)
     fits("pipeline", yaml.safe_load(PIPELINE), "the pipeline of this test")
+
+    # A basis has what its size says: white under D65 is white, read by its numbers alone.
+    basis = read("basis.json")
+    if [len(basis["functions"]), len(basis["lights"][0]["vector"]), len(basis["surfaces"][0]["matrix"])] != [4, 4, 4]:
+        faults.append("basis.json does not have four functions everywhere")
+    seen = [sum(a * b for a, b in zip(row, basis["lights"][0]["vector"])) for row in basis["sensors"][0]["matrix"]]
+    if max(abs(channel - 1) for channel in seen) > 1e-9:
+        faults.append(f"basis.json shows white under D65 as {seen}")
 
     # Damaged files do not.
     refuses("ranges", read("out/post/prt/ranges.json"), [
@@ -181,6 +191,10 @@ with tempfile.TemporaryDirectory() as folder:
         (("stage",), "stir"), (("seconds",), -1), (("directions",), DROP), (("outputs", "atlas.drc"), "abc"), (("warnings",), "none")])
     refuses("metrics", read("out/post/metrics.json"), [
         (("bake",), DROP), (("bake", "stage"), "atlas"), (("report", "budgets", 0, "met"), 1), (("more",), {})])
+    refuses("spectrum", basis, [
+        (("channels", "wavelengths_nm", 0), 900),
+        (("format",), "kiln-prt"), (("size",), 0), (("duals",), DROP), (("kind",), "red"), (("lights",), []),
+        (("sensors", 0, "matrix"), DROP), (("surfaces", 0, "matrix", 0), []), (("more",), 1)])
     refuses("check", told, [(("folders",), []), (("folders", 0, "faults", 0, "remedy"), DROP)])
     pipeline = yaml.safe_load(PIPELINE)
     for levels in ([1, 0.5], True, {"levels": [0.5, 0.25]}, {"pixels": "1, 4"}):

@@ -304,6 +304,7 @@ Commands::Commands(CLI::App& app) : values_(std::make_unique<Values>()) {
   };
   add_sibling("check", "Hold assets' folders against the format");
   add_sibling("export", "Write an asset as a glTF file");
+  add_sibling("spectrum", "Say whether RGB is enough for lights and surfaces");
   add_sibling("serve", "Show a folder of assets in a browser");
   add_sibling("web-export", "Write a folder of assets as a web site");
 

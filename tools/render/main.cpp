@@ -9,6 +9,7 @@
 #include "base/outputs.h"
 #include "base/stopwatch.h"
 #include "render/film/film.h"
+#include "render/lamps.h"
 #include "render/render_command.h"
 
 int main(int argc, char** argv) {
@@ -19,6 +20,7 @@ int main(int argc, char** argv) {
     RenderCommand asked;
     asked.add_to(command);
     command.parse(argc, argv);
+    command.also_read(lamp_files(asked.paths.lamps));
     asked.check(command);
 
     // Step 2: load.

@@ -12,6 +12,7 @@
 #include "base/progress.h"
 #include "lights/light_settings.h"
 #include "mesh/placement.h"
+#include "render/lamps.h"
 #include "render/render_settings.h"
 #include "runtime/light/scene_lights.h"
 
@@ -26,6 +27,7 @@ struct RenderPaths {
   bool each_light = false;           ///< one picture for each light, instead of one under all
   bool each_asset = false;           ///< one picture for each asset, instead of one of all
   std::filesystem::path probes;      ///< probes of the first asset; empty: none
+  LampSettings lamps;                ///< spectra of the lights; none: RGB
 };
 
 struct RenderScene {
@@ -40,6 +42,7 @@ struct RenderScene {
   SceneLights lights;
   std::vector<SceneLights> each_light;  ///< lights of each picture, if there is one for each light
   bool each_asset = false;              ///< whether there is a picture for each asset
+  std::optional<LampScene> lamps;       ///< the same scene by spectra, if there are lamps
 };
 
 /// Loads assets and lights. Throws WrongUsage for options that exclude each other, BadInput for bad files.

@@ -7,6 +7,7 @@
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "lights/light_command.h"
+#include "render/lamps.h"
 #include "render/output/picture.h"
 
 namespace kiln {
@@ -31,6 +32,7 @@ void RenderCommand::add_to(CommandLine& command) {
   command.input_option("probes", paths.probes,
                        "Folder of kiln-probes: the light around the first asset, which stands at the origin, for the "
                        "others; for the only asset, that around what is not drawn");
+  add_lamp_options(command, paths.lamps);
   command.options("Picture", render_options(settings));
   command.options("Scene", film_options(film));
   command.flag("tree", tree, "Scene", "Print the tree that shadows go by at --time, and draw nothing");
@@ -43,7 +45,8 @@ void RenderCommand::check(const CommandLine& command) const {
   if (is_film()) {
     for (const char* option : {"light", "ambient", "environment", "environment-rotation", "light-file", "window"})
       require(!command.given(option), std::string(option) + ": found it beside a scene; expected lights in the scene");
-    for (const char* option : {"place", "probes", "compressed", "each-light", "each-asset"})
+    for (const char* option :
+         {"place", "probes", "compressed", "each-light", "each-asset", "lamp", "reflectance", "sensor", "white"})
       require(!command.given(option), std::string(option) + ": found it beside a scene; expected assets alone");
     require(!is_sheet(settings) && settings.space == PictureSpace::camera,
             "technique all, side-by-side and space: found one with a scene; expected a picture of the whole scene");

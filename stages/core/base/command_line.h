@@ -39,7 +39,7 @@ class CommandLine {
   /// Adds `-o OUTPUT`, required.
   void output(std::filesystem::path& path, const std::string& help);
 
-  /// Adds `-o OUTPUT`, which the program itself requires where it writes one.
+  /// Adds `-o OUTPUT` for programs that may run without; `path` stays as it is then.
   void optional_output(std::filesystem::path& path, const std::string& help);
 
   /// Adds an optional input named by an option: `--detail FOLDER`.
