@@ -28,14 +28,23 @@ bool may_meet(const BoundingBall& receiver, const BoundingBall& occluder, const 
   return std::acos(std::clamp(grown.axis.dot(axis), -1.0, 1.0)) <= half_angle + grown.half_angle;
 }
 
-/// Tests whether an occluder may stand between a receiver and a ball of light: whether it comes near the segment
-/// between their centres.
+/// Tests whether an occluder may stand between a receiver and a ball of light: whether its ball meets the convex hull
+/// of theirs. That is the union of balls whose centres and radii go evenly from one to the other; the distance to the
+/// nearest of these is a convex function of the place between them.
 bool may_stand_between(const BoundingBall& receiver, const BoundingBall& occluder, const LightSpec& ball) {
-  const Eigen::Vector3d along = Eigen::Vector3d(ball.position.data()) - receiver.centre;
-  const double square = along.squaredNorm();
-  const double place = square > 0 ? std::clamp((occluder.centre - receiver.centre).dot(along) / square, 0.0, 1.0) : 0;
-  return (receiver.centre + place * along - occluder.centre).norm() <=
-         occluder.radius + std::max(receiver.radius, ball.radius);
+  const Eigen::Vector3d along = Eigen::Vector3d(ball.position.data()) - receiver.centre,
+                        towards = occluder.centre - receiver.centre;
+  const double length = along.norm(), reach = std::max(0.0, receiver.radius), widens = ball.radius - reach;
+  double place = 0;
+  if (length > 0) {
+    const double forward = towards.dot(along) / length,
+                 aside = std::sqrt(std::max(0.0, towards.squaredNorm() - forward * forward)), slope = widens / length;
+    // Where the hull's widening and the way to its axis balance; the larger end if one ball holds the other.
+    place = std::abs(slope) < 1
+                ? std::clamp((forward + aside * slope / std::sqrt(1 - slope * slope)) / length, 0.0, 1.0)
+                : (slope > 0 ? 1.0 : 0.0);
+  }
+  return (receiver.centre + place * along - occluder.centre).norm() <= occluder.radius + reach + place * widens;
 }
 
 bool may_take_light(const BoundingBall& receiver, const BoundingBall& occluder, const LightSources& sources) {
@@ -83,10 +92,15 @@ class RemovedLight {
   std::optional<LightSum> sum_;
 };
 
-/// Takes the share of a cone of light that is blocked. `distance`: of the light, along the axis; `farthest`: by
-/// direction.
-void remove_cone(const ShadowStage& stage, std::span<const int> meshes, const ConeLight& light,
-                 std::span<const float> farthest, double distance, const ShadowPoint& point, RemovedLight& removed) {
+/// How far rays go to a light: along its axis, by direction (empty: the same), and the longest.
+struct LightReach {
+  double axis = std::numeric_limits<double>::infinity(), longest = std::numeric_limits<double>::infinity();
+  std::vector<float> by_direction = {};
+};
+
+/// Takes the share of a cone of light that is blocked.
+void remove_cone(const ShadowStage& stage, std::span<const int> meshes, const ConeLight& light, const LightReach& reach,
+                 const ShadowPoint& point, RemovedLight& removed) {
   const auto take = [&](std::span<const double> values) {
     for (std::size_t c = 0; c < 3; ++c) removed.add(c, values, light.window, static_cast<double>(light.spec.color[c]));
   };
@@ -94,7 +108,7 @@ void remove_cone(const ShadowStage& stage, std::span<const int> meshes, const Co
     const BoundingBall& ball = stage.place_of(node).ball;
     const ViewCone cone = cone_of(ball, point.position);
     return cone.half_angle >= pi ||
-           (cone.distance - ball.radius < distance &&
+           (cone.distance - ball.radius < reach.longest &&
             cone.axis.dot(light.axis) >= std::cos(std::min(pi, cone.half_angle + light.half_angle)));
   };
   // A cone far below the horizon, which the node's own body hides, is decided by its axis alone.
@@ -103,24 +117,26 @@ void remove_cone(const ShadowStage& stage, std::span<const int> meshes, const Co
   if (light.half_angle == 0 || far_below) {
     for (const int node : meshes)
       if (in_the_way(node) &&
-          stage.mesh_of(node).blocks(stage.pose_of(node), point.position, light.axis, static_cast<float>(distance)))
+          stage.mesh_of(node).blocks(stage.pose_of(node), point.position, light.axis, static_cast<float>(reach.axis)))
         return take(light.zonal);
     return;
   }
   thread_local BlockedDirections state;
   state.reset(light.directions.count());
   for (const int node : meshes)
-    if (in_the_way(node)) block_by_mesh(stage, node, point.position, light.directions, farthest, state);
-  std::uint32_t count = 0;
-  std::vector<double> values(light.zonal.size(), 0.0);
-  for (std::uint32_t d = 0; d < light.directions.count(); ++d) {
-    if (state.blocked[d] == 0) continue;
-    ++count;
-    const std::span<const float> row = light.directions.row(d);
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] += static_cast<double>(row[i]);
-  }
+    if (in_the_way(node)) block_by_mesh(stage, node, point.position, light.directions, reach.by_direction, state);
+  const auto count = static_cast<std::uint32_t>(std::count(state.blocked.begin(), state.blocked.end(), 1));
   if (count == 0) return;
   if (count == light.directions.count()) return take(light.zonal);
+  std::vector<double> values(light.zonal.size(), 0.0);
+  std::vector<float> own_row(light.directions.basis.empty() ? values.size() : 0);
+  const ShBasis basis(band_of(static_cast<int>(values.size()) - 1) + 1);
+  for (std::uint32_t d = 0; d < light.directions.count(); ++d) {
+    if (state.blocked[d] == 0) continue;
+    if (!own_row.empty()) basis.evaluate<float>(light.directions.direction(d), own_row);
+    const std::span<const float> row = own_row.empty() ? light.directions.row(d) : std::span<const float>(own_row);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] += static_cast<double>(row[i]);
+  }
   const double share = cone_bands(1, light.half_angle)[0] / light.directions.count(),
                blocked = static_cast<double>(count) / light.directions.count();
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = share * values[i] + blocked * light.closing[i];
@@ -254,8 +270,7 @@ std::optional<LightSum> removed_light(const ShadowStage& stage, const NodeOcclud
                                       const ShadowPoint& point) {
   RemovedLight removed(bands);
   if (!occluders.meshes.empty()) {
-    for (const ConeLight& cone : sources.cones)
-      remove_cone(stage, occluders.meshes, cone, {}, std::numeric_limits<double>::infinity(), point, removed);
+    for (const ConeLight& cone : sources.cones) remove_cone(stage, occluders.meshes, cone, {}, point, removed);
     for (const LightSpec& ball : sources.balls) {
       const BoundingBall light{Eigen::Vector3d(ball.position.data()), ball.radius};
       const ViewCone seen = cone_of(light, point.position);
@@ -264,15 +279,17 @@ std::optional<LightSum> removed_light(const ShadowStage& stage, const NodeOcclud
       };
       if (seen.half_angle >= pi || std::none_of(occluders.meshes.begin(), occluders.meshes.end(), stands_between))
         continue;  // from inside a ball of light nothing stands in front of it
-      const ConeLight cone = ball_at(ball, bands, lights.window, point.position, static_cast<int>(stage.sky.count()));
-      // Rays end where they reach the ball.
-      std::vector<float> farthest(cone.directions.count());
+      const ConeLight cone = ball_at(ball, bands, lights.window, point.position, sources.pattern);
+      // Rays end where they reach the ball; the longest touch it.
+      LightReach reach{seen.distance - ball.radius,
+                       std::sqrt(std::max(0.0, seen.distance * seen.distance - ball.radius * ball.radius)),
+                       std::vector<float>(cone.directions.count())};
       for (std::uint32_t d = 0; d < cone.directions.count(); ++d) {
         const double along = cone.directions.direction(d).cast<double>().dot(light.centre - point.position);
         const double inside = ball.radius * ball.radius - (seen.distance * seen.distance - along * along);
-        farthest[d] = static_cast<float>(along - std::sqrt(std::max(0.0, inside)));
+        reach.by_direction[d] = static_cast<float>(along - std::sqrt(std::max(0.0, inside)));
       }
-      remove_cone(stage, occluders.meshes, cone, farthest, seen.distance - ball.radius, point, removed);
+      remove_cone(stage, occluders.meshes, cone, reach, point, removed);
     }
   }
   if (!occluders.sky_meshes.empty() || !occluders.sky_caps.empty()) {

@@ -50,29 +50,43 @@ DirectionSet sphere_directions(int count, int bands) {
   return make_set(directions, bands);
 }
 
-DirectionSet cone_directions(int count, const Eigen::Vector3d& axis, double half_angle, int bands) {
-  const Eigen::Matrix3d turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
-  const double depth = 1 - std::cos(half_angle), golden = std::numbers::pi * (3 - std::sqrt(5.0));
-  struct Place {
+DiscPattern disc_pattern(int count) {
+  struct Point {
     int ring, sector;
-    Eigen::Vector3f direction;
+    double share, azimuth;
   };
   // Cuts the disc into rings and these into sectors of equal shares, so that blocks are compact.
-  std::vector<Place> places;
+  std::vector<Point> points;
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
   const int rings = std::max(1, static_cast<int>(std::lround(std::sqrt(count / 32.0))));
   for (int k = 0; k < count; ++k) {
-    const double share = (k + 0.5) / count, z = 1 - share * depth, radius = std::sqrt(std::max(0.0, 1 - z * z)),
-                 azimuth = std::fmod(golden * k, 2 * std::numbers::pi);
+    const double share = (k + 0.5) / count, azimuth = std::fmod(golden * k, 2 * std::numbers::pi);
     const int ring = static_cast<int>(std::sqrt(share) * rings), sectors = 2 * ring + 1;
-    places.push_back(
-        {ring, static_cast<int>(azimuth / (2 * std::numbers::pi) * sectors),
-         (turn * Eigen::Vector3d(radius * std::cos(azimuth), radius * std::sin(azimuth), z)).cast<float>()});
+    points.push_back({ring, static_cast<int>(azimuth / (2 * std::numbers::pi) * sectors), share, azimuth});
   }
-  std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
+  std::stable_sort(points.begin(), points.end(), [](const Point& a, const Point& b) {
     return a.ring != b.ring ? a.ring < b.ring : a.sector < b.sector;
   });
+  DiscPattern pattern;
+  for (const Point& point : points) {
+    pattern.share.push_back(static_cast<float>(point.share));
+    pattern.cosine.push_back(static_cast<float>(std::cos(point.azimuth)));
+    pattern.sine.push_back(static_cast<float>(std::sin(point.azimuth)));
+  }
+  return pattern;
+}
+
+DirectionSet cone_directions(const DiscPattern& pattern, const Eigen::Vector3d& axis, double half_angle, int bands) {
+  const Eigen::Matrix3f turn =
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix().cast<float>();
+  // 1 - cos, without its cancellation for thin cones; 1 - z^2 is (1 - z) (1 + z).
+  const auto depth = static_cast<float>(2 * std::pow(std::sin(0.5 * half_angle), 2));
   std::vector<Eigen::Vector3f> directions;
-  for (const Place& place : places) directions.push_back(place.direction);
+  directions.reserve(pattern.share.size());
+  for (std::size_t k = 0; k < pattern.share.size(); ++k) {
+    const float below = pattern.share[k] * depth, radius = std::sqrt(std::max(0.f, below * (2 - below)));
+    directions.push_back(turn * Eigen::Vector3f(radius * pattern.cosine[k], radius * pattern.sine[k], 1 - below));
+  }
   return make_set(directions, bands);
 }
 

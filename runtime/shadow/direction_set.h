@@ -33,9 +33,18 @@ struct DirectionSet {
 /// or 0 for none.
 DirectionSet sphere_directions(int count, int bands);
 
-/// Returns `count` directions of the cone of `half_angle` (0 to pi) around the unit vector `axis`: points of a
-/// Fibonacci spiral, each the middle of an equal share of the cone.
-DirectionSet cone_directions(int count, const Eigen::Vector3d& axis, double half_angle, int bands);
+/// Points of a disc, each the middle of an equal share of it: a Fibonacci spiral, neighbours together.
+struct DiscPattern {
+  std::vector<float> share;         ///< of the disc's area within the point's radius
+  std::vector<float> cosine, sine;  ///< of the point's azimuth
+};
+
+/// Returns `count` >= 1 such points.
+DiscPattern disc_pattern(int count);
+
+/// Returns the directions of the cone of `half_angle` (0 to pi) around the unit vector `axis` that the points of a
+/// pattern stand for, by equal areas; with `bands` of harmonics, or 0 for none.
+DirectionSet cone_directions(const DiscPattern& pattern, const Eigen::Vector3d& axis, double half_angle, int bands);
 
 /// Appends to `found` the directions that form an angle of `half_angle` (radians) or less with the unit vector `axis`
 /// and are not `blocked` yet.

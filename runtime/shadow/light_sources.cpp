@@ -23,8 +23,10 @@ LightCoefficients with_bands(const LightCoefficients& light, int bands) {
 }
 
 /// Makes a cone of light around an axis, without its window. Sums over its directions stand for the integral of a
-/// radiance of colour / sin^2(half_angle), or of colour beyond 90 degrees.
-ConeLight cone_around(const LightSpec& spec, const Eigen::Vector3d& axis, double half_angle, int bands, int count) {
+/// radiance of colour / sin^2(half_angle), or of colour beyond 90 degrees. `is_summed`: with harmonics of all
+/// directions and what their sum lacks; else that is left out, a thousandth of the light.
+ConeLight cone_around(const LightSpec& spec, const Eigen::Vector3d& axis, double half_angle, int bands,
+                      const DiscPattern& pattern, bool is_summed) {
   ConeLight cone;
   cone.spec = spec;
   cone.axis = axis;
@@ -39,7 +41,12 @@ ConeLight cone_around(const LightSpec& spec, const Eigen::Vector3d& axis, double
     cone.half_angle = 0;
     return cone;
   }
-  cone.directions = cone_directions(count, axis, half_angle, bands);
+  if (!is_summed) {
+    cone.directions = cone_directions(pattern, axis, half_angle, 0);
+    cone.closing.assign(cone.zonal.size(), 0.0);
+    return cone;
+  }
+  cone.directions = cone_directions(pattern, axis, half_angle, bands);
   // The mean over directions stands for z_0 / Y_00, the radiance times the solid angle.
   const double share = bands_of_cone[0] / cone.directions.count();
   cone.closing = cone.zonal;
@@ -85,7 +92,7 @@ LightSources light_sources(const SceneLights& lights, int bands, const Direction
   LightSources sources;
   sources.has_probes = lights.probes != nullptr;
   if (sources.has_probes) return sources;
-  const int count = static_cast<int>(sky.count());
+  sources.pattern = disc_pattern(static_cast<int>(sky.count()));
   for (const LightSpec& spec : lights.specs) {
     if (spec.kind == Kind::sphere) {
       sources.balls.push_back(spec);
@@ -93,7 +100,7 @@ LightSources light_sources(const SceneLights& lights, int bands, const Direction
       const Eigen::Vector3d axis =
           direction_from_angles(spec.azimuth_degrees, spec.elevation_degrees).cast<double>().normalized();
       const double half_angle = spec.kind == Kind::cone ? spec.half_angle_degrees * std::numbers::pi / 180 : 0;
-      ConeLight& cone = sources.cones.emplace_back(cone_around(spec, axis, half_angle, bands, count));
+      ConeLight& cone = sources.cones.emplace_back(cone_around(spec, axis, half_angle, bands, sources.pattern, true));
       cone.window = window_weights(spec, bands, lights.window);
     } else {
       sources.skies.push_back(
@@ -106,7 +113,8 @@ LightSources light_sources(const SceneLights& lights, int bands, const Direction
   return sources;
 }
 
-ConeLight ball_at(const LightSpec& ball, int bands, LightWindow window, const Eigen::Vector3d& point, int directions) {
+ConeLight ball_at(const LightSpec& ball, int bands, LightWindow window, const Eigen::Vector3d& point,
+                  const DiscPattern& pattern) {
   const Eigen::Vector3d position(ball.position.data()), away = position - point;
   const double distance = away.norm();
   const bool inside = distance <= ball.radius;
@@ -117,8 +125,8 @@ ConeLight ball_at(const LightSpec& ball, int bands, LightWindow window, const Ei
   LightSpec scaled = ball;
   const double ratio = sine / sine_at_origin;
   for (float& level : scaled.color) level = static_cast<float>(static_cast<double>(level) * ratio * ratio);
-  ConeLight cone =
-      cone_around(scaled, inside ? Eigen::Vector3d::UnitZ() : (away / distance).eval(), half_angle, bands, directions);
+  ConeLight cone = cone_around(scaled, inside ? Eigen::Vector3d::UnitZ() : (away / distance).eval(), half_angle, bands,
+                               pattern, false);
   cone.window = window_weights(ball, bands, window, point);
   return cone;
 }

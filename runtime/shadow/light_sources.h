@@ -40,6 +40,7 @@ struct LightSources {
   std::vector<ConeLight> cones;  ///< distant ones
   std::vector<LightSpec> balls;
   std::vector<SkyLight> skies;  ///< hemispheres, ambient light and environments
+  DiscPattern pattern;          ///< of cones
   bool has_probes = false;      ///< then `cones`, `balls` and `skies` are empty
 
   bool has_sky() const { return !skies.empty() || has_probes; }
@@ -51,7 +52,8 @@ LightSources light_sources(const SceneLights& lights, int bands, const Direction
 
 /// Returns a ball as a cone of light as it arrives at `point`; a half-angle of pi if the point is inside. Its radiance
 /// is such that a white surface that faces it at the origin has the colour, whatever its place.
-ConeLight ball_at(const LightSpec& ball, int bands, LightWindow window, const Eigen::Vector3d& point, int directions);
+ConeLight ball_at(const LightSpec& ball, int bands, LightWindow window, const Eigen::Vector3d& point,
+                  const DiscPattern& pattern);
 
 /// A light as it arrives at a point before its window, and that window.
 struct WindowedLight {

@@ -31,7 +31,7 @@ struct MethodSetup {
   bool composite_balls = false, has_sky = false;
   int error_directions = 10000;  ///< 0: its error is not measured
   LightWindow window = LightWindow::none;
-  bool is_timed = true;
+  bool is_timed = true, is_lamp = false;  ///< a ball of light in place of a cone
 };
 constexpr MethodSetup setups[] = {
     {"thesis", ShadowMethod::thesis, 0, false, false, 10000, LightWindow::hann},
@@ -44,6 +44,7 @@ constexpr MethodSetup setups[] = {
     {"fields", ShadowMethod::fields},
     {"**combined**", ShadowMethod::combined},
     {"combined, and a sky", ShadowMethod::combined, 0, false, true, 0},
+    {"combined, light of a ball", ShadowMethod::combined, 0, false, false, 0, LightWindow::none, true, true},
     {"combined, 1,024 directions", ShadowMethod::combined, 0, false, false, 1024, LightWindow::none, false},
     {"combined, light under Hann", ShadowMethod::combined, 0, false, false, 10000, LightWindow::hann, false},
     {"combined, light deringed", ShadowMethod::combined, 0, false, false, 10000, LightWindow::dering, false},
@@ -61,6 +62,13 @@ ShadowSettings settings_of(const MethodSetup& setup, int directions, int threads
 
 SceneLights lights_of(const ShadowStand& stand, double half_angle, const MethodSetup& setup) {
   SceneLights lights{{stand_light(stand, half_angle)}, std::nullopt, setup.window};
+  if (setup.is_lamp) {  // as large from the origin as the cone
+    LightSpec& lamp = lights.specs[0];
+    lamp.kind = LightSpec::Kind::sphere;
+    constexpr double distance = 20, degree = 0.017453292519943295;
+    Eigen::Map<Eigen::Vector3d>(lamp.position.data()) = distance * stand.towards_light.normalized();
+    lamp.radius = distance * std::sin(half_angle * degree);
+  }
   if (setup.has_sky) {
     LightSpec sky;
     sky.kind = LightSpec::Kind::hemisphere;

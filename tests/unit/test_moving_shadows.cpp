@@ -166,6 +166,49 @@ TEST(MovingShadows, LampsAreShadowedOnlyByWhatStandsBeforeThem) {
   }
 }
 
+/// Compares the share of a ball's light that is left with that of rays at perfect spheres, for occluders all around the
+/// way to the light: none that matters is overlooked.
+TEST(MovingShadows, LampsLoseTheShareThatIsHidden) {
+  const TriangleMesh fine = shapes::icosphere(4);
+  const std::vector<ShadowObject> objects = {{&fine, {Eigen::Vector3f::Zero()}, 5, {}}};
+  const SceneTree tree = make_tree({{0, 0}, {0, 0}});
+  LightSpec lamp;
+  lamp.kind = LightSpec::Kind::sphere;
+  lamp.position = {1, 6, 2};
+  lamp.radius = 2;
+  const Eigen::Vector3d centre(lamp.position.data());
+  const SceneLights lights{{lamp}, std::nullopt, LightWindow::none};
+  const double sine = lamp.radius / centre.norm(), depth = 1 - std::sqrt(1 - sine * sine);
+  const Eigen::Vector3d axis = centre.normalized(), side = axis.unitOrthogonal(), up = axis.cross(side);
+  MovingShadows shadows(tree, objects, settings_of(ShadowMethod::combined, 4096));
+  int partly = 0;
+  for (int k = 0; k < 200; ++k) {
+    // Places in a box around the way, by the additive recurrence of the plastic number.
+    const auto part = [&](double step) { return std::fmod(step * (k + 1), 1.0) - 0.5; };
+    const Eigen::Vector3d place =
+        0.5 * centre + Eigen::Vector3d(8 * part(0.8191725), 8 * part(0.6710436), 8 * part(0.5497005));
+    const double radius = 0.5;
+    if (place.norm() < 1.1 * radius) continue;
+    int hidden = 0;
+    constexpr int rays = 4000;
+    for (int r = 0; r < rays; ++r) {
+      const double z = 1 - depth * (r + 0.5) / rays, around = 2.399963229728653 * r, out = std::sqrt(1 - z * z);
+      const Eigen::Vector3d ray = z * axis + out * (std::cos(around) * side + std::sin(around) * up);
+      const auto distance_to = [&](const Eigen::Vector3d& middle, double of_radius) {
+        const double along = ray.dot(middle), inside = of_radius * of_radius - middle.squaredNorm() + along * along;
+        return inside < 0 || along < 0 ? 1e9 : along - std::sqrt(inside);
+      };
+      hidden += distance_to(place, radius) < distance_to(centre, lamp.radius) ? 1 : 0;
+    }
+    partly += hidden > 0 && hidden < rays ? 1 : 0;
+    shadows.update({Placement{}, placed_at(0, 0, 0, 0.01), placed_at(place.x(), place.y(), place.z(), radius)}, lights);
+    const double whole = static_cast<double>(windowed_light(lamp, 5, LightWindow::none).channels[0][0]);
+    EXPECT_NEAR(static_cast<double>(shadows.light_of(1)[0].channels[0][0]) / whole, 1 - hidden / double{rays}, 0.01)
+        << place.transpose();
+  }
+  EXPECT_GT(partly, 5);
+}
+
 TEST(MovingShadows, StaticNodesLeaveEachOtherAlone) {
   const BallScene ball;
   const SceneTree tree = make_tree({{0, 0, true}, {0, 0, true}, {0, 0, false}});
