@@ -305,7 +305,7 @@ HEAD = """# A ball rolls into ten pins. Every body shadows the others and the al
 # own shadows on itself. Build the assets (strike-assets.yaml), then, with light at every vertex of them:
 #
 #     build/release/bin/kiln-render samples/strike.yaml --incident-samples vertices --time 0.35 --frames 6 --fps 6 --strip \\
-#         --width 260 --height 200 --background 0.02 -o strike.png
+#         --width 260 --height 200 -o strike.png
 #     build/release/bin/kiln-view samples/strike.yaml --incident-samples vertices
 #
 # or by shaders, whose pictures samples/bowling/make.py makes:
@@ -319,6 +319,7 @@ lights:
   - {directional: [112, 50], radiance: 1.3, radius: 10}
   - {hemisphere: [0, 90], radiance: 0.3, ground: 0.1}
 camera: {azimuth: 14, elevation: 21, target: [0, 0.05, -0.42], distance: 3.6, field-of-view: 30}
+background: 0.02
 duration: %g
 nodes:
   - {name: alley, asset: ../out/strike/alley/prt, static: true, shader: alley, mirror: true}
