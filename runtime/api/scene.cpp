@@ -170,6 +170,7 @@ Scene::Scene(std::unique_ptr<Implementation> implementation) : implementation_(s
 Scene Scene::load(const std::filesystem::path& file, const SceneSettings& settings) {
   return report_errors([&] {
     SceneDescription description = load_scene(file);
+    require_transfer(description);
     std::vector<Asset> assets;
     for (const std::filesystem::path& folder : description.assets) assets.push_back(Asset::load(folder));
     return Scene(std::make_unique<Implementation>(std::move(description), std::move(assets), settings));

@@ -21,7 +21,7 @@ NodeSphere sphere_around(const TriangleMesh& mesh) {
   return sphere;
 }
 
-void check_items(const SceneDescription& scene, std::size_t assets) {
+void check_items(const SceneDescription& scene, std::size_t assets, std::size_t meshes) {
   const auto require = [](bool good, const std::string& message) {
     if (!good) throw WrongUsage(message);
   };
@@ -31,8 +31,10 @@ void check_items(const SceneDescription& scene, std::size_t assets) {
     require(names.insert(item.name).second, "scene: found the name '" + item.name + "' twice; expected one for each");
     require(item.parent < static_cast<int>(k), "scene: found '" + item.name + "' before its parent");
     require(item.asset < static_cast<int>(assets), "scene: found an asset that is not there, of '" + item.name + "'");
-    require(item.parent < 0 || scene.items[static_cast<std::size_t>(item.parent)].asset < 0,
-            "scene: found '" + item.name + "' in a node with an asset; expected one without");
+    require(item.mesh < static_cast<int>(meshes), "scene: found a mesh that is not there, of '" + item.name + "'");
+    require(item.asset < 0 || item.mesh < 0, "scene: found '" + item.name + "' with an asset and a mesh");
+    require(item.parent < 0 || scene.items[static_cast<std::size_t>(item.parent)].is_composite(),
+            "scene: found '" + item.name + "' in a node with an asset or a mesh; expected one without");
     require(item.rest.scale > 0, "scene: found a scale of 0 or below, of '" + item.name + "'");
     check_motion(item.motion);
   }
@@ -41,9 +43,13 @@ void check_items(const SceneDescription& scene, std::size_t assets) {
 }  // namespace
 
 MovingScene::MovingScene(SceneDescription scene, std::vector<const PrtAsset*> assets,
-                         const MovingSceneSettings& settings)
-    : scene_(std::move(scene)), assets_(std::move(assets)), settings_(settings), moved_(scene_.items.size()) {
-  check_items(scene_, assets_.size());
+                         const MovingSceneSettings& settings, std::vector<const TriangleMesh*> meshes)
+    : scene_(std::move(scene)),
+      assets_(std::move(assets)),
+      meshes_(std::move(meshes)),
+      settings_(settings),
+      moved_(scene_.items.size()) {
+  check_items(scene_, assets_.size(), meshes_.size());
   int bands = 3;  // at least, for shading without harmonics
   for (const PrtAsset* asset : assets_) {
     points_.push_back(place_incident_samples(asset->mesh, settings.incident_samples).points);
@@ -67,6 +73,12 @@ MovingScene::MovingScene(SceneDescription scene, std::vector<const PrtAsset*> as
     leaves.push_back({item.name, -1, {}, item.asset, item.is_static});
   }
   if (scene_.tree == TreeChoice::found) found_tree_.emplace(std::move(leaves));
+}
+
+const TriangleMesh* MovingScene::mesh_of(int item) const {
+  const SceneItem& asked = this->item(item);
+  if (asked.asset >= 0) return &asset_of(item).mesh;
+  return asked.mesh >= 0 ? meshes_[static_cast<std::size_t>(asked.mesh)] : nullptr;
 }
 
 int MovingScene::find(std::string_view name) const {

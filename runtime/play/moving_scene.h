@@ -23,14 +23,17 @@ struct MovingSceneSettings {
 /// A scene at a time: where its nodes are, and the light that each of them receives.
 class MovingScene {
  public:
-  /// `assets` are those of the description, in its order; they must live on. Throws WrongUsage for a description that
-  /// is none (names and parents, motions), and BadInput for its environment.
-  MovingScene(SceneDescription scene, std::vector<const PrtAsset*> assets, const MovingSceneSettings& settings);
+  /// `assets` and `meshes` are those of the description, in its order; they must live on. Throws WrongUsage for a
+  /// description that is none (names and parents, motions), and BadInput for its environment.
+  MovingScene(SceneDescription scene, std::vector<const PrtAsset*> assets, const MovingSceneSettings& settings,
+              std::vector<const TriangleMesh*> meshes = {});
 
   const SceneDescription& description() const { return scene_; }
   int item_count() const { return static_cast<int>(scene_.items.size()); }
   const SceneItem& item(int item) const { return scene_.items[static_cast<std::size_t>(item)]; }
   const PrtAsset& asset_of(int item) const { return *assets_[static_cast<std::size_t>(this->item(item).asset)]; }
+  /// Returns the mesh of an item, with or without transfer; null for a composite node.
+  const TriangleMesh* mesh_of(int item) const;
   /// Returns the index of the item of that name, or -1.
   int find(std::string_view name) const;
 
@@ -46,7 +49,8 @@ class MovingScene {
 
   const Placement& pose(int item);
   const SceneLights& lights();
-  /// Returns the light of an item with an asset, at its incident-light samples, without what others shadow.
+  /// Returns the light of an item with an asset, at its incident-light samples, without what others shadow; meshes
+  /// without transfer shadow nothing.
   AssetLight light(int item);
   /// Returns the points at which light() has it, object space.
   const std::vector<Eigen::Vector3f>& points(int item) const;
@@ -66,6 +70,7 @@ class MovingScene {
 
   SceneDescription scene_;
   std::vector<const PrtAsset*> assets_;
+  std::vector<const TriangleMesh*> meshes_;
   MovingSceneSettings settings_;
   std::vector<std::vector<Eigen::Vector3f>> points_;  ///< by asset
   std::vector<NodeSphere> asset_spheres_;             ///< object space

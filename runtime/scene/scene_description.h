@@ -15,14 +15,34 @@
 
 namespace kiln {
 
-/// Node of a scene as a person describes it: one with an asset, or one that has others in it.
+/// Value of a shader's parameter, as a scene states it.
+struct SceneParameter {
+  std::string name;
+  std::vector<double> numbers;  ///< one to four
+  std::string where = {};       ///< "FILE:LINE"
+};
+
+/// How shaders of one's own draw a node (docs/shaders.md); nothing else looks at it.
+struct SceneSurface {
+  std::string shader;  ///< empty: none
+  std::vector<SceneParameter> parameters;
+  bool casts_shadow = true;
+  bool is_mirror = false;  ///< the plane through its origin, across its Y; of one node at most
+};
+
+/// Node of a scene as a person describes it: one with an asset, one with a mesh, or one that has others in it.
 struct SceneItem {
   std::string name;
   int parent = -1;         ///< index of an item before it; -1: stands in the scene itself
-  int asset = -1;          ///< index among the scene's assets; -1: a composite node
+  int asset = -1;          ///< index among the scene's assets; -1: none
+  int mesh = -1;           ///< index among the scene's meshes, which have no transfer; -1: none
   bool is_static = false;  ///< whether the bakes of the other static nodes have its shadow
   Placement rest;          ///< within its parent
   Motion motion;
+  SceneSurface surface;
+  std::string where;  ///< "FILE:LINE"; empty for one from code
+
+  bool is_composite() const { return asset < 0 && mesh < 0; }
 };
 
 /// Moment of a light.
@@ -61,11 +81,14 @@ enum class TreeChoice {
 struct SceneDescription {
   std::vector<SceneItem> items;
   std::vector<std::filesystem::path> assets;  ///< folders
+  std::vector<std::filesystem::path> meshes;  ///< files with uvs, without transfer
+  std::filesystem::path shaders;              ///< folder of shaders of one's own; empty: none
   std::vector<SceneLight> lights;
   std::filesystem::path environment;  ///< empty: none
   double environment_rotation_degrees = 0;
   LightWindow window = LightWindow::hann;
   SceneCamera camera;
+  std::optional<std::array<float, 3>> background;  ///< linear, behind the scene and in its mirror; nothing: none
   TreeChoice tree = TreeChoice::given;
   std::optional<double> duration;  ///< seconds; nothing: that of the longest motion
 };

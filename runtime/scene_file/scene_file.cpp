@@ -25,12 +25,16 @@ class SceneReader {
   SceneDescription read() {
     const YAML::Node& root = file_.root();
     file_.require(root.IsMap() && root.size() > 0, root, "no scene", "a mapping with 'nodes'");
-    file_.check_keys(root, {"nodes", "lights", "window", "camera", "tree", "duration"});
-    file_.require(root["nodes"].IsDefined(), root, "no 'nodes'", "'nodes', a list with an asset or nodes for each");
+    file_.check_keys(root, {"nodes", "lights", "window", "camera", "background", "shaders", "tree", "duration"});
+    file_.require(root["nodes"].IsDefined(), root, "no 'nodes'",
+                  "'nodes', a list with an asset, a mesh or nodes for each");
+    if (root["shaders"])
+      scene_.shaders = existing(root["shaders"], "shaders", true, "a folder of shaders of your own, NAME.glsl");
     add_nodes(root["nodes"], -1, false, false);
     add_lights(root["lights"]);
     if (root["window"]) scene_.window = window(root["window"]);
     if (root["camera"]) read_camera(root["camera"]);
+    if (root["background"]) scene_.background = values_.color(root["background"]);
     if (root["duration"]) scene_.duration = values_.above_zero(root["duration"]);
     read_tree(root["tree"]);
     return std::move(scene_);
@@ -48,20 +52,18 @@ class SceneReader {
   }
 
   void add_node(const YAML::Node& node, int parent, bool is_static, bool moves) {
-    file_.check_keys(node, {"name", "asset", "nodes", "translate", "rotate", "scale", "animate", "static"});
+    file_.check_keys(node, {"name", "asset", "mesh", "nodes", "translate", "rotate", "scale", "animate", "static",
+                            "shader", "set", "casts-shadow", "mirror"});
     file_.require(scene_.items.size() < most_items, node, "more than 10000 nodes", "fewer");
     SceneItem item;
     item.parent = parent;
+    item.where = file_.where(node);
     file_.require(node["name"].IsDefined(), node, "a node without a name", "'name', which no other node has");
     item.name = file_.scalar(node["name"], "a name");
     const auto [other, is_new] = lines_.emplace(item.name, file_.where(node["name"]));
     file_.require(is_new, node["name"], "the name '" + item.name + "', which " + other->second + " has as well",
                   "a name for each node");
-    const bool has_asset = node["asset"].IsDefined(), has_nodes = node["nodes"].IsDefined();
-    file_.require(has_asset || has_nodes, node, "node '" + item.name + "' without an asset and without nodes",
-                  "one of the two");
-    file_.require(!has_asset || !has_nodes, node, "node '" + item.name + "' with both an asset and nodes",
-                  "one of the two: an asset may be a node of its own beneath");
+    const std::string kind = kind_of(node, item.name);
     if (node["translate"]) item.rest.translation = values_.place(node["translate"]);
     if (node["rotate"]) item.rest.rotation = values_.rotation(node["rotate"]).toRotationMatrix();
     if (node["scale"]) item.rest.scale = values_.scale(node["scale"]);
@@ -75,22 +77,76 @@ class SceneReader {
     file_.require(!item.is_static || !moves, node,
                   "static node '" + item.name + "', which is animated, or stands in a node that is",
                   "a node that stands still, since its shadow is baked into others");
-    if (has_asset) item.asset = asset(node["asset"]);
+    if (kind == "asset")
+      item.asset = number_of(scene_.assets, existing(node["asset"], "asset", true,
+                                                     "an output folder of kiln-bake or kiln-compress, which `kiln "
+                                                     "build` makes"));
+    if (kind == "mesh") item.mesh = number_of(scene_.meshes, existing(node["mesh"], "mesh", false, "a mesh with uvs"));
+    read_surface(node, item);
     scene_.items.push_back(item);
-    if (has_nodes) add_nodes(node["nodes"], static_cast<int>(scene_.items.size()) - 1, item.is_static, moves);
+    if (kind == "nodes") add_nodes(node["nodes"], static_cast<int>(scene_.items.size()) - 1, item.is_static, moves);
   }
 
-  /// Returns the number of an asset's folder, each of which is there once.
-  int asset(const YAML::Node& node) {
-    const fs::path written = file_.path(node), folder = (folder_of(file_.file()) / written).lexically_normal();
+  /// Returns which of the three a node has: an asset, a mesh, or nodes.
+  std::string kind_of(const YAML::Node& node, const std::string& name) const {
+    std::string kind;
+    for (const char* key : {"asset", "mesh", "nodes"}) {
+      if (!node[key].IsDefined()) continue;
+      file_.require(kind.empty(), node, "node '" + name + "' with both " + kind + " and " + key,
+                    "one of the two: each may be a node of its own beneath");
+      kind = key;
+    }
+    file_.require(!kind.empty(), node, "node '" + name + "' without an asset, a mesh or nodes", "one of the three");
+    return kind;
+  }
+
+  /// Returns a folder or file that a value names.
+  fs::path existing(const YAML::Node& node, const std::string& what, bool is_folder,
+                    const std::string& expected) const {
+    const fs::path written = file_.path(node), path = (folder_of(file_.file()) / written).lexically_normal();
     std::error_code error;
-    file_.require(fs::is_directory(folder, error), node,
-                  "asset '" + written.string() + "', where no folder is (" + folder.string() + ")",
-                  "an output folder of kiln-bake or kiln-compress, which `kiln build` makes");
-    const auto found = std::find(scene_.assets.begin(), scene_.assets.end(), folder);
-    if (found != scene_.assets.end()) return static_cast<int>(found - scene_.assets.begin());
-    scene_.assets.push_back(folder);
-    return static_cast<int>(scene_.assets.size()) - 1;
+    file_.require(is_folder ? fs::is_directory(path, error) : fs::is_regular_file(path, error), node,
+                  what + " '" + written.string() + "', where no " + (is_folder ? "folder" : "file") + " is (" +
+                      path.string() + ")",
+                  expected);
+    return path;
+  }
+
+  /// Returns the place of a path in a list that has each once.
+  static int number_of(std::vector<fs::path>& paths, const fs::path& path) {
+    const auto found = std::find(paths.begin(), paths.end(), path);
+    const auto number = static_cast<int>(found - paths.begin());
+    if (found == paths.end()) paths.push_back(path);
+    return number;
+  }
+
+  /// Reads what shaders of one's own are told of a node.
+  void read_surface(const YAML::Node& node, SceneItem& item) {
+    SceneSurface& surface = item.surface;
+    if (item.is_composite())
+      for (const char* key : {"shader", "set", "casts-shadow", "mirror"})
+        file_.require(!node[key].IsDefined(), node[key].IsDefined() ? node[key] : node,
+                      "'" + std::string(key) + "' of node '" + item.name + "', which has other nodes",
+                      "it at those of them that are drawn");
+    if (node["shader"]) {
+      surface.shader = file_.scalar(node["shader"], "a shader's name");
+      file_.require(!scene_.shaders.empty(), node["shader"], "a shader in a scene without 'shaders'",
+                    "'shaders' of the scene, a folder of NAME.glsl");
+    }
+    if (node["set"]) {
+      file_.require(!surface.shader.empty(), node["set"], "'set' without 'shader'",
+                    "the shader whose parameters it sets");
+      file_.check_keys(node["set"], {});
+      for (const auto& entry : node["set"])
+        surface.parameters.push_back(
+            {entry.first.Scalar(), values_.components(entry.second), file_.where(entry.second)});
+    }
+    if (node["casts-shadow"]) surface.casts_shadow = values_.yes_or_no(node["casts-shadow"]);
+    if (!node["mirror"]) return;
+    surface.is_mirror = values_.yes_or_no(node["mirror"]);
+    const bool has_other = std::any_of(scene_.items.begin(), scene_.items.end(),
+                                       [](const SceneItem& other) { return other.surface.is_mirror; });
+    file_.require(!surface.is_mirror || !has_other, node["mirror"], "a second mirror", "one at most");
   }
 
   void add_lights(const YAML::Node& list) {
@@ -140,8 +196,8 @@ class SceneReader {
   }
 
   void read_tree(const YAML::Node& node) {
-    const bool is_flat =
-        std::all_of(scene_.items.begin(), scene_.items.end(), [](const SceneItem& item) { return item.asset >= 0; });
+    const bool is_flat = std::none_of(scene_.items.begin(), scene_.items.end(),
+                                      [](const SceneItem& item) { return item.is_composite(); });
     scene_.tree = is_flat ? TreeChoice::found : TreeChoice::given;
     if (!node.IsDefined()) return;
     const std::string word = file_.scalar(node, "given or auto");
@@ -159,5 +215,13 @@ class SceneReader {
 }  // namespace
 
 SceneDescription load_scene(const fs::path& file) { return SceneReader(file).read(); }
+
+void require_transfer(const SceneDescription& scene) {
+  for (const SceneItem& item : scene.items)
+    if (item.mesh >= 0)
+      throw BadInput(item.where, "node '" + item.name + "' with a mesh, which has no transfer",
+                     "'asset', an output folder of kiln-bake or kiln-compress",
+                     "bake the mesh, or draw the scene by kiln-shade, whose shaders need no transfer");
+}
 
 }  // namespace kiln

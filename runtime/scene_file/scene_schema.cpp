@@ -99,15 +99,24 @@ Json node() {
   Json schema = object_of(
       {{"name", described({{"type", {"string", "number", "boolean"}}}, "Which no other node has")},
        {"asset", described({{"type", "string"}}, "Output folder of kiln-bake or kiln-compress")},
+       {"mesh", described({{"type", "string"}}, "A file with uvs, without transfer, which kiln-shade alone draws")},
        {"nodes", reference("nodes")},
        {"translate", reference("place")},
        {"rotate", rotation},
        {"scale", number_above_zero()},
        {"animate", animation({{"translate", reference("place")}, {"rotate", rotation}, {"scale", number_above_zero()}},
                              orbit(true))},
-       {"static", described({{"type", "boolean"}}, "Whether the bakes of the other static nodes have its shadow")}},
+       {"static", described({{"type", "boolean"}}, "Whether the bakes of the other static nodes have its shadow")},
+       {"shader", described({{"type", {"string", "number", "boolean"}}}, "Name of one of the scene's shaders")},
+       {"set", described({{"type", "object"}, {"additionalProperties", reference("components")}},
+                         "Values of the shader's parameters")},
+       {"casts-shadow", described({{"type", "boolean"}}, "Whether shadow maps of kiln-shade show it")},
+       {"mirror", described({{"type", "boolean"}}, "Whether its plane y = 0 is the mirror of kiln-shade")}},
       {"name"});
-  schema["oneOf"] = one_of({"asset", "nodes"});
+  schema["oneOf"] = one_of({"asset", "mesh", "nodes"});
+  schema["dependentRequired"] = {{"set", {"shader"}}};
+  for (const char* key : {"shader", "set", "casts-shadow", "mirror"})
+    schema["dependentSchemas"][key] = {{"not", {{"required", {"nodes"}}}}};
   return schema;
 }
 
@@ -115,6 +124,7 @@ Json node() {
 
 Json scene_schema() {
   const Json coordinate = number(-most_scene_number, most_scene_number), radiance = number(0, most_scene_number);
+  const Json numbers = {{"type", "array"}, {"items", coordinate}, {"minItems", 1}, {"maxItems", 4}};
   Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
                  {"title", "scene.yaml"},
                  {"description", "Made by `kiln schema scene`."}};
@@ -128,6 +138,8 @@ Json scene_schema() {
                              {"target", reference("place")},
                              {"distance", number_above_zero()},
                              {"zoom", number_above_zero()}})},
+       {"background", described(reference("color"), "Linear, behind the scene and in its mirror")},
+       {"shaders", described({{"type", "string"}}, "Folder of shaders of one's own, NAME.glsl")},
        {"tree", described(words({"given", "auto"}), "Of shadows: the composite nodes, or found by distance over size")},
        {"duration", described(number_above_zero(), "Seconds of the film")}},
       {"nodes"}));
@@ -135,6 +147,7 @@ Json scene_schema() {
                      {"place", list_of(coordinate, 3)},
                      {"axis", described(list_of(coordinate, 3), "A direction of any length but 0")},
                      {"angles", described(list_of(number(-36000, 36000), 2), "Azimuth and elevation, degrees")},
+                     {"components", {{"anyOf", {coordinate, numbers}}}},
                      {"color", {{"anyOf", {radiance, list_of(radiance, 3)}}}}};
   return schema;
 }

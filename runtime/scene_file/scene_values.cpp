@@ -50,6 +50,13 @@ std::vector<double> SceneValues::numbers(const YAML::Node& node, std::size_t cou
   return values;
 }
 
+std::vector<double> SceneValues::components(const YAML::Node& node) const {
+  if (!node.IsSequence()) return {number(node, -most_scene_number, most_scene_number)};
+  const std::string expected = "a number, or a list of up to four";
+  file_.require(node.size() >= 1 && node.size() <= 4, node, std::to_string(node.size()) + " numbers", expected);
+  return numbers(node, node.size(), -most_scene_number, most_scene_number, expected);
+}
+
 Eigen::Vector3d SceneValues::place(const YAML::Node& node) const {
   return Eigen::Vector3d(numbers(node, 3, -most_scene_number, most_scene_number, "three numbers, [X, Y, Z]").data());
 }

@@ -25,6 +25,8 @@ class SceneValues {
   /// Reads a list of so many numbers.
   std::vector<double> numbers(const YAML::Node& node, std::size_t count, double lowest, double highest,
                               const std::string& expected) const;
+  /// Reads one number, or a list of one to four.
+  std::vector<double> components(const YAML::Node& node) const;
   Eigen::Vector3d place(const YAML::Node& node) const;
   /// Reads a direction of any length but 0, and normalises it.
   Eigen::Vector3d axis(const YAML::Node& node) const;

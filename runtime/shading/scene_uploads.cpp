@@ -146,7 +146,7 @@ UploadedPlanes upload_all_planes(const std::vector<ShadedMesh>& meshes) {
     UploadedPlanes::Place place;
     if (mesh.asset != nullptr) {
       const PrtAsset& asset = *mesh.asset;
-      if (asset.is_per_vertex() || asset.planes.empty() || (asset.clusters && asset.clusters->count > 1))
+      if (!has_shadable_planes(asset))
         throw WrongUsage(asset.ranges_file.string() +
                          ": found transfer at vertices or in several clusters; expected planes, plain or of one "
                          "cluster, for shaders of one's own");

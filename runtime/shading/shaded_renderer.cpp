@@ -92,6 +92,12 @@ int direct_light_count(const ShadedScene& scene) {
   return static_cast<int>(count);
 }
 
+/// Turns a mirror's plane from its node's space to the scene's.
+MirrorPlane in_scene(const MirrorPlane& mirror, const ShadedScene& scene) {
+  const Placement& placement = scene.nodes[static_cast<std::size_t>(mirror.node)].placement;
+  return {mirror.node, placement.to_scene(mirror.point), placement.rotation * mirror.normal};
+}
+
 void begin_part(PartTimes* times, const char* part) {
   if (times != nullptr) times->begin(part);
 }
@@ -371,7 +377,7 @@ void ShadedRenderer::draw_sample(const ShadedFrame& frame, const View& view, boo
 }
 
 void ShadedRenderer::draw_reflection(const Camera& camera, double seconds, int frame_number) {
-  const MirrorPlane& mirror = *scene_.mirror;
+  const MirrorPlane mirror = in_scene(*scene_.mirror, scene_);
   const Eigen::Matrix4d matrix = mirror_matrix(mirror);
   const Eigen::Matrix4d clip = reversed_depth() * camera.clip_from_object().cast<double>() * matrix;
   const Eigen::Vector3d eye = (matrix * camera.position.cast<double>().homogeneous()).head<3>();

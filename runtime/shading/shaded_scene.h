@@ -22,6 +22,11 @@ struct ShadedMesh {
   const PrtAsset* asset = nullptr;     ///< its planes, plain or of one cluster; null: no precomputed transfer
 };
 
+/// Tests whether an asset's transfer is in planes, plain or of one cluster, which shaders of one's own share.
+inline bool has_shadable_planes(const PrtAsset& asset) {
+  return !asset.is_per_vertex() && !asset.planes.empty() && (!asset.clusters || asset.clusters->count == 1);
+}
+
 /// A shader with values of its constants; those that are not named have the shader's defaults.
 struct ShadedMaterial {
   std::string shader;
@@ -35,9 +40,9 @@ struct ShadedNode {
   bool casts_shadow = true;  ///< whether shadow maps show it, which are fitted to those that do
 };
 
-/// Plane mirror: a node whose shader may look up the reflection map.
+/// Plane mirror: a node whose shader may look up the reflection map. It moves with the node.
 struct MirrorPlane {
-  int node = 0;  ///< not drawn in the map
+  int node = 0;  ///< not drawn in the map; the plane is in its object space
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitY();  ///< unit, towards what is reflected
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A pin of samples/bowling.yaml (metres, its foot at y = 0): procedural crown, mip-mapped label, bump-mapped scuffs,
+// A pin of samples/bowling.yaml and samples/strike.yaml (metres, its foot at y = 0): procedural crown, mip-mapped label, bump-mapped scuffs,
 // mip-mapped dirt, shadowed light and a highlight.
 parameter vec3 ivory = vec3(0.83, 0.81, 0.75) in 0 to 1;
 parameter vec3 ink = vec3(0.55, 0.02, 0.03) in 0 to 1;

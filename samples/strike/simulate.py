@@ -305,17 +305,24 @@ HEAD = """# A ball rolls into ten pins. Every body shadows the others and the al
 # own shadows on itself. Build the assets (strike-assets.yaml), then, with light at every vertex of them:
 #
 #     build/release/bin/kiln-render samples/strike.yaml --incident-samples vertices --time 0.35 --frames 6 --fps 6 --strip \\
-#         --width 260 --height 200 --background 0.02 -o strike.png
+#         --width 260 --height 200 -o strike.png
 #     build/release/bin/kiln-view samples/strike.yaml --incident-samples vertices
 #
+# or by shaders, whose pictures samples/bowling/make.py makes:
+#
+#     python3 samples/bowling/make.py out/bowling
+#     build/release/bin/kiln-shade samples/strike.yaml --time 0.6 -o strike.png
+#
 # The motion is made by samples/strike/simulate.py.
+shaders: shaders
 lights:
   - {directional: [112, 50], radiance: 1.3, radius: 10}
   - {hemisphere: [0, 90], radiance: 0.3, ground: 0.1}
 camera: {azimuth: 14, elevation: 21, target: [0, 0.05, -0.42], distance: 3.6, field-of-view: 30}
+background: 0.02
 duration: %g
 nodes:
-  - {name: alley, asset: ../out/strike/alley/prt, static: true}
+  - {name: alley, asset: ../out/strike/alley/prt, static: true, shader: alley, mirror: true}
 """
 
 
@@ -326,7 +333,8 @@ def main():
     text = HEAD % SECONDS
     for k, body in enumerate(all_bodies):
         asset, height = ("ball", 0) if body.is_ball else ("pin", PIN_CENTRE)
-        text += f"  - name: {body.name}\n    asset: ../out/strike/{asset}/prt\n    animate:\n      keyframes:\n"
+        more = "    set: {band_axis: [0, 1, 0]}\n" if body.is_ball else ""  # the band shows how it rolls about X
+        text += f"  - name: {body.name}\n    asset: ../out/strike/{asset}/prt\n    shader: {asset}\n{more}    animate:\n      keyframes:\n"
         for time, pose in thinned([(t, poses[k]) for t, poses in frames]):
             text += f"        - {keyframe(time, pose, height)}\n"
     pathlib.Path(sys.argv[1]).write_text(text)

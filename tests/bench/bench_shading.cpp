@@ -179,7 +179,8 @@ class Bench {
   /// Times the parts of a frame of the scene.
   void frame() const {
     const ShadeSettings settings = settings_of_scene();
-    const Camera camera = shade_camera(scene_, settings);
+    MovingScene moving = scene_.moving();
+    const Camera camera = shade_camera(moving, film_camera(moving, settings.picture), width, height);
     std::vector<Times> ways;
     std::map<std::string, int> parts;
     double mixed = 0;
@@ -232,7 +233,7 @@ class Bench {
  private:
   ShadeSettings settings_of_scene() const {
     ShadeSettings settings;
-    apply_picture(shade_options(settings), scene_.picture, arguments_.scene, [](const std::string&) { return false; });
+    use_scene_look(settings.picture, scene_.film.description, [](const std::string&) { return false; });
     return settings;
   }
 

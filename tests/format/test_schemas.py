@@ -70,28 +70,34 @@ if json.loads(run("kiln", "schema", "scene")) != schemas["scene"].schema:
     faults.append("docs/schema/scene.schema.json is old; make it by: kiln schema scene > docs/schema/scene.schema.json")
 SCENE = """
 nodes:
-  - {name: still, asset: a, static: true}
+  - {name: still, asset: a, static: true, shader: wood, set: {gloss: 0.5, paint: [1, 0, 0.5]}}
   - name: pair
     translate: [0, 0.4, 0]
     nodes:
       - {name: mover, asset: a, scale: 0.2, animate: {keyframes: [{time: 0, translate: [-6, 1.6, 0]}, {time: 1, scale: 2}], ends: mirror}}
       - {name: moon, asset: a, rotate: {axis: [1, 0, 0], degrees: 9}, animate: {orbit: {axis: [0, 1, 0], radius: 2, period: 4, turns: true}}}
+  - {name: floor, mesh: m.obj, casts-shadow: false, mirror: true}
 lights:
   - {directional: [0, 80], radiance: 1, radius: 6, animate: {orbit: {axis: [0, 0, 1], period: 3}}}
   - {sphere: [0, 1, 2], radius: 0.1, radiance: [1, 2, 3], animate: {keyframes: [{time: 0, sphere: [0, 1, 2]}]}}
   - {hemisphere: [0, 90], radiance: 0.5, ground: 0.1}
   - {ambient: 0.1}
 window: dering
+background: 0.5
+shaders: looks
 camera: {azimuth: 30, elevation: 20, target: [0, 1, 0], zoom: 2}
 tree: auto
 duration: 3
 """
 scene = yaml.safe_load(SCENE)
 fits("scene", scene, "a scene")
-fits("scene", yaml.safe_load((sources / "samples" / "strike.yaml").read_text()), "samples/strike.yaml")
+for name in ("strike", "bowling"):
+    fits("scene", yaml.safe_load((sources / "samples" / f"{name}.yaml").read_text()), f"samples/{name}.yaml")
 refuses("scene", scene, [
     (["nodes"], []), (["nodes", 0, "nodes"], [{"name": "x", "asset": "a"}]), (["nodes", 0, "asset"], DROP),
     (["nodes", 0, "name"], DROP), (["nodes", 0, "scale"], [1, 2, 1]), (["nodes", 0, "scale"], 0), (["nodes", 0, "color"], "red"),
+    (["nodes", 0, "mesh"], "m.obj"), (["nodes", 0, "shader"], DROP), (["nodes", 0, "set", "paint"], [1, 2, 3, 4, 5]),
+    (["nodes", 0, "set", "paint"], "red"), (["nodes", 1, "shader"], "wood"), (["nodes", 2, "mirror"], 1), (["background"], [1, 2]),
     (["nodes", 1, "nodes", 0, "animate", "keyframes"], []), (["nodes", 1, "nodes", 0, "animate", "keyframes", 0, "time"], DROP),
     (["nodes", 1, "nodes", 0, "animate", "ends"], "stop"), (["nodes", 1, "nodes", 1, "animate", "orbit", "radius"], DROP),
     (["nodes", 1, "nodes", 1, "rotate", "axis"], [0, 1]), (["lights"], []), (["lights", 0, "directional"], [0]),

@@ -178,12 +178,13 @@ TEST(ClusterTree, StaysSoundWhateverMoves) {
   EXPECT_LT(changes, 100);
 }
 
-/// A folder with folders a and b in it, for assets, and a scene.
+/// A folder with folders a and b in it, for assets, a file, for a mesh, and a scene.
 struct SceneFolder {
   Scratch scratch;
   SceneFolder() {
     std::filesystem::create_directories(scratch / "a");
     std::filesystem::create_directories(scratch / "b");
+    std::ofstream(scratch / "m.obj") << "v 0 0 0\n";
   }
   SceneDescription read(const std::string& text) const {
     std::ofstream(scratch / "scene.yaml") << text;
@@ -237,6 +238,35 @@ camera: {azimuth: 30, elevation: 20}
   EXPECT_EQ(folder.read("nodes: [{name: x, asset: a}]\ntree: given\nduration: 7.5\n").duration, 7.5);
 }
 
+TEST(SceneFile, HasWhatShadersAreTold) {
+  const SceneFolder folder;
+  const SceneDescription scene = folder.read(R"(
+shaders: b
+background: [0.25, 0.5, 1]
+nodes:
+  - {name: floor, mesh: m.obj, shader: wood, set: {gloss: 0.5, paint: [1, 0, 0.5]}, casts-shadow: false, mirror: true}
+  - {name: hare, asset: a}
+)");
+  EXPECT_TRUE(scene.shaders.string().ends_with("/b"));
+  EXPECT_EQ(*scene.background, (std::array<float, 3>{0.25f, 0.5f, 1}));
+  EXPECT_EQ(scene.meshes.size(), 1u);
+  EXPECT_EQ(scene.tree, TreeChoice::found);
+  const SceneSurface &floor = scene.items[0].surface, &hare = scene.items[1].surface;
+  EXPECT_EQ(floor.shader, "wood");
+  ASSERT_EQ(floor.parameters.size(), 2u);
+  EXPECT_EQ(floor.parameters[1].name, "paint");
+  EXPECT_EQ(floor.parameters[1].numbers, (std::vector<double>{1, 0, 0.5}));
+  EXPECT_TRUE(floor.parameters[1].where.ends_with("scene.yaml:5"));
+  EXPECT_TRUE(floor.is_mirror && !floor.casts_shadow);
+  EXPECT_TRUE(hare.shader.empty() && hare.casts_shadow && !hare.is_mirror);
+  try {
+    require_transfer(scene);
+    ADD_FAILURE() << "a mesh has no transfer";
+  } catch (const BadInput& error) {
+    EXPECT_TRUE(error.file().ends_with("scene.yaml:5")) << error.what();
+  }
+}
+
 TEST(SceneFile, DirectionsTurnAboutTheAxis) {
   SceneLight light;
   light.spec = parse_light_spec("cone:0,30,5");
@@ -267,10 +297,22 @@ TEST(SceneFile, FaultsNameTheirLine) {
   folder.refuses(node("animate: {keyframes: [{time: 0, scale: 1}], orbit: {radius: 1, period: 1}}"), 2, "both");
   folder.refuses(node("static: true, animate: {orbit: {radius: 1, period: 1}}"), 2, "static node 'x'");
   folder.refuses(node("static: 1"), 2, "true or false");
-  folder.refuses(node("nodes: [{name: y, asset: a}]"), 2, "both an asset and nodes");
+  folder.refuses(node("nodes: [{name: y, asset: a}]"), 2, "both asset and nodes");
   folder.refuses("nodes:\n  - {name: x, asset: a}\n  - {name: x, asset: a}\n", 3, "the name 'x'");
   folder.refuses("nodes:\n  - {name: x}\n", 2, "without an asset");
   folder.refuses("nodes:\n  - {asset: a}\n", 2, "without a name");
+  folder.refuses(node("mesh: m.obj"), 2, "both asset and mesh");
+  folder.refuses("nodes:\n  - {name: x, mesh: a}\n", 2, "no file");
+  folder.refuses("shaders: c\n" + node("shader: s"), 1, "no folder");
+  folder.refuses(node("shader: s"), 2, "without 'shaders'");
+  folder.refuses("shaders: a\n" + node("set: {p: 1}"), 3, "without 'shader'");
+  folder.refuses("shaders: a\n" + node("shader: s, set: {p: [1, 2, 3, 4, 5]}"), 3, "5 numbers");
+  folder.refuses("shaders: a\n" + node("shader: s, set: {p: red}"), 3, "'red'");
+  folder.refuses(node("casts-shadow: 0"), 2, "true or false");
+  folder.refuses("nodes:\n  - {name: x, asset: a, mirror: true}\n  - {name: y, asset: a, mirror: true}\n", 3, "second");
+  folder.refuses("shaders: a\nnodes:\n  - name: x\n    shader: s\n    nodes: [{name: y, asset: a}]\n", 4,
+                 "other nodes");
+  folder.refuses("background: [1, 2]\n" + node("scale: 1"), 1, "2 numbers");
   folder.refuses("nodes:\n  - {name: x, asset: c}\n", 2, "no folder");
   folder.refuses("nodes: &n\n  - {name: x, nodes: *n}\n", 1, "themselves");
   folder.refuses(

@@ -280,6 +280,32 @@ TEST(Shading, ReflectionsAreWhereMirroredRaysHit) {
   EXPECT_GT(misses, 3000);
 }
 
+TEST(Shading, MirrorsMoveWithTheirNode) {
+  const EglContext context("software");
+  FloorStand stand;
+  stand.scene.mirror = MirrorPlane{1};
+  const auto drawn = [&] { return stand.drawn("light.reflection", "0.5 + 0.5 * to_object(surface.normal)"); };
+  const Image<float> before = drawn();
+  // All that is there, and the camera, turned and moved: the same picture.
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.2, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  const Eigen::Vector3d by(3, 2, -1);
+  for (ShadedNode& node : stand.scene.nodes) {
+    node.placement.translation = turn * node.placement.translation + by;
+    node.placement.rotation = turn * node.placement.rotation;
+  }
+  const Eigen::Matrix3f axes = turn.cast<float>();
+  stand.camera.position = axes * stand.camera.position + by.cast<float>();
+  for (Eigen::Vector3f* axis : {&stand.camera.right, &stand.camera.up, &stand.camera.forward}) *axis = axes * *axis;
+  const Image<float> after = drawn();
+  int same = 0, bright = 0;
+  for (std::size_t k = 0; k < before.values().size(); ++k) {
+    same += std::abs(before.values()[k] - after.values()[k]) < 0.01f;
+    bright += before.values()[k] > 0.3f;
+  }
+  EXPECT_GT(same, 0.999 * static_cast<double>(before.values().size()));  // rounding moves outlines
+  EXPECT_GT(bright, 2000);
+}
+
 TEST(Shading, PicturesAreMipMapped) {
   const EglContext context("software");
   const Scratch scratch;

@@ -28,7 +28,8 @@ int main(int argc, char** argv) {
     std::optional<RenderScene> scene;
     if (asked.is_film()) {
       film = load_film(asked.paths.assets.front(), asked.settings.level);
-      use_camera(asked.settings, film->description.camera, [&](const auto& name) { return command.given(name); });
+      use_scene_look(asked.settings, film->description, [&](const auto& name) { return command.given(name); });
+      if (const std::string note = note_of_shaders(film->description); !note.empty()) command.say(note);
     } else {
       scene = load_render_scene(asked.paths, asked.lights, asked.settings);
       if (!scene->note.empty()) command.say(scene->note);

@@ -15,26 +15,23 @@ int main(int argc, char** argv) {
     CommandLine command("kiln-shade", "Draws a scene by shaders of one's own, which share the light.");
     std::filesystem::path scene_file, file;
     ShadeSettings settings;
-    command.input("SCENE", scene_file, "Meshes, nodes with shaders, and lights: YAML, see docs/shaders.md");
+    command.input("SCENE", scene_file, "A scene.yaml whose nodes have shaders, see docs/shaders.md");
     command.output(file, "The picture: .png, or .exr for linear float radiance as it is");
-    const OptionSet options = shade_options(settings);
-    command.options("Picture", options);
+    command.options("Picture", shade_options(settings));
+    command.options("Scene", shade_film_options(settings));
     command.parse(argc, argv);
     require_picture_name(file);
 
     // Step 2: load.
     const ShadeScene scene = load_shade_scene(scene_file);
-    apply_picture(options, scene.picture, scene_file, [&](const std::string& name) { return command.given(name); });
-    command.also_read(scene.read_files);
-    const PictureSettings picture = picture_of(settings.picture);
+    use_scene_look(settings.picture, scene.film.description, [&](const auto& name) { return command.given(name); });
+    command.also_read(scene.read_files());
     OutputSet outputs(folder_of(file));
 
-    // Step 3: draw, and save.
+    // Step 3: draw, and save picture after picture.
     const Stopwatch watch;
-    Json metrics;
-    const Image<float> radiance = draw_shade_scene(scene, settings, command.threads(), metrics);
-    const double seconds = watch.seconds();
-    write_picture(outputs.add(file.filename().string()), radiance, picture);
-    command.finish_without_record(outputs, command.result(seconds, metrics));
+    const Json metrics = shade_to_files(outputs, file.filename().string(), scene, settings, command.threads(),
+                                        command.progress("shade"));
+    command.finish_without_record(outputs, command.result(watch.seconds(), metrics));
   });
 }

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "shade/shade_scene.h"
 
-#include <Eigen/Geometry>
-#include <numbers>
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
 
 #include "base/errors.h"
-#include "base/numbers.h"
 #include "import/uv_mesh.h"
-#include "sh/light_spec.h"
-#include "yaml/yaml_file.h"
+#include "runtime/scene_file/scene_file.h"
 
 namespace kiln {
 
@@ -16,163 +15,117 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Reads the blocks of a scene's file.
-class SceneReader {
- public:
-  explicit SceneReader(const fs::path& file) : file_(file), folder_(file.parent_path()) {}
-
-  ShadeScene read() {
-    const YAML::Node& root = file_.root();
-    file_.check_keys(root, {"shaders", "meshes", "nodes", "lights", "background", "picture"});
-    for (const char* key : {"shaders", "meshes", "nodes"})
-      file_.require(root[key].IsDefined(), root, std::string("no '") + key + "'", "shaders, meshes and nodes");
-    read_.shader_folder = folder_ / file_.path(root["shaders"]);
-    read_.shaders = read_shaders(read_.shader_folder);
-    for (const SurfaceShader& shader : read_.shaders) read_.read_files.push_back(shader.file);
-    read_meshes(root["meshes"]);
-    file_.require(root["nodes"].IsSequence() && root["nodes"].size() > 0, root["nodes"], "no node", "a list of nodes");
-    for (const YAML::Node& node : root["nodes"]) read_node(node);
-    if (root["lights"].IsDefined()) read_lights(root["lights"]);
-    if (root["background"].IsDefined())
-      at(root["background"], [&] {
-        read_.scene.background = parse_color("background", file_.scalar(root["background"], "a colour"), 0, 1e6);
-      });
-    if (root["picture"].IsDefined()) {
-      file_.check_keys(root["picture"], {});
-      for (const auto& entry : root["picture"])
-        read_.picture[entry.first.Scalar()] = file_.scalar(entry.second, "one value");
-    }
-    return std::move(read_);
+/// Returns a value for a parameter of a shader. Throws BadInput at its line.
+ShaderValue value_of(const SceneParameter& given, const SurfaceShader& shader) {
+  const auto require = [&](bool good, const std::string& found, const std::string& expected) {
+    if (!good) throw BadInput(given.where, found, expected, "correct it");
+  };
+  const ShaderParameter* parameter = shader.find(given.name);
+  const bool is_known = parameter != nullptr && parameter->kind == ShaderParameter::Kind::constant;
+  require(is_known, "the parameter '" + given.name + "'", "a parameter that " + shader.file.string() + " declares");
+  const auto count = static_cast<std::size_t>(component_count(parameter->type));
+  require(given.numbers.size() == count, fmt::format("{} numbers for {}", given.numbers.size(), given.name),
+          fmt::format("{}, for a {}", count, glsl_type(parameter->type)));
+  ShaderValue value = {};
+  for (std::size_t c = 0; c < count; ++c) {
+    value[c] = static_cast<float>(given.numbers[c]);
+    const bool is_inside = !parameter->has_range || (value[c] >= parameter->lowest && value[c] <= parameter->highest);
+    require(is_inside, fmt::format("{} for {}", given.numbers[c], given.name),
+            fmt::format("{} to {}", parameter->lowest, parameter->highest));
+    const bool is_whole = parameter->type != ShaderType::integer || value[c] == std::round(value[c]);
+    require(is_whole, fmt::format("{} for {}", given.numbers[c], given.name), "a whole number");
   }
+  return value;
+}
 
- private:
-  /// Calls `read`, and turns what it refuses into a fault of the file's line.
-  template <class Read>
-  void at(const YAML::Node& node, Read read) const {
-    try {
-      read();
-    } catch (const WrongUsage& fault) {
-      throw BadInput(file_.where(node), fault.what(), "a value as docs/shaders.md says", "correct it");
-    }
+/// Returns the number of a node's material; nodes with the same one share it.
+int material_of(const SceneItem& item, ShadeScene& read) {
+  ShadedMaterial material{item.surface.shader};
+  const auto shader = std::find_if(read.shaders.begin(), read.shaders.end(),
+                                   [&](const SurfaceShader& known) { return known.name == material.shader; });
+  if (shader == read.shaders.end())
+    throw BadInput(item.where,
+                   "node '" + item.name + "' " +
+                       (material.shader.empty() ? "without a shader" : "with the shader '" + material.shader + "'"),
+                   material.shader.empty()
+                       ? "'shader', the name of one of " + (read.film.description.shaders / "*.glsl").string()
+                       : "a file " + (read.film.description.shaders / (material.shader + ".glsl")).string(),
+                   "name another shader, or write it");
+  for (const SceneParameter& given : item.surface.parameters) material.values[given.name] = value_of(given, *shader);
+  std::vector<ShadedMaterial>& materials = read.scene.materials;
+  const auto same = std::find_if(materials.begin(), materials.end(), [&](const ShadedMaterial& other) {
+    return other.shader == material.shader && other.values == material.values;
+  });
+  const auto number = static_cast<int>(same - materials.begin());
+  if (same == materials.end()) materials.push_back(std::move(material));
+  return number;
+}
+
+void add_nodes(ShadeScene& read) {
+  const SceneDescription& description = read.film.description;
+  for (std::size_t k = 0; k < description.items.size(); ++k) {
+    const SceneItem& item = description.items[k];
+    if (item.is_composite()) continue;
+    ShadedNode node;
+    node.mesh = item.asset >= 0 ? item.asset : static_cast<int>(description.assets.size()) + item.mesh;
+    node.material = material_of(item, read);
+    node.casts_shadow = item.surface.casts_shadow;
+    if (item.surface.is_mirror) read.scene.mirror = MirrorPlane{static_cast<int>(read.scene.nodes.size())};
+    read.scene.nodes.push_back(node);
+    read.items.push_back(static_cast<int>(k));
   }
+}
 
-  void read_meshes(const YAML::Node& meshes) {
-    file_.check_keys(meshes, {});
-    for (const auto& entry : meshes) {
-      const fs::path path = folder_ / file_.path(entry.second);
-      file_.require(fs::exists(path), entry.second, path.string() + ", which does not exist",
-                    "a mesh with uvs, or a folder of kiln-bake");
-      ShadedMesh mesh;
-      if (fs::is_directory(path)) {
-        mesh.asset = &read_.assets.emplace_back(load_prt_asset(path));
-        mesh.mesh = &mesh.asset->mesh;
-      } else {
-        mesh.mesh = &read_.meshes.emplace_back(load_uv_mesh(path));
-        read_.read_files.push_back(path);
-      }
-      mesh_numbers_[entry.first.Scalar()] = static_cast<int>(read_.scene.meshes.size());
-      read_.scene.meshes.push_back(mesh);
-    }
+void load_meshes(ShadeScene& read) {
+  const SceneDescription& description = read.film.description;
+  for (const fs::path& folder : description.assets) {
+    read.film.assets.push_back(load_prt_asset(folder));
+    if (!has_shadable_planes(read.film.assets.back()))
+      throw BadInput(read.film.assets.back().ranges_file.string(), "transfer at vertices or in several clusters",
+                     "planes, plain or of one cluster, for shaders of one's own",
+                     "take the folder of a bake with planes");
   }
-
-  /// Reads a material of a node; nodes with the same one share it.
-  int read_material(const YAML::Node& node) {
-    ShadedMaterial material{file_.scalar(node["shader"], "a shader's name")};
-    const SurfaceShader* shader = nullptr;
-    for (const SurfaceShader& known : read_.shaders)
-      if (known.name == material.shader) shader = &known;
-    file_.require(shader != nullptr, node["shader"], "the shader '" + material.shader + "'",
-                  "a file " + (read_.shader_folder / (material.shader + ".glsl")).string());
-    const YAML::Node settings = node["set"];
-    if (settings.IsDefined()) file_.check_keys(settings, {});
-    for (const auto& entry : settings) {
-      const std::string name = entry.first.Scalar();
-      const ShaderParameter* parameter = shader->find(name);
-      file_.require(parameter != nullptr && parameter->kind == ShaderParameter::Kind::constant, entry.first,
-                    "the parameter '" + name + "'", "a parameter that " + shader->file.string() + " declares");
-      const auto count = static_cast<std::size_t>(component_count(parameter->type));
-      std::vector<double> numbers;
-      at(entry.second, [&] {
-        numbers = parse_numbers(name, file_.scalar(entry.second, "numbers between commas"),
-                                parameter->has_range ? static_cast<double>(parameter->lowest) : -1e9,
-                                parameter->has_range ? static_cast<double>(parameter->highest) : 1e9);
-      });
-      file_.require(numbers.size() == count, entry.second, std::to_string(numbers.size()) + " numbers",
-                    std::to_string(count) + ", for a " + glsl_type(parameter->type));
-      ShaderValue& value = material.values[name];
-      for (std::size_t c = 0; c < count; ++c) value[c] = static_cast<float>(numbers[c]);
-    }
-    std::vector<ShadedMaterial>& materials = read_.scene.materials;
-    for (std::size_t k = 0; k < materials.size(); ++k)
-      if (materials[k].shader == material.shader && materials[k].values == material.values) return static_cast<int>(k);
-    materials.push_back(std::move(material));
-    return static_cast<int>(materials.size()) - 1;
-  }
-
-  /// Reads "X,Y,Z,DEGREES": a turn about an axis.
-  Eigen::Matrix3d read_turn(const YAML::Node& node) const {
-    std::vector<double> numbers;
-    at(node, [&] { numbers = parse_numbers("turn", file_.scalar(node, "X,Y,Z,DEGREES"), -1e9, 1e9); });
-    const bool is_turn = numbers.size() == 4 && Eigen::Vector3d(numbers.data()).norm() > 0;
-    file_.require(is_turn, node, node.Scalar(), "an axis and an angle, X,Y,Z,DEGREES");
-    return Eigen::AngleAxisd(numbers[3] * std::numbers::pi / 180, Eigen::Vector3d(numbers.data()).normalized())
-        .toRotationMatrix();
-  }
-
-  bool read_switch(const YAML::Node& node, bool otherwise) const {
-    if (!node.IsDefined()) return otherwise;
-    const std::string text = file_.scalar(node, "true or false");
-    file_.require(text == "true" || text == "false", node, text, "true or false");
-    return text == "true";
-  }
-
-  void read_node(const YAML::Node& node) {
-    file_.check_keys(node, {"name", "mesh", "shader", "set", "place", "turn", "casts-shadow", "mirror"});
-    for (const char* key : {"mesh", "shader"})
-      file_.require(node[key].IsDefined(), node, std::string("a node without '") + key + "'", "mesh and shader");
-    ShadedNode made;
-    const auto mesh = mesh_numbers_.find(file_.scalar(node["mesh"], "a mesh's name"));
-    file_.require(mesh != mesh_numbers_.end(), node["mesh"], "the mesh '" + node["mesh"].Scalar() + "'",
-                  "one of those under 'meshes'");
-    made.mesh = mesh->second;
-    made.material = read_material(node);
-    if (node["place"].IsDefined())
-      at(node["place"],
-         [&] { made.placement = parse_placement("place", file_.scalar(node["place"], "X,Y,Z[,AZIMUTH[,SCALE]]")); });
-    if (node["turn"].IsDefined()) made.placement.rotation = read_turn(node["turn"]) * made.placement.rotation;
-    made.casts_shadow = read_switch(node["casts-shadow"], true);
-    if (read_switch(node["mirror"], false)) {
-      file_.require(!read_.scene.mirror, node["mirror"], "a second mirror", "at most one");
-      read_.scene.mirror = MirrorPlane{static_cast<int>(read_.scene.nodes.size()), made.placement.translation,
-                                       made.placement.rotation * Eigen::Vector3d::UnitY()};
-    }
-    read_.scene.nodes.push_back(made);
-  }
-
-  void read_lights(const YAML::Node& lights) {
-    file_.require(lights.IsSequence(), lights, "no list", "a list of lights, as kiln-render --light has them");
-    for (const YAML::Node& light : lights) {
-      read_.lights.push_back(file_.scalar(light, "a light"));
-      at(light, [&] { read_.scene.lights.specs.push_back(parse_light_spec(read_.lights.back())); });
-    }
-  }
-
-  YamlFile file_;
-  fs::path folder_;
-  ShadeScene read_;
-  std::map<std::string, int> mesh_numbers_;
-};
+  for (const fs::path& file : description.meshes) read.meshes.push_back(load_uv_mesh(file));
+  for (const PrtAsset& asset : read.film.assets) read.scene.meshes.push_back({&asset.mesh, &asset});
+  for (const TriangleMesh& mesh : read.meshes) read.scene.meshes.push_back({&mesh, nullptr});
+}
 
 }  // namespace
 
-ShadeScene load_shade_scene(const fs::path& file) { return SceneReader(file).read(); }
+MovingScene ShadeScene::moving() const {
+  std::vector<const TriangleMesh*> pointers;
+  for (const TriangleMesh& mesh : meshes) pointers.push_back(&mesh);
+  return {film.description, film.asset_pointers(), {{}, 1}, pointers};
+}
 
-std::vector<Eigen::Vector3f> placed_shape(const ShadedScene& scene) {
-  std::vector<Eigen::Vector3f> shape;
-  for (const ShadedNode& node : scene.nodes)
-    for (const Eigen::Vector3f& vertex : scene.meshes[static_cast<std::size_t>(node.mesh)].mesh->positions)
-      shape.emplace_back(node.placement.to_scene(vertex.cast<double>()).cast<float>());
-  return shape;
+std::vector<fs::path> ShadeScene::read_files() const {
+  std::vector<fs::path> files = film.description.meshes;
+  for (const SurfaceShader& shader : shaders) files.push_back(shader.file);
+  return files;
+}
+
+ShadeScene load_shade_scene(const fs::path& file) {
+  ShadeScene read;
+  read.file = file;
+  read.film.description = load_scene(file);
+  if (read.film.description.shaders.empty())
+    throw BadInput(file.string(), "a scene without 'shaders'", "'shaders', a folder of NAME.glsl",
+                   "add it, and 'shader' to each node; or draw the scene by kiln-render, which needs none");
+  read.shaders = read_shaders(read.film.description.shaders);
+  add_nodes(read);
+  load_meshes(read);
+  MovingScene moving = read.moving();
+  const std::vector<Placement> placements = placements_now(read, moving);
+  for (std::size_t k = 0; k < placements.size(); ++k) read.scene.nodes[k].placement = placements[k];
+  read.scene.lights = moving.lights();
+  read.scene.background = read.film.description.background.value_or(read.scene.background);
+  return read;
+}
+
+std::vector<Placement> placements_now(const ShadeScene& scene, MovingScene& moving) {
+  std::vector<Placement> placements;
+  for (const int item : scene.items) placements.push_back(moving.pose(item));
+  return placements;
 }
 
 }  // namespace kiln

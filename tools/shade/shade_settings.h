@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <filesystem>
-#include <functional>
-#include <map>
-#include <string>
-
 #include "base/options.h"
+#include "render/film/film_settings.h"
 #include "render/render_settings.h"
 #include "runtime/shading/shading_settings.h"
 
 namespace kiln {
 
-/// Settings of kiln-shade: of the shading, and of the picture those of kiln-render that have a meaning here.
+/// Settings of kiln-shade: of the shading, and of pictures and films those of kiln-render that have a meaning here.
 struct ShadeSettings {
   ShadingSettings shading = {};
   RenderSettings picture = {};
-  double time_seconds = 0;
+  FilmSettings film = {};
 
   ShadeSettings() {
     picture.width = 640;
@@ -24,11 +20,8 @@ struct ShadeSettings {
   }
 };
 
+/// Options of the picture and, apart, of the scene's time.
 OptionSet shade_options(ShadeSettings& settings);
-
-/// Applies what the scene's file states of the picture, except what was given on the command line. Throws BadInput for
-/// settings that there are none of, and for values that they refuse.
-void apply_picture(const OptionSet& options, const std::map<std::string, std::string>& picture,
-                   const std::filesystem::path& file, const std::function<bool(const std::string&)>& given);
+OptionSet shade_film_options(ShadeSettings& settings);
 
 }  // namespace kiln

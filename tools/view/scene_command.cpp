@@ -29,7 +29,8 @@ void view_scene_file(CommandLine& command, const std::filesystem::path& file, co
                        setup.screenshots,
                        [&command](const std::string& line) { command.say(line); },
                        command.threads()};
-  use_camera(own.look, film.description.camera, [&](const auto& name) { return command.given(name); });
+  use_scene_look(own.look, film.description, [&](const auto& name) { return command.given(name); });
+  if (const std::string note = note_of_shaders(film.description); !note.empty()) command.say(note);
   const std::vector<ScriptStep> steps =
       script.empty() ? std::vector<ScriptStep>() : read_script(script, scene_script_words());
 

@@ -74,7 +74,8 @@ class KILN_RUNTIME_API SceneBuilder {
 /// once.
 class KILN_RUNTIME_API Scene {
  public:
-  /// Reads a scene.yaml (docs/scenes.md) and its assets. Throws Error.
+  /// Reads a scene.yaml (docs/scenes.md) and its assets. What it says of shaders of one's own (`shader`, `set`,
+  /// `casts-shadow`, `mirror`) and `background` have no effect here. Throws Error, also for nodes with a `mesh`.
   static Scene load(const std::filesystem::path& file, const SceneSettings& settings = {});
   explicit Scene(const SceneBuilder& builder, const SceneSettings& settings = {});
   Scene(Scene&&) noexcept;

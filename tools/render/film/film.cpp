@@ -2,6 +2,7 @@
 #include "render/film/film.h"
 
 #include <algorithm>
+#include <map>
 
 #include "base/errors.h"
 #include "base/json.h"
@@ -18,11 +19,12 @@ namespace {
 
 constexpr int looks_at_film = 49;  // times at which the camera makes sure that all is in the picture
 
-/// Adds the corners of the boxes of all nodes as they are now.
-void add_boxes(MovingScene& scene, const std::vector<BoundingBox>& boxes, std::vector<Eigen::Vector3f>& shape) {
+/// Adds the corners of the boxes of all nodes as they are now; `boxes` are those of their meshes.
+void add_boxes(MovingScene& scene, const std::map<const TriangleMesh*, BoundingBox>& boxes,
+               std::vector<Eigen::Vector3f>& shape) {
   for (int item = 0; item < scene.item_count(); ++item) {
-    if (scene.item(item).asset < 0) continue;
-    const BoundingBox& box = boxes[static_cast<std::size_t>(scene.item(item).asset)];
+    if (scene.mesh_of(item) == nullptr) continue;
+    const BoundingBox& box = boxes.at(scene.mesh_of(item));
     for (int corner = 0; corner < 8; ++corner) {
       const Eigen::Vector3d at((corner & 1) != 0 ? box.highest[0] : box.lowest[0],
                                (corner & 2) != 0 ? box.highest[1] : box.lowest[1],
@@ -66,11 +68,22 @@ std::vector<const PrtAsset*> Film::asset_pointers() const {
 
 Film load_film(const std::filesystem::path& file, int level) {
   Film film{load_scene(file), {}};
+  require_transfer(film.description);
   for (const std::filesystem::path& folder : film.description.assets) {
     film.assets.push_back(load_prt_asset(folder));
     if (level > 0) film.assets.back().mesh = load_level(folder, film.assets.back(), level);
   }
   return film;
+}
+
+std::string note_of_shaders(const SceneDescription& scene) {
+  const auto is_told = [](const SceneItem& item) {
+    const SceneSurface& surface = item.surface;
+    return !surface.shader.empty() || !surface.casts_shadow || surface.is_mirror;
+  };
+  const auto first = std::find_if(scene.items.begin(), scene.items.end(), is_told);
+  if (first == scene.items.end()) return "";
+  return first->where + ": shaders, 'casts-shadow' and 'mirror' are for kiln-shade alone; drawn by transfer and albedo";
 }
 
 FilmAssets::FilmAssets(MovingScene& scene, const RenderSettings& settings, int incident_samples)
@@ -102,8 +115,8 @@ std::vector<SceneAsset> FilmAssets::now(const SurfaceLook& look) {
 std::vector<Eigen::Vector3f> shape_now(MovingScene& scene) {
   std::vector<Eigen::Vector3f> shape;
   for (int item = 0; item < scene.item_count(); ++item)
-    if (scene.item(item).asset >= 0)
-      for (const Eigen::Vector3f& vertex : scene.asset_of(item).mesh.positions)
+    if (const TriangleMesh* mesh = scene.mesh_of(item))
+      for (const Eigen::Vector3f& vertex : mesh->positions)
         shape.emplace_back(scene.pose(item).to_scene(vertex.cast<double>()).cast<float>());
   return shape;
 }
@@ -112,10 +125,10 @@ CameraSettings film_camera(MovingScene& scene, const RenderSettings& settings) {
   CameraSettings camera = camera_settings_of(settings);
   if (camera.target && camera.distance > 0) return camera;
   const double now = scene.time(), duration = duration_of(scene.description());
-  std::vector<BoundingBox> boxes(scene.description().assets.size());
+  std::map<const TriangleMesh*, BoundingBox> boxes;
   for (int item = 0; item < scene.item_count(); ++item)
-    if (scene.item(item).asset >= 0)
-      boxes[static_cast<std::size_t>(scene.item(item).asset)] = bounding_box(scene.asset_of(item).mesh);
+    if (const TriangleMesh* mesh = scene.mesh_of(item))
+      if (!boxes.contains(mesh)) boxes[mesh] = bounding_box(*mesh);
   std::vector<Eigen::Vector3f> shape;
   for (int k = 0; k < (duration > 0 ? looks_at_film : 1); ++k) {
     if (duration > 0) scene.set_time(duration * k / (looks_at_film - 1));
@@ -128,6 +141,24 @@ CameraSettings film_camera(MovingScene& scene, const RenderSettings& settings) {
   return camera;
 }
 
+void frames_to_files(OutputSet& outputs, const std::string& name, const std::vector<double>& times, bool is_strip,
+                     const PictureSettings& picture, const std::function<Image<float>(double)>& draw_at,
+                     const ProgressFunction& progress) {
+  const auto count = static_cast<int>(times.size());
+  Image<float> strip;
+  for (int k = 0; k < count; ++k) {
+    const Image<float> frame = draw_at(times[static_cast<std::size_t>(k)]);
+    if (is_strip) {
+      if (k == 0) strip = Image<float>(frame.width() * count, frame.height(), frame.channels());
+      put_beside(strip, frame, k);
+    } else {
+      write_picture(outputs.add(count > 1 ? frame_name(name, k) : name), frame, picture);
+    }
+    progress(static_cast<double>(k + 1) / count);
+  }
+  if (is_strip) write_picture(outputs.add(name), strip, picture);
+}
+
 Json film_to_files(OutputSet& outputs, const std::string& name, const Film& film, const RenderSettings& settings,
                    const FilmSettings& film_settings, int threads, const ProgressFunction& progress) {
   const std::vector<double> times = film_times(film_settings, settings.frames, film.description);
@@ -137,35 +168,28 @@ Json film_to_files(OutputSet& outputs, const std::string& name, const Film& film
   scene.set_time(times.front());
   FilmAssets assets(scene, settings, samples);
   const CameraSettings camera = film_camera(scene, settings);
-  const PictureSettings picture = picture_of(settings);
   SceneView view;
   view.width = settings.width;
   view.height = settings.height;
   view.supersample = settings.supersample;
   view.look = look_of(settings);
   view.shading = settings.shading;
-  Image<float> strip;
-  if (film_settings.strip) strip = Image<float>(settings.width * static_cast<int>(times.size()), settings.height, 4);
   Json metrics;
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    scene.set_time(times[k]);
+  const auto draw_at = [&](double time) {
+    scene.set_time(time);
     view.camera = make_camera(shape_now(scene), camera, settings.width, settings.height);
     const std::vector<SceneAsset> drawn = assets.now(view.look);
-    const Image<float> radiance = render_scene(drawn, scene.lights(), view);
-    if (film_settings.strip)
-      put_beside(strip, radiance, static_cast<int>(k));
-    else
-      write_picture(outputs.add(times.size() > 1 ? frame_name(name, static_cast<int>(k)) : name), radiance, picture);
-    if (k == 0) {
+    Image<float> radiance = render_scene(drawn, scene.lights(), view);
+    if (metrics.is_null()) {
       metrics = render_metrics(drawn, scene.lights().specs, radiance, context);
       metrics["camera"] = to_json(view.camera);
       metrics["frames"] = times.size();
       metrics["times"] = times;
       metrics["tree"] = tree_record(scene.tree());
     }
-    progress(static_cast<double>(k + 1) / static_cast<double>(times.size()));
-  }
-  if (film_settings.strip) write_picture(outputs.add(name), strip, picture);
+    return radiance;
+  };
+  frames_to_files(outputs, name, times, film_settings.strip, picture_of(settings), draw_at, progress);
   metrics["tree_changes"] = scene.tree_changes();
   return metrics;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "base/json_fwd.h"
 #include "base/outputs.h"
 #include "base/progress.h"
+#include "image/image.h"
 #include "render/film/film_settings.h"
 #include "runtime/draw/scene_renderer.h"
 #include "runtime/play/moving_scene.h"
@@ -24,8 +26,12 @@ struct Film {
   std::vector<const PrtAsset*> asset_pointers() const;
 };
 
-/// Reads a scene and its assets, with the mesh of a level of detail. Throws BadInput.
+/// Reads a scene and its assets, with the mesh of a level of detail. Throws BadInput, also for nodes without transfer.
 Film load_film(const std::filesystem::path& file, int level);
+
+/// Says which words of a scene a picture by transfer does not heed, since they are about shaders of one's own; empty
+/// where there are none.
+std::string note_of_shaders(const SceneDescription& scene);
 
 /// Assets of a scene on the GPU: each once, however many nodes have it. Needs the GL context in which it was made.
 class FilmAssets {
@@ -48,6 +54,12 @@ std::vector<Eigen::Vector3f> shape_now(MovingScene& scene);
 /// Returns a camera of one target and one distance, from which all of the scene is seen at all times: those of the
 /// settings or, where they leave them open, such that the nodes' boxes fit. Leaves the scene's time as it is.
 CameraSettings film_camera(MovingScene& scene, const RenderSettings& settings);
+
+/// Draws a picture at each time and writes them into files of `outputs`: NAME of one, NAME_000 and so on of several, or
+/// side by side in one.
+void frames_to_files(OutputSet& outputs, const std::string& name, const std::vector<double>& times, bool is_strip,
+                     const PictureSettings& picture, const std::function<Image<float>(double)>& draw_at,
+                     const ProgressFunction& progress);
 
 /// Draws pictures of a scene, at each of `times`, into files of `outputs`. Returns the metrics of the first, and the
 /// times.

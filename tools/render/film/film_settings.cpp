@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <string_view>
 #include <utility>
 
@@ -43,8 +44,9 @@ std::vector<double> film_times(const FilmSettings& film, int frames, const Scene
   return times;
 }
 
-void use_camera(RenderSettings& settings, const SceneCamera& camera,
-                const std::function<bool(const std::string&)>& is_given) {
+void use_scene_look(RenderSettings& settings, const SceneDescription& scene,
+                    const std::function<bool(const std::string&)>& is_given) {
+  const SceneCamera& camera = scene.camera;
   const CameraSettings own = camera_settings_of(settings);
   if (!is_given("camera"))
     settings.camera = fmt::format("{},{}", camera.azimuth_degrees.value_or(own.azimuth_degrees),
@@ -55,6 +57,8 @@ void use_camera(RenderSettings& settings, const SceneCamera& camera,
   if (!is_given("target") && camera.target)
     settings.framing.target = fmt::format("{},{},{}", camera.target->x(), camera.target->y(), camera.target->z());
   if (!is_given("distance") && camera.distance) settings.framing.distance = fmt::format("{}", *camera.distance);
+  if (!is_given("background") && scene.background)
+    settings.background = fmt::format("{}", fmt::join(*scene.background, ","));
 }
 
 ShadowSettings shadow_settings_of(const FilmSettings& film, int threads) {

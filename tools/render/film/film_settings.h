@@ -32,9 +32,10 @@ bool is_scene_file(const std::filesystem::path& input);
 /// included, to the scene's end. Throws WrongUsage where nothing moves and no rate is given.
 std::vector<double> film_times(const FilmSettings& film, int frames, const SceneDescription& scene);
 
-/// Takes from a scene's camera what the command line leaves to it; `is_given` tells whether it has an option.
-void use_camera(RenderSettings& settings, const SceneCamera& camera,
-                const std::function<bool(const std::string&)>& is_given);
+/// Takes from a scene its camera and its background as far as the command line leaves them to it; `is_given` tells
+/// whether that has an option.
+void use_scene_look(RenderSettings& settings, const SceneDescription& scene,
+                    const std::function<bool(const std::string&)>& is_given);
 
 /// Returns the shadows of the settings.
 ShadowSettings shadow_settings_of(const FilmSettings& film, int threads);
