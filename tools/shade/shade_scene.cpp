@@ -78,13 +78,12 @@ void add_nodes(ShadeScene& read) {
 
 void load_meshes(ShadeScene& read) {
   const SceneDescription& description = read.film.description;
-  for (const fs::path& folder : description.assets) {
-    read.film.assets.push_back(load_prt_asset(folder));
-    if (!has_shadable_planes(read.film.assets.back()))
-      throw BadInput(read.film.assets.back().ranges_file.string(), "transfer at vertices or in several clusters",
-                     "planes, plain or of one cluster, for shaders of one's own",
-                     "take the folder of a bake with planes");
-  }
+  for (const fs::path& folder : description.assets) read.film.assets.push_back(load_prt_asset(folder));
+  for (const SceneItem& item : description.items)
+    if (item.asset >= 0 && !has_shadable_planes(read.film.assets[static_cast<std::size_t>(item.asset)]))
+      throw BadInput(item.where, "node '" + item.name + "' with transfer at vertices or in several clusters",
+                     "an asset with planes, plain or of one cluster, for shaders of one's own",
+                     "name a folder of kiln-bake with planes");
   for (const fs::path& file : description.meshes) read.meshes.push_back(load_uv_mesh(file));
   for (const PrtAsset& asset : read.film.assets) read.scene.meshes.push_back({&asset.mesh, &asset});
   for (const TriangleMesh& mesh : read.meshes) read.scene.meshes.push_back({&mesh, nullptr});
