@@ -60,7 +60,7 @@ void require_light(const PrtAsset& asset, const LightCoefficients& light) {
     throw std::invalid_argument("cluster_weights: the light must have the asset's bands and three channels");
   if (asset.channels != 1 && asset.channels != 3)
     throw BadInput(asset.ranges_file.string(), "has " + std::to_string(asset.channels) + " channels, a spectral asset",
-                   "1 channel or 3", "bake the asset with 1 channel or 3");
+                   "1 channel or 3", "draw it with kiln-render --lamp, or bake the asset with 1 channel or 3");
 }
 
 }  // namespace

@@ -93,6 +93,7 @@ Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene&
   PrtDescription asset;
   asset.mesh_file = atlas_mesh_name;
   asset.albedo = scene.albedo;
+  asset.spectrum = scene.spectrum;
   asset.bits = settings.bits;
   fs::copy_file(paths.atlas, outputs.add(atlas_mesh_name), fs::copy_options::overwrite_existing);
   asset.levels = scene.levels;
@@ -226,8 +227,8 @@ Json save_bake(OutputSet& outputs, const BakePaths& paths, const BakeScene& scen
   std::vector<TransferVectors> stored;
   Json places;  // metrics of the texels or vertices
   if (settings.per_vertex) {
-    const std::vector<std::uint32_t> sources =
-        write_vertex_planes(outputs, result.channels, scene.receivers, scene.vertex_mesh, settings.bits, scene.albedo);
+    const std::vector<std::uint32_t> sources = write_vertex_planes(
+        outputs, result.channels, scene.receivers, scene.vertex_mesh, settings.bits, scene.albedo, scene.spectrum);
     stored = read_transfer(outputs.staging(), stored_vertices(scene.receivers, sources));
     places = {{"vertices", sources.size()}, {"quantisation_error", relative_l2(stored, result.channels)}};
     places.update(scene.vertex_metrics);

@@ -2,20 +2,24 @@
 #include "bake/bake_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "bake/backends.h"
 #include "bake/levels.h"
 #include "bake/scene/vertex_receivers.h"
+#include "bake/spectral_channels.h"
 #include "base/errors.h"
 #include "base/extent.h"
+#include "base/file_names.h"
 #include "base/files.h"
 #include "import/import_mesh.h"
 #include "maps/asset_hints.h"
 #include "maps/detail_maps.h"
 #include "material/cut_out.h"
 #include "material/load_albedo.h"
+#include "material/measured_reflectance.h"
 #include "material/surroundings.h"
 #include "mesh/draco_file.h"
 
@@ -59,7 +63,7 @@ std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSetti
   const auto add_albedo = [&](const std::string& name, const LoadedAlbedo& loaded) {
     if (bounces && loaded.albedo.source() == SurfaceAlbedo::Source::none)
       throw WrongUsage("bounces: found no albedo in " + name +
-                       "; expected materials, colours of vertices, --albedo or --albedo-texture");
+                       "; expected materials, colours of vertices, --albedo, --albedo-texture or --reflectance");
     albedos.push_back(loaded.albedo);
     scene.further_files.insert(scene.further_files.end(), loaded.files.begin(), loaded.files.end());
     scene.add_warnings(loaded.warnings());
@@ -97,6 +101,11 @@ std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSetti
     if (fs::is_regular_file(placed.name)) scene.further_files.emplace_back(placed.name);
   }
   scene.occluders = join_occluders(meshes, std::move(albedos));
+  if (!settings.spectrum.empty()) {
+    scene.spectrum = read_spectral_channels(settings.spectrum);
+    scene.further_files.emplace_back(settings.spectrum);
+    scene.occluders.reflectance.emplace(scene.occluders, scene.spectrum->wavelengths_nm);
+  }
   if (std::ranges::find(all_sheets, 1) != all_sheets.end()) scene.occluders.sheets = std::move(all_sheets);
   return meshes;
 }
@@ -120,6 +129,35 @@ void set_aside_buried(const BakePaths& paths, const BakeSettings& settings, Bake
 
 /// Tells whether the transfer includes the albedo: then it must not be multiplied again, as if the surface were white.
 bool has_albedo_within(const BakeSettings& settings) { return settings.bake_albedo || settings.subsurface.wanted(); }
+
+/// Returns the albedo that the settings give for all of the surface; of a measured reflectance with its spectrum.
+std::optional<PrtAlbedo> given_albedo(const BakeSettings& settings, BakeScene& scene) {
+  const MaterialSettings& material = settings.material;
+  if (material.albedo) return PrtAlbedo::of_constant(Eigen::Vector3f(material.albedo->data()));
+  if (material.reflectance.empty()) return std::nullopt;
+  const MeasuredReflectance measured = load_reflectance(material.reflectance);
+  if (!settings.bounces.any()) scene.add_warnings(load_constant_albedo(material).warnings());
+  scene.further_files.insert(scene.further_files.end(), measured.files.begin(), measured.files.end());
+  PrtAlbedo albedo = PrtAlbedo::of_constant(measured.albedo);
+  PrtReflectance& shipped = albedo.reflectance.emplace();
+  shipped.name = text_of_path(measured.spectrum.name);
+  shipped.first_nm = first_wavelength_nm;
+  constexpr double stored_steps = 1e6;
+  for (const double share : measured.spectrum.values)
+    shipped.values.push_back(std::round(share * stored_steps) / stored_steps);
+  return albedo;
+}
+
+/// Throws where light is to bounce at wavelengths, beside what is computed as red, green and blue.
+void require_bounces_of_spectrum(const BakeSettings& settings) {
+  if (settings.spectrum.empty()) return;
+  const auto refuse = [](bool is_so, const std::string& found, const std::string& expected) {
+    if (is_so) throw WrongUsage("spectrum: found " + found + "; expected " + expected);
+  };
+  refuse(!settings.bounces.any(), "no bounces", "--bounces, since direct transfer is the same at all wavelengths");
+  refuse(settings.bake_albedo, "bake-albedo", "the albedo outside of the transfer, where lamps decide its colour");
+  refuse(settings.subsurface.wanted(), "subsurface", "none, whose materials are measured as red, green and blue");
+}
 
 BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings) {
   if (!paths.detail.empty())
@@ -152,15 +190,14 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
                           {"vertices_facing_away", vertices.facing_away}};
   if (has_albedo_within(settings))
     scene.albedo = PrtAlbedo::of_transfer();
-  else if (const auto given = settings.material.albedo)
-    scene.albedo = PrtAlbedo::of_constant({(*given)[0], (*given)[1], (*given)[2]});
+  else if (auto given = given_albedo(settings, scene))
+    scene.albedo = std::move(*given);
   return scene;
 }
 
 /// Returns the albedo for ranges.json: that of the settings, else what the normals stage found.
-PrtAlbedo shipped_albedo(const DetailMaps& detail, const MaterialSettings& material) {
-  const auto given = material.albedo;
-  if (given) return PrtAlbedo::of_constant({(*given)[0], (*given)[1], (*given)[2]});
+PrtAlbedo shipped_albedo(const DetailMaps& detail, const BakeSettings& settings, BakeScene& scene) {
+  if (auto given = given_albedo(settings, scene)) return *given;
   if (!detail.albedo.values().empty()) {
     PrtAlbedo albedo = PrtAlbedo::of_picture(albedo_map_name);
     if (detail.albedo_width != detail.width || detail.albedo_height != detail.height) {
@@ -185,6 +222,8 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
     throw WrongUsage("subsurface: found --bake-albedo; expected one of them, the material has its own albedo");
   if (settings.bits != 8 && settings.bits != 16)
     throw WrongUsage("bits: found '" + std::to_string(settings.bits) + "'; expected 8 or 16");
+  require_bounces_of_spectrum(settings);
+  require_one_albedo(settings.material);
   if (settings.per_vertex) return load_vertex_scene(paths, settings);
   if (settings.receiver == BakeReceiver::high && paths.detail.empty())
     throw WrongUsage("receiver high: found no --detail FOLDER; expected the output of kiln-normals, or --receiver low");
@@ -198,7 +237,7 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
   std::optional<DetailMaps> detail;
   if (!paths.detail.empty()) {
     detail = load_detail_maps(paths.detail, atlas);
-    scene.albedo = has_albedo_within(settings) ? PrtAlbedo::of_transfer() : shipped_albedo(*detail, settings.material);
+    scene.albedo = has_albedo_within(settings) ? PrtAlbedo::of_transfer() : shipped_albedo(*detail, settings, scene);
     scene.normal_space = detail->normal_space;
     scene.own_normal_width = detail->own_normal_width;
     scene.own_normal_height = detail->own_normal_height;
@@ -224,7 +263,7 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
   if (settings.receiver == BakeReceiver::high && !paths.occluders.empty())
     scene.high_area = surface_area(occluders.front());
   set_aside_buried(paths, settings, scene);
-  if (settings.bake_albedo && detail && !settings.material.albedo)
+  if (settings.bake_albedo && detail && !settings.material.albedo && settings.material.reflectance.empty())
     take_albedos(scene.receivers, *detail);
   else if (settings.bake_albedo)
     take_albedos(scene.receivers, scene.occluders);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,7 @@ struct BakeScene {
   void add_warnings(const std::vector<std::string>& further);
 
   NormalSpace normal_space = NormalSpace::object;   ///< space of the normal map
+  std::optional<PrtSpectrum> spectrum;              ///< wavelengths of the channels, of a bake by wavelengths
   PrtAlbedo albedo;                                 ///< albedo of the receivers, for ranges.json
   int own_normal_width = 0, own_normal_height = 0;  ///< texels of the normal map that ships, as DetailMaps has them
   bool has_opacity_map = false;                     ///< the detail folder has a map of opacity

@@ -25,6 +25,10 @@ void add_bounce_options(OptionSet& options, BakeSettings& settings) {
       .toggle("bake-albedo", settings.bake_albedo,
               "Puts the receivers' albedo in the stored transfer, in place of leaving it to the renderer")
       .affects(Affects::storing)
+      .file("spectrum", settings.spectrum,
+            "A basis file of kiln-spectrum: light bounces at its wavelengths, each a channel, in place of red, green "
+            "and blue; kiln-render --lamp draws what its lamps show")
+      .affects(Affects::storing)
       .number("bounce-edge", settings.bounce_edge, 1e-4, 1,
               "Light bounces off a surface whose longer edges are cut: the longest, a fraction of the occluders' "
               "diagonal")

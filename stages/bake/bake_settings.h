@@ -66,6 +66,7 @@ struct BakeSettings {
   Surroundings surroundings;   ///< neighbours and ground of the asset in its scene
   ImportSettings import = {};  ///< import of the occluders, and of a mesh whose vertices are baked
   MaterialSettings material;   ///< albedo of the occluders, and of receivers if no detail folder has it
+  std::string spectrum = {};   ///< file of kiln-spectrum: light bounces at its wavelengths; empty: as RGB
   double bounce_edge = 0.01;   ///< longest edge of the surface that light bounces off, fraction of its diagonal
   int bounce_memory = 512;     ///< MB of rays that bounces may keep; changes no result
   BakeBackend backend = BakeBackend::automatic;

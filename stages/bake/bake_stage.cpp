@@ -132,7 +132,10 @@ StageRun run(const AssetPlan& plan) {
 const StageInfo& bake_stage() {
   static const StageInfo info = {.name = "bake",
                                  .options = options,
-                                 .rivals = {{"albedo", "albedo-texture"}, {"opacity", "opacity-texture"}},
+                                 .rivals = {{"albedo", "albedo-texture"},
+                                            {"albedo", "reflectance"},
+                                            {"albedo-texture", "reflectance"},
+                                            {"opacity", "opacity-texture"}},
                                  .metrics = metric_groups(),
                                  .run = run};
   return info;

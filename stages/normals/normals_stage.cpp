@@ -56,6 +56,8 @@ const StageInfo& normals_stage() {
                                  .for_texels = true,
                                  .options = options,
                                  .rivals = {{"albedo", "albedo-texture"},
+                                            {"albedo", "reflectance"},
+                                            {"albedo-texture", "reflectance"},
                                             {"opacity", "opacity-texture"},
                                             {"cage", "cage-mesh"},
                                             {"part-cage", "cage-mesh"}},

@@ -56,13 +56,17 @@ StageRun run(const AssetPlan& plan) {
 }  // namespace
 
 const StageInfo& probes_stage() {
-  static const StageInfo info = {
-      .name = "probes",
-      .on_request = true,
-      .options = options,
-      .rivals = {{"points", "grid"}, {"points", "box"}, {"albedo", "albedo-texture"}, {"opacity", "opacity-texture"}},
-      .metrics = {{metric_names}},
-      .run = run};
+  static const StageInfo info = {.name = "probes",
+                                 .on_request = true,
+                                 .options = options,
+                                 .rivals = {{"points", "grid"},
+                                            {"points", "box"},
+                                            {"albedo", "albedo-texture"},
+                                            {"albedo", "reflectance"},
+                                            {"albedo-texture", "reflectance"},
+                                            {"opacity", "opacity-texture"}},
+                                 .metrics = {{metric_names}},
+                                 .run = run};
   return info;
 }
 

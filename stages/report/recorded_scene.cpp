@@ -18,7 +18,7 @@ bool is_on_low(const AssetFolder& asset) {
 
 MaterialSettings surface_material(const AssetFolder& asset) {
   const MaterialSettings of_bake = material_of(asset.record("bake"));
-  return of_bake.albedo ? of_bake : map_material(asset);
+  return of_bake.albedo || !of_bake.reflectance.empty() ? of_bake : map_material(asset);
 }
 
 MaterialSettings map_material(const AssetFolder& asset) {

@@ -7,6 +7,7 @@
 #include "base/errors.h"
 #include "base/json.h"
 #include "material/cut_out.h"
+#include "material/measured_reflectance.h"
 #include "mesh/uv_raster.h"
 #include "report/recorded_scene.h"
 #include "scatter/subsurface_settings.h"
@@ -135,9 +136,9 @@ ErrorSplit split_error(const AssetFolder& asset, const TriangleMesh& low, const 
   } else if (input.albedo_within = bake.at("settings").value("bake-albedo", false);
              input.albedo_within || !plain.albedo.file.empty()) {
     input.albedo = &high.albedo;
-    if (const MaterialSettings material = material_of(bake); material.albedo && detail) {
+    if (const auto albedo = constant_albedo(material_of(bake)); albedo && detail) {
       detail->albedo = {};
-      detail->constant_albedo = Eigen::Vector3f(material.albedo->data());
+      detail->constant_albedo = *albedo;
     }
     input.map_albedo = !has_no_maps(asset);
   }

@@ -212,7 +212,8 @@ with tempfile.TemporaryDirectory() as folder:
         (("defaults", "lod"), 0.5), (("defaults", "bake"), [5]),
         (("defaults", "simplify", "face"), 7), (("budgets", "bake.texels"), {}), (("budgets", "bake.texels"), {"most": 1}),
         (("assets", "post", "mesh"), {"archive": "a.tar"}), (("assets", "post", "default"), "yes"),
-        (("assets", "post", "material"), {"albedo": 1, "texture": "a.png"})])
+        (("assets", "post", "material"), {"albedo": 1, "texture": "a.png"}),
+        (("assets", "post", "material"), {"albedo": 1, "reflectance": "TCS05"})])
 
 print("\n".join(faults) if faults else "what a run writes fits its schemas")
 sys.exit(bool(faults))

@@ -47,8 +47,9 @@ struct BounceStand {
                                        const BounceTarget& target, BounceReport& report,
                                        const TransferVectors& receivers_direct) const {
     const std::unique_ptr<GatherEngine> engine = make_gather_engine(backend, surface_of(cache, occluders), settings, 2);
+    TracedPoints unknown;
     const SentLight light = bounce_light(cache, direct, *engine, {directions, target, settings.bits},
-                                         BounceSample(receivers(), receivers_direct), report, no_progress);
+                                         BounceSample(receivers(), receivers_direct), report, no_progress, unknown);
     std::vector<TransferVectors> channels(light.channels, TransferVectors(positions.size(), direct.coefficients));
     add_bounced(*engine, light, receivers(), directions, channels, no_progress);
     return channels;

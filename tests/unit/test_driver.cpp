@@ -418,6 +418,7 @@ TEST_F(Names, IncludedFilesAreWeaker) {
   fs::create_directories(scratch_.folder() / "shared");
   std::ofstream(scratch_.folder() / "shared/all.yaml")
       << "include: most.yaml\ndefaults: {simplify: {faces: 10}, material: {texture: wood.png}}\n";
+  std::ofstream(scratch_.folder() / "shared/paint.yaml") << "defaults: {material: {reflectance: TCS05}}\n";
   std::ofstream(scratch_.folder() / "shared/most.yaml")
       << "defaults: {simplify: {faces: 5}, bake: {bands: 2}}\nbudgets: {simplify.rms: {max: 1}}\n";
   std::ofstream(scratch_.folder() / "props.yaml") << "defaults: {bake: {bands: 4}}\n";
@@ -427,8 +428,11 @@ defaults: {atlas: {size: 64}}
 assets:
   a: {mesh: a.obj}
   b: {mesh: b.obj, include: [props.yaml], simplify: {faces: 20}}
+  c: {mesh: c.obj, include: [shared/paint.yaml]}
 )");
   const std::vector<MakeRule> rules = make_rules(pipeline);
+  EXPECT_EQ(value_after(run_of(rules, "c", "bake").command, "--reflectance"), "TCS05");  // a name, and no path
+  EXPECT_EQ(value_after(run_of(rules, "c", "bake").command, "--albedo-texture"), "");
   EXPECT_EQ(value_after(run_of(rules, "a", "simplify").command, "--faces"), "10");
   EXPECT_EQ(value_after(run_of(rules, "b", "simplify").command, "--faces"), "20");
   EXPECT_EQ(value_after(run_of(rules, "a", "bake").command, "--bands"), "2");

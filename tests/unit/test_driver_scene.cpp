@@ -62,13 +62,20 @@ assets:
   plain: {mesh: a.obj}
   painted: {mesh: a.obj, material: {texture: paint.png}}
   odd: {mesh: a.obj, material: {albedo: 0.5}, bake: {albedo: 0.6}}
+  measured: {mesh: a.obj, material: {reflectance: paint.csv}}
+  sample: {mesh: b.obj, material: {reflectance: tcs05}}
+scene: {plain: '0,0,0', sample: '1,0,0'}
 )");
   const std::vector<MakeRule> rules = make_rules(pipeline);
+  EXPECT_EQ(value_after(run_of(rules, "plain", "bake").command, "--neighbour"), "b.obj;place=1,0,0;reflectance=tcs05");
   for (const char* stage : {"normals", "bake"}) {
     EXPECT_EQ(value_after(run_of(rules, "plain", stage).command, "--albedo"), "0.8");
     // A texture drives out the number that is the default.
     EXPECT_EQ(value_after(run_of(rules, "painted", stage).command, "--albedo-texture"), "paint.png");
     EXPECT_EQ(value_after(run_of(rules, "painted", stage).command, "--albedo"), "");
+    EXPECT_EQ(value_after(run_of(rules, "measured", stage).command, "--reflectance"), "paint.csv");
+    EXPECT_EQ(value_after(run_of(rules, "measured", stage).command, "--albedo"), "");
+    EXPECT_EQ(value_after(run_of(rules, "sample", stage).command, "--reflectance"), "tcs05");
   }
   EXPECT_EQ(value_after(run_of(rules, "odd", "normals").command, "--albedo"), "0.5");
   EXPECT_EQ(value_after(run_of(rules, "odd", "bake").command, "--albedo"), "0.6");

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "asset/write_asset.h"
 #include "base/errors.h"
+#include "base/outputs.h"
 #include "image/srgb.h"
 #include "prt_folders.h"
 #include "render/lamps.h"
@@ -12,6 +14,7 @@
 #include "shapes.h"
 #include "spectrum/colorimetry.h"
 #include "spectrum/rgb_lift.h"
+#include "spectrum/wavelengths.h"
 
 namespace kiln {
 namespace test_lamps {
@@ -121,6 +124,87 @@ TEST(Lamps, TexturesAreLiftedTexelByTexel) {
     EXPECT_LT(sum / 1000, l == 3 ? 0.5 : 0.25) << settings.lamps[l];
     EXPECT_LT(worst, l == 3 ? 3 : 1.4) << settings.lamps[l];
   }
+}
+
+TEST(Lamps, AMeasuredReflectanceShipsAndIsRead) {
+  const Scratch scratch;
+  PrtAsset asset = sphere(scratch);
+  const StandardSpectra standards;
+  const NamedSpectrum blue = standards.reflectance("TCS12");
+  asset.albedo = PrtAlbedo::of_constant({0.f, 0.2f, 0.4f});
+  asset.albedo.reflectance = {blue.name, first_wavelength_nm, 1, {blue.values.begin(), blue.values.end()}};
+  OutputSet outputs(scratch.folder());
+  asset.albedo.picture = {};
+  outputs.add_text("ranges.json", description_text(asset));
+  outputs.commit();
+  const PrtAsset read = load_prt_asset(scratch.folder());
+  EXPECT_EQ(read.albedo.reflectance, asset.albedo.reflectance);
+
+  LampSettings settings;
+  settings.lamps = {"F11"};
+  const LampScene own = lamp_scene({read}, furnace(), 3, settings);
+  settings.reflectances = {"tcs12"};
+  const LampScene given = lamp_scene({sphere(scratch)}, furnace(), 3, settings);
+  EXPECT_EQ(own.lamps[0].assets[0].albedo.constant, given.lamps[0].assets[0].albedo.constant);
+}
+
+TEST(Lamps, ChannelsOfWavelengthsBecomeColors) {
+  const Scratch scratch;
+  const TriangleMesh mesh = shapes::cube_sphere(8);
+  const std::vector<float> tints = {0.9f, 0.8f, 0.5f, 0.3f, 0.6f, 0.7f};
+  test::write_asset(scratch.folder(), mesh, test::unoccluded_stack(mesh, 96, 64, 3, 16, tints));
+  const StandardSpectra standards;
+  SpectralScene scene{{standards.light("A"), standards.light("F11")},
+                      standards.reflectances("CIE-TCS"),
+                      standards.observer(Observer::cie_1931)};
+  const WavelengthSet set = find_wavelengths(scene, 6);
+  PrtAsset asset = load_prt_asset(scratch.folder());
+  PrtSpectrum& spectrum = asset.spectrum.emplace();
+  spectrum.wavelengths_nm = set.wavelengths_nm;
+  for (std::size_t l = 0; l < 2; ++l) {
+    PrtSpectrum::Lamp& lamp = spectrum.lamps.emplace_back();
+    lamp.name = scene.lights[l].name;
+    for (const auto& row : set.readers[l].rowwise()) lamp.xyz_from_channels.emplace_back(row.begin(), row.end());
+  }
+  const auto context = test::software_context();
+  const SceneView view = test::small_view(asset.mesh, 20, 12);
+  const RgbLift lift(standards);
+  const Eigen::Matrix3d to_xyz = lift.rgb_from_xyz().inverse();
+  const auto expect_colors = [&](const LampSettings& settings, const auto& share_at, std::size_t lamps = 2) {
+    for (std::size_t l = 0; l < lamps; ++l) {
+      LampSettings of_lamp = settings;
+      of_lamp.lamps = {l == 0 ? "a" : "F11"};
+      Xyz truth = Xyz::Zero();
+      for (std::size_t k = 0; k < tints.size(); ++k)
+        truth += set.readers[l].col(static_cast<Eigen::Index>(k)) * tints[k] * share_at(set.wavelengths_nm[k]);
+      const Xyz white = xyz_of(scene.lights[l].values, scene.observer);
+      const Xyz drawn = to_xyz * middle_of(lamp_scene({asset}, furnace(), 3, of_lamp), view);
+      EXPECT_LT(ciede2000(lab_of(drawn, white), lab_of(truth, white)), 0.05) << of_lamp.lamps[0];
+    }
+  };
+  LampSettings settings;
+  settings.reflectances = {"TCS09"};
+  const Spectrum red = standards.reflectance("TCS09").values;
+  expect_colors(settings, [&](int nm) { return red(nm - first_wavelength_nm); });
+  settings.reflectances = {};
+  asset.albedo = PrtAlbedo::of_constant({0.2f, 0.5f, 0.3f});
+  const SmoothReflectance green = lift.lift({0.2, 0.5, 0.3});
+  expect_colors(settings, [&](int nm) { return green.at(nm); });
+  asset.albedo = PrtAlbedo::of_picture("albedo.png");
+  asset.albedo.picture = Image<std::uint8_t>(96, 64, 3, 128);
+  const double grey = linear_from_srgb(128 / 255.f);
+  expect_colors(
+      settings, [&](int) { return grey; }, 1);
+
+  // What it cannot be, it refuses.
+  settings.lamps = {"F2"};
+  EXPECT_THROW(lamp_scene({asset}, furnace(), 3, settings), BadInput);  // no matrix for it
+  settings.lamps = {"A"};
+  asset.spectrum->lamps[0].xyz_from_channels[0][0] += 0.1;
+  EXPECT_THROW(lamp_scene({asset}, furnace(), 3, settings), BadInput);  // white is not the lamp's
+  AssetRenderer renderer(asset, 1);
+  EXPECT_THROW(render_scene({{&renderer, {}, Technique::textured_prt, nullptr}}, scene_lights(furnace(), 3), view),
+               BadInput);  // by RGB
 }
 
 TEST(Lamps, WhatCannotBeBySpectraIsRefused) {

@@ -11,6 +11,7 @@
 #include "base/json.h"
 #include "kiln/made_meshes.h"
 #include "kiln/stage_state.h"
+#include "material/material_settings.h"
 
 namespace kiln {
 
@@ -81,7 +82,10 @@ void check_named_files(const Pipeline& pipeline, const Asset& asset, std::vector
     const StageOptions options = stage->options();
     for (const auto& [name, file] : settings->second) {
       const bool is_texture = name == "albedo-texture" || name == "opacity-texture";
-      if (!options.find(name)->names_file || (textures_alone && !is_texture) || !seen.insert(file).second) continue;
+      if (name == "reflectance" && is_test_sample(file)) continue;
+      if (!options.find(name)->names_file || (textures_alone && !is_texture && name != "reflectance") ||
+          !seen.insert(file).second)
+        continue;
       const bool is_mesh = name == "low" || name == "cage-mesh";
       const fs::path path = pipeline.folder / file;
       const std::string fault = is_mesh ? fault_of_mesh(path) : fault_of_file(path);

@@ -41,7 +41,7 @@ std::string neighbour_text(const fs::path& mesh, const std::string& place, const
     text += fmt::format(";{}={}", name, field_text(value));
   };
   for (const char* name :
-       {"albedo", "albedo-texture", "albedo-encoding", "opacity", "opacity-texture", "opacity-cutoff"})
+       {"albedo", "albedo-texture", "reflectance", "albedo-encoding", "opacity", "opacity-texture", "opacity-cutoff"})
     add("normals", name);
   ImportSettings import;
   OptionSet import_options;

@@ -102,12 +102,16 @@ Json material_schema() {
   const StageOptions options = stage_info("normals").options();
   Json properties = {{"albedo", option_schema(*options.find("albedo"))},
                      {"texture", option_schema(*options.find("albedo-texture"))},
+                     {"reflectance", option_schema(*options.find("reflectance"))},
                      {"encoding", option_schema(*options.find("albedo-encoding"))},
                      {"opacity", option_schema(*options.find("opacity"))},
                      {"opacity-texture", option_schema(*options.find("opacity-texture"))},
                      {"opacity-cutoff", option_schema(*options.find("opacity-cutoff"))}};
   Json schema = object_of(properties);
-  schema["not"] = {{"required", {"albedo", "texture"}}};
+  schema["not"] = {{"anyOf",
+                    {{{"required", {"albedo", "texture"}}},
+                     {{"required", {"albedo", "reflectance"}}},
+                     {{"required", {"texture", "reflectance"}}}}}};
   return schema;
 }
 

@@ -86,6 +86,8 @@ class Checks {
             "a low mesh of the asset's own beside it, whose cage it is", "add 'low: FILE', or leave the line out");
     require(text("normals", "part-cage").empty() || text("normals", "match") == "names", "normals", "part-cage",
             "'match: names' beside it", "add that, or leave the line out");
+    require(text("bake", "spectrum").empty(), "bake", "spectrum",
+            "none in a pipeline, whose reports measure red, green and blue", "bake it with kiln-bake --spectrum");
     require(value("bake", "size") == 0, "bake", "size",
             "none in a pipeline, where the maps of the normals stage say it", "set the size of atlas");
   }
@@ -129,10 +131,10 @@ class Checks {
   void check_low_receivers() const {
     if (text("bake", "receiver") != "low") return;
     const bool reflects = text("bake", "bounces") != "0" || value("bake", "bake-albedo") == true;
-    if (!reflects || text("bake", "albedo") != "auto") return;
+    if (!reflects || text("bake", "albedo") != "auto" || !text("bake", "reflectance").empty()) return;
     throw BadInput(where("bake", {"receiver"}), "'low' for receiver of bake, and light that its surface reflects",
                    "an albedo, one for all of it: the low mesh has no materials",
-                   "set 'material: {albedo: ...}', or receiver: high");
+                   "set 'material: {albedo: ...}' or 'material: {reflectance: ...}', or receiver: high");
   }
 
   /// Refuses what is for texels where vertices are baked.

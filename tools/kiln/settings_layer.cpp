@@ -8,6 +8,7 @@
 #include "base/errors.h"
 #include "base/files.h"
 #include "import/import_settings.h"
+#include "material/material_settings.h"
 
 namespace kiln {
 
@@ -59,13 +60,21 @@ class BlockReader {
 
   /// Adds `material` to every stage that uses the surface's albedo and opacity.
   void add_material(const YAML::Node& block, SettingsLayer& layer) const {
-    static const std::map<std::string, std::string> names = {
-        {"albedo", "albedo"},   {"texture", "albedo-texture"},          {"encoding", "albedo-encoding"},
-        {"opacity", "opacity"}, {"opacity-texture", "opacity-texture"}, {"opacity-cutoff", "opacity-cutoff"}};
-    file_.check_keys(block, {"albedo", "texture", "encoding", "opacity", "opacity-texture", "opacity-cutoff"});
+    static const std::map<std::string, std::string> names = {{"albedo", "albedo"},
+                                                             {"texture", "albedo-texture"},
+                                                             {"reflectance", "reflectance"},
+                                                             {"encoding", "albedo-encoding"},
+                                                             {"opacity", "opacity"},
+                                                             {"opacity-texture", "opacity-texture"},
+                                                             {"opacity-cutoff", "opacity-cutoff"}};
+    file_.check_keys(block,
+                     {"albedo", "texture", "reflectance", "encoding", "opacity", "opacity-texture", "opacity-cutoff"});
     if (block.size() == 0) return;
     file_.require(!block["albedo"].IsDefined() || !block["texture"].IsDefined(), block, "both albedo and texture",
                   "one of them");
+    for (const char* rival : {"albedo", "texture"})
+      file_.require(!block["reflectance"].IsDefined() || !block[rival].IsDefined(), block,
+                    std::string("both reflectance and ") + rival, "one of them");
     for (const StageInfo* stage : all_stages()) {
       if (stage->options().find("albedo-texture") == nullptr) continue;
       YAML::Node renamed;
@@ -119,7 +128,8 @@ class BlockReader {
 
   /// Turns a setting into text; a list becomes one text, with semicolons, as on the command line.
   std::string setting_text(const Option& option, const YAML::Node& node) const {
-    if (option.names_file) return (prefix_ / file_.path(node)).lexically_normal().string();
+    if (option.names_file && !(option.name == "reflectance" && node.IsScalar() && is_test_sample(node.Scalar())))
+      return (prefix_ / file_.path(node)).lexically_normal().string();
     if (!node.IsSequence())
       return file_.scalar(node, option.value_range.empty() ? "true or false" : option.value_range);
     std::string text;

@@ -4,12 +4,14 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <optional>
 
 #include "base/command_line.h"
 #include "base/errors.h"
 #include "base/parallel.h"
 #include "image/srgb.h"
+#include "render/fold.h"
 #include "spectrum/colorimetry.h"
 #include "spectrum/rgb_lift.h"
 #include "spectrum/sensor.h"
@@ -34,6 +36,7 @@ Eigen::Matrix3d adaptation(const Xyz& from, const Xyz& to) {
 struct SensorChannels {
   SpectrumMatrix responses;
   Eigen::Matrix3d rgb = Eigen::Matrix3d::Identity();     ///< to the picture's linear RGB
+  std::optional<Eigen::Matrix3d> from_xyz = {};          ///< from X, Y and Z; of a camera there is none
   Eigen::Matrix3d albedo = Eigen::Matrix3d::Identity();  ///< from linear sRGB albedo to shares of daylight
 };
 
@@ -61,6 +64,10 @@ class LampView {
   SpectrumMatrix weights_;
   Eigen::Vector3d white_;
 };
+
+bool is_same_name(const std::string& a, const std::string& b) {
+  return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) { return std::toupper(x) == std::toupper(y); });
+}
 
 Eigen::Vector3d linear_of(const Eigen::Vector3d& encoded) {
   return encoded.unaryExpr([](double v) { return static_cast<double>(linear_from_srgb(static_cast<float>(v))); });
@@ -170,6 +177,7 @@ class SensorChoice {
     for (int c = 0; c < 3; ++c)
       for (int k = 0; k < 3; ++k) sensor.responses.col(c) += channels(c, k) * observer_.col(k);
     const Eigen::Matrix3d to_xyz = channels.inverse();
+    sensor.from_xyz = channels;
     sensor.rgb = lift_.rgb_from_xyz() * adapted_;
     sensor.rgb *= to_xyz;
     sensor.albedo = channels * lift_.rgb_from_xyz().inverse();
@@ -186,15 +194,53 @@ class SensorChoice {
   std::optional<LightSensor> camera_;
 };
 
+/// Returns the reflectance that an asset ships with.
+Spectrum spectrum_of(const PrtReflectance& shipped) {
+  SampledSpectrum sampled{shipped.name, {}, shipped.values};
+  for (std::size_t k = 0; k < shipped.values.size(); ++k)
+    sampled.wavelengths_nm.push_back(shipped.first_nm + static_cast<double>(k) * shipped.step_nm);
+  return resample(sampled);
+}
+
 void require_plain_transfer(const PrtAsset& asset) {
   const std::string file = asset.ranges_file.string();
-  if (asset.channels != 1)
+  if (asset.channels != 1 && !asset.spectrum)
     throw BadInput(file,
                    "has transfer of " + std::to_string(asset.channels) + " channels, whose colours were mixed as RGB",
-                   "one channel", "draw it without --lamp, or bake it without bounces of colour");
+                   "one channel", "draw it without --lamp, or bake it by wavelengths, with --spectrum");
   if (asset.albedo.within_transfer)
     throw BadInput(file, "has its albedo within the transfer", "transfer without albedo",
                    "bake it again without --bake-albedo");
+}
+
+/// Returns the matrix from what comes back of an asset's wavelengths, all of 1, to the shares of a lamp's light that a
+/// sensor's channels see. Throws WrongUsage for a camera, BadInput where the asset does not know the lamp.
+Eigen::MatrixXd shares_of_wavelengths(const PrtAsset& asset, const LampView& lamp, const std::string& name) {
+  const std::string file = asset.ranges_file.string();
+  if (!lamp.sensor().from_xyz)
+    throw WrongUsage("sensor: found a camera for " + file +
+                     ", whose transfer by wavelengths is read as the CIE's observer "
+                     "sees it; expected no --sensor");
+  const std::vector<PrtSpectrum::Lamp>& known = asset.spectrum->lamps;
+  const auto found =
+      std::ranges::find_if(known, [&](const PrtSpectrum::Lamp& one) { return is_same_name(one.name, name); });
+  if (found == known.end()) {
+    std::string names;
+    for (const PrtSpectrum::Lamp& one : known) names += (names.empty() ? "" : ", ") + one.name;
+    throw BadInput(file, "has no matrix for the lamp " + name, names,
+                   "choose one of these, or bake it again with a basis of this lamp: kiln-spectrum --lights");
+  }
+  const auto count = static_cast<Eigen::Index>(asset.channels);
+  Eigen::MatrixXd reader(3, count);
+  for (Eigen::Index row = 0; row < 3; ++row)
+    reader.row(row) = Eigen::RowVectorXd::Map(found->xyz_from_channels[static_cast<std::size_t>(row)].data(), count);
+  const Eigen::MatrixXd shares = lamp.white().cwiseInverse().asDiagonal() * *lamp.sensor().from_xyz * reader;
+  // The matrix is of another lamp of that name, or of another observer, where it does not keep white.
+  constexpr double tolerance = 2e-3;
+  if ((shares.rowwise().sum().array() - 1).abs().maxCoeff() > tolerance)
+    throw BadInput(file, "has a matrix for the lamp " + name + " under which white is not that lamp's",
+                   "the same lamp, as the CIE 1931 observer sees it", "bake it again with a basis of this lamp");
+  return shares;
 }
 
 }  // namespace
@@ -203,8 +249,10 @@ void add_lamp_options(CommandLine& command, LampSettings& settings) {
   command.list_option("lamp", settings.lamps, "Light",
                       "Spectrum of all lights, or of each --light in turn: D65, F11, P2856, sun:20 or a file; the "
                       "picture is computed by spectra then");
-  command.list_option("reflectance", settings.reflectances, "Picture",
-                      "With --lamp, a file of an asset's reflectance, once for each in their order; own: its albedo");
+  command.list_option(
+      "reflectance", settings.reflectances, "Picture",
+      "With --lamp, a file of an asset's reflectance or TCS01 to TCS15, once for each in their order; own: "
+      "what it ships with, or its albedo");
   command.input_option("sensor", settings.sensor,
                        "With --lamp, a camera's responses for red, green and blue (default: the CIE 1931 observer)");
   OptionSet options;
@@ -240,25 +288,29 @@ LampScene lamp_scene(const std::vector<PrtAsset>& assets, const LightSettings& l
   const RgbLift lift(standards);
   const SensorChoice sensor(settings, standards, lift);
   std::vector<std::optional<Spectrum>> reflectances(assets.size());
-  for (std::size_t k = 0; k < settings.reflectances.size(); ++k) {
-    if (settings.reflectances[k] == "own") continue;
-    const std::vector<NamedSpectrum> found = standards.reflectances(settings.reflectances[k]);
-    if (found.size() != 1)
-      throw BadInput(settings.reflectances[k], "holds " + std::to_string(found.size()) + " reflectances", "one",
-                     "copy the one that is meant into a file of its own");
-    reflectances[k] = found[0].values;
-  }
+  for (std::size_t k = 0; k < assets.size(); ++k)
+    if (const auto& shipped = assets[k].albedo.reflectance) reflectances[k] = spectrum_of(*shipped);
+  for (std::size_t k = 0; k < settings.reflectances.size(); ++k)
+    if (settings.reflectances[k] != "own") reflectances[k] = standards.reflectance(settings.reflectances[k]).values;
 
   std::optional<LiftedTable> table;
   for (std::size_t k = 0; k < assets.size(); ++k)
-    if (!reflectances[k] && !assets[k].albedo.picture.values().empty() && !table) table.emplace(lift);
+    if (!assets[k].spectrum && !reflectances[k] && !assets[k].albedo.picture.values().empty() && !table)
+      table.emplace(lift);
 
+  std::vector<std::optional<WavelengthFold>> folds(assets.size());
   LampScene scene{{}, settings.lamps};
   for (std::size_t l = 0; l < settings.lamps.size(); ++l) {
     const LampView lamp = sensor.under(standards.light(settings.lamps[l]));
     LampLit lit;
     lit.rgb_from_channels = lamp.sensor().rgb.cast<float>();
     for (std::size_t k = 0; k < assets.size(); ++k) {
+      if (assets[k].spectrum) {
+        const Eigen::MatrixXd shares = shares_of_wavelengths(assets[k], lamp, settings.lamps[l]);
+        if (!folds[k]) folds[k].emplace(assets[k], reflectances[k]);
+        lit.assets.push_back(folds[k]->through(shares));
+        continue;
+      }
       PrtAlbedo& albedo = lit.assets.emplace_back(assets[k]).albedo;
       if (reflectances[k]) {
         albedo = PrtAlbedo::of_constant(lamp.share(*reflectances[k]).cast<float>());

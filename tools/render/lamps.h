@@ -24,7 +24,7 @@ enum class LampWhite {
 /// How a picture is computed by spectra; by RGB as long as there is no lamp.
 struct LampSettings {
   std::vector<std::string> lamps = {};         ///< StandardSpectra::light; one for all lights, or one for each
-  std::vector<std::string> reflectances = {};  ///< of the assets in their order; "own" is an asset's albedo, lifted
+  std::vector<std::string> reflectances = {};  ///< of the assets in their order; "own": what it ships with
   std::filesystem::path sensor = {};  ///< three response curves for red, green and blue; empty: the 1931 observer
   LampWhite white = LampWhite::daylight;
   std::string standards = StandardSpectra::installed_folder;
@@ -52,8 +52,9 @@ struct LampScene {
   std::vector<std::string> names = {};  ///< of the lamps
 };
 
-/// Makes it; an asset's albedo is lifted (RgbLift) unless a reflectance is given. Assets' transfer has one channel and
-/// holds no albedo; lights have one radiance, and no environment. Throws WrongUsage, BadInput, MachineLacks.
+/// Makes it; an asset has the reflectance given, else the one that it ships with, else its albedo lifted (RgbLift).
+/// Assets' transfer has one channel, or one for each of some wavelengths with a matrix for each lamp (WavelengthFold),
+/// and holds no albedo; lights have one radiance, and no environment. Throws WrongUsage, BadInput, MachineLacks.
 LampScene lamp_scene(const std::vector<PrtAsset>& assets, const LightSettings& lights, int bands,
                      const LampSettings& settings);
 

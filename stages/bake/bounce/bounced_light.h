@@ -22,7 +22,8 @@ struct BounceDirections {
 };
 
 /// Adds the light that bounces off the job's occluders to `channels`, the direct transfer of the job's receivers: one,
-/// which becomes three where an albedo of the occluders is coloured. `direct`, an engine of `backend` for the
+/// which becomes three where an albedo of the occluders is coloured, and as many as wavelengths where they have
+/// reflectances. `direct`, an engine of `backend` for the
 /// occluders, lights the surface; it is destroyed before the engine that gathers is made. `traced` lists all receivers,
 /// and what is known of their rays along directions.receivers. The report's last bounce has the time of the final
 /// gather.

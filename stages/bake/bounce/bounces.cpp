@@ -116,6 +116,13 @@ SurfaceCache make_surface_cache(const Occluders& occluders, double longest_edge)
   return make_surface_cache(occluders.mesh, albedo_at, occluders.is_grey(), longest_edge);
 }
 
+std::vector<Eigen::Vector3f> point_reflectances(const Occluders& occluders, double longest_edge, std::size_t first) {
+  const auto at = [&](std::uint32_t triangle, float u, float v) {
+    return occluders.reflectance->at(occluders, triangle, u, v, first);
+  };
+  return make_surface_cache(occluders.mesh, at, false, longest_edge).point_albedos;
+}
+
 ReflectingSurface surface_of(const SurfaceCache& cache, const Occluders& occluders) {
   return {cache.positions,          cache.triangles, cache.points,    occluders.mesh.positions,
           occluders.mesh.triangles, occluders.hull,  occluders.closed};
@@ -160,7 +167,7 @@ TransferVectors direct_transfer(TransferEngine& engine, const Receivers& receive
 
 SentLight bounce_light(const SurfaceCache& cache, const TransferVectors& direct, GatherEngine& engine,
                        const BouncePlan& plan, const BounceSample& sample, BounceReport& report,
-                       const ProgressFunction& progress, TracedPoints traced) {
+                       const ProgressFunction& progress, TracedPoints& traced) {
   SentLight light{cache.grey ? 1 : 3, direct.coefficients, {}};
   const auto& [directions, target, bits] = plan;
   const int most = target.most();
@@ -171,7 +178,8 @@ SentLight bounce_light(const SurfaceCache& cache, const TransferVectors& direct,
   if (traced.points.empty()) traced.points = untraced(cache.receivers());
   std::vector<TracedReceivers> traced_sample = untraced(sample.receivers());
   if (most > 1) keep_hits(traced_sample, traced.memory);
-  if (most > 2) keep_hits(traced.points, traced.memory);
+  if (most > 2 && !traced.has_hits) keep_hits(traced.points, traced.memory);
+  traced.has_hits = most > 2;
   for (int bounce = 1; bounce <= most; ++bounce) {
     const Stopwatch stopwatch;
     engine.set_radiance(bounced, light.width());

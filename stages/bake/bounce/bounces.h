@@ -20,6 +20,9 @@ namespace kiln {
 /// Returns the surface of the occluders, cut and with points.
 SurfaceCache make_surface_cache(const Occluders& occluders, double longest_edge);
 
+/// Returns the reflectances of the points of that surface at three wavelengths of the occluders', from `first` on.
+std::vector<Eigen::Vector3f> point_reflectances(const Occluders& occluders, double longest_edge, std::size_t first);
+
 /// Returns the same surface for an engine that gathers.
 ReflectingSurface surface_of(const SurfaceCache& cache, const Occluders& occluders);
 
@@ -36,6 +39,7 @@ struct BounceSample {
 struct TracedPoints {
   std::vector<TracedReceivers> points;  ///< empty: nothing is known
   RayMemory* memory = nullptr;          ///< room for first hits that later bounces find again; null: none
+  bool has_hits = false;                ///< whether first hits of earlier bounces are among what is known
 };
 
 /// Returns all of `receivers` in slabs of some 100,000, with nothing known of their rays.
@@ -52,10 +56,11 @@ struct BouncePlan {
 /// direct transfer, t^b = (1 / pi) integral of max(0, n.s) rho(q) t^(b-1)(q) ds, q what the point sees along s from its
 /// front, and the light sent is rho times the sum of t^0 to t^(n-1). `direct` are the points' t^0, bands^2
 /// coefficients; `engine` is of the cache's surface. Every bounce casts the same rays: with `traced`, those after the
-/// first find theirs as far as they were kept. The report's energy has as many bounces as were taken.
+/// first find theirs as far as they were kept, as does further light off the same surface. The report's energy has as
+/// many bounces as were taken.
 SentLight bounce_light(const SurfaceCache& cache, const TransferVectors& direct, GatherEngine& engine,
                        const BouncePlan& plan, const BounceSample& sample, BounceReport& report,
-                       const ProgressFunction& progress, TracedPoints traced = {});
+                       const ProgressFunction& progress, TracedPoints& traced);
 
 /// Returns the direct transfer of any number of receivers, taken a part at a time to bound memory. Keeps in `traced`,
 /// if given, the rays that the engine finds blocked.

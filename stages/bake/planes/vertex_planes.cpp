@@ -11,7 +11,7 @@ namespace kiln {
 
 std::vector<std::uint32_t> write_vertex_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels,
                                                const ReceiverSet& receivers, const TriangleMesh& mesh, int bits,
-                                               const PrtAlbedo& albedo) {
+                                               const PrtAlbedo& albedo, const std::optional<PrtSpectrum>& spectrum) {
   if (static_cast<std::size_t>(receivers.width) != mesh.positions.size())
     throw std::invalid_argument("write_vertex_planes: receivers of this mesh's vertices are needed");
   PrtDescription asset;
@@ -19,6 +19,7 @@ std::vector<std::uint32_t> write_vertex_planes(OutputSet& outputs, const std::ve
   asset.bands = band_of(channels[0].coefficients - 1) + 1;
   asset.bits = bits;
   asset.albedo = albedo;
+  asset.spectrum = spectrum;
   return write_vertex_asset(outputs, asset, mesh, [&](int channel, int coefficient) {
     const std::span<const float> values = channels[static_cast<std::size_t>(channel)].plane(coefficient);
     VertexPlane plane{std::vector<float>(mesh.positions.size(), 0.f),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "asset/prt_asset.h"
@@ -18,7 +19,8 @@ namespace kiln {
 /// the vertex of `mesh` that each vertex of the file is.
 std::vector<std::uint32_t> write_vertex_planes(OutputSet& outputs, const std::vector<TransferVectors>& channels,
                                                const ReceiverSet& receivers, const TriangleMesh& mesh, int bits,
-                                               const PrtAlbedo& albedo = {});
+                                               const PrtAlbedo& albedo = {},
+                                               const std::optional<PrtSpectrum>& spectrum = {});
 
 /// Returns the vertex of the file that each receiver is; `sources` is what write_vertex_planes returned.
 std::vector<std::uint32_t> stored_vertices(const ReceiverSet& receivers, const std::vector<std::uint32_t>& sources);

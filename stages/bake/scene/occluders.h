@@ -3,9 +3,11 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "material/scene_mesh.h"
+#include "material/wavelength_albedo.h"
 #include "mesh/triangle_mesh.h"
 
 namespace kiln {
@@ -17,6 +19,8 @@ struct Occluders : SceneMesh {
   bool closed = false;                ///< is_closed of every mesh
   /// 1 for each triangle of a sheet that opacity cuts, such as a leaf: it encloses nothing; empty where none is.
   std::vector<std::uint8_t> sheets;
+  /// Reflectances of a bake by wavelengths; empty where light bounces as red, green and blue.
+  std::optional<SceneReflectance> reflectance = {};
 };
 
 /// Returns the triangles that may enclose something: all but those of sheets.

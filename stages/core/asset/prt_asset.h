@@ -54,6 +54,29 @@ struct PrtClusters {
   }
 };
 
+/// Measured reflectance of a surface that is the same everywhere, at even wavelengths; linear between them, and beyond
+/// their ends as at them.
+struct PrtReflectance {
+  std::string name = {};
+  int first_nm = 0;
+  int step_nm = 1;
+  std::vector<double> values = {};  ///< 0 to 1
+
+  bool operator==(const PrtReflectance&) const = default;
+};
+
+/// Wavelengths that the channels of transfer are of, one each, and how lamps show them.
+struct PrtSpectrum {
+  /// Lamp, and the matrix that reads X, Y and Z from what comes back of the wavelengths, all of 1.
+  struct Lamp {
+    std::string name = {};
+    std::vector<std::vector<double>> xyz_from_channels = {};  ///< three rows
+  };
+
+  std::vector<int> wavelengths_nm = {};  ///< rising
+  std::vector<Lamp> lamps = {};
+};
+
 /// Reflectance of the asset's surface, which its transfer does not include: exit radiance is albedo times the sum of
 /// light and transfer coefficients.
 struct PrtAlbedo {
@@ -63,6 +86,7 @@ struct PrtAlbedo {
   Image<std::uint8_t> picture = {};    ///< 3 channels, sRGB-encoded; empty if constant
   Image<std::uint8_t> at_planes = {};  ///< the same at the size of the planes, where that is another
   Eigen::Vector3f constant = Eigen::Vector3f::Ones();  ///< linear; used if there is no picture
+  std::optional<PrtReflectance> reflectance = {};      ///< where it was measured; `constant` is its colour under D65
   bool within_transfer = false;  ///< whether the bake has multiplied transfer by albedo, which is 1 here then
 
   /// Returns the linear albedo of a texel, j * width + i; ones where it is not known.
@@ -121,8 +145,9 @@ struct PrtDescription {
   int height = 0;
   int vertices = 0;  ///< vertices of an asset baked per vertex, whose width and height are 0; else 0
   std::vector<PrtPlane> planes = {};
-  std::optional<PcaTables> pca = {};  ///< set for compressed assets only
-  std::vector<PrtLevel> levels = {};  ///< levels of detail, the finest first; the mesh itself is not among them
+  std::optional<PcaTables> pca = {};         ///< set for compressed assets only
+  std::optional<PrtSpectrum> spectrum = {};  ///< set where channels are wavelengths, not colours
+  std::vector<PrtLevel> levels = {};         ///< levels of detail, the finest first; the mesh itself is not among them
 
   /// Returns the numbers of a transfer vector: all channels' coefficients, channel after channel.
   std::size_t vector_length() const {

@@ -2,6 +2,7 @@
 #include "asset/read_description.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -46,6 +47,78 @@ PrtAlbedo read_albedo(const Fields& fields, bool has_pictures) {
   return {};
 }
 
+/// Reads a measured reflectance, which spans what is seen.
+std::optional<PrtReflectance> read_reflectance(const Fields& fields, const PrtAlbedo& albedo) {
+  if (!fields.has(key::reflectance)) return std::nullopt;
+  const Json& object = *fields.find(key::reflectance, "");
+  if (!object.is_object()) {
+    fields.fail(key::reflectance, Fields::shown(object), "name, first_nm, step_nm and values");
+    return std::nullopt;
+  }
+  if (!albedo.known || !albedo.file.empty())
+    fields.fail(key::reflectance, "a reflectance without an albedo of three numbers", "the albedo that it is to RGB");
+  const Fields entry = fields.child(key::reflectance, object);
+  PrtReflectance reflectance{entry.text(key::name, "a name"),
+                             entry.integer(key::first_nm, shortest_wavelength_nm, longest_wavelength_nm),
+                             entry.integer(key::step_nm, 1, widest_reflectance_step_nm, 1),
+                             {}};
+  const Json* values = entry.list(key::values, std::nullopt, "shares of 0 to 1");
+  if (values == nullptr) return std::nullopt;
+  for (const Json& value : *values) {
+    if (!value.is_number() || value < 0 || value > 1) {
+      entry.fail(entry.path(key::values), Fields::shown(value), "shares of 0 to 1");
+      return std::nullopt;
+    }
+    reflectance.values.push_back(value.get<double>());
+  }
+  const auto last_nm = reflectance.first_nm + reflectance.step_nm * (static_cast<int>(reflectance.values.size()) - 1);
+  if (reflectance.first_nm > 400 || last_nm < 700) {
+    entry.fail(entry.path(key::values), fmt::format("{} to {} nm", reflectance.first_nm, last_nm),
+               "400 to 700 nm or more");
+    return std::nullopt;
+  }
+  return reflectance;
+}
+
+/// Reads the wavelengths of the channels, and the lamps that show them.
+std::optional<PrtSpectrum> read_spectrum(const Fields& fields, int channels) {
+  if (!fields.has(key::spectrum)) return std::nullopt;
+  const Json& object = *fields.find(key::spectrum, "");
+  if (!object.is_object()) {
+    fields.fail(key::spectrum, Fields::shown(object), "wavelengths_nm and lamps");
+    return std::nullopt;
+  }
+  if (channels < fewest_wavelengths)
+    fields.fail(key::channels, fmt::format("{} wavelengths", channels), fmt::format("{} or more", fewest_wavelengths));
+  const Fields entry = fields.child(key::spectrum, object);
+  const auto count = static_cast<std::size_t>(channels);
+  PrtSpectrum spectrum;
+  for (const double nm : entry.numbers(key::wavelengths_nm, count)) {
+    const bool rises = spectrum.wavelengths_nm.empty() || nm > spectrum.wavelengths_nm.back();
+    if (nm != std::floor(nm) || nm < shortest_wavelength_nm || nm > longest_wavelength_nm || !rises)
+      entry.fail(entry.path(key::wavelengths_nm), fmt::format("{:g}", nm), "whole wavelengths that rise");
+    spectrum.wavelengths_nm.push_back(static_cast<int>(nm));
+  }
+  const Json* lamps = entry.list(key::lamps, std::nullopt, "lamps");
+  if (lamps != nullptr && lamps->empty()) entry.fail(entry.path(key::lamps), "none", "at least one lamp");
+  for (std::size_t l = 0; lamps != nullptr && l < lamps->size(); ++l) {
+    const Fields lamp = entry.child(key::lamps, l, (*lamps)[l]);
+    PrtSpectrum::Lamp& read = spectrum.lamps.emplace_back();
+    read.name = lamp.text(key::name, "a name");
+    const Json* rows = lamp.list(key::xyz, 3, "rows: of X, Y and Z");
+    for (std::size_t row = 0; rows != nullptr && row < rows->size(); ++row) {
+      const Json& numbers = (*rows)[row];
+      const bool fits = numbers.is_array() && numbers.size() == count &&
+                        std::all_of(numbers.begin(), numbers.end(), &is_finite_float);
+      if (!fits)
+        lamp.fail(lamp.path(key::xyz), Fields::shown(numbers), fmt::format("rows of {} numbers", channels));
+      else
+        read.xyz_from_channels.push_back(numbers.get<std::vector<double>>());
+    }
+  }
+  return spectrum;
+}
+
 Eigen::Vector3d read_origin(const Fields& fields) {
   if (!fields.has(key::origin)) return Eigen::Vector3d::Zero();
   const std::vector<double> origin = fields.numbers(key::origin, 3);
@@ -81,6 +154,8 @@ void read_shared(const Fields& fields, PrtDescription& asset) {
     asset.albedo.width = fields.integer(key::albedo_width, 1, largest_asset_side);
     asset.albedo.height = fields.integer(key::albedo_height, 1, largest_asset_side);
   }
+  asset.albedo.reflectance = read_reflectance(fields, asset.albedo);
+  asset.spectrum = read_spectrum(fields, asset.channels);
   if (asset.vertices == 0 && fields.has(key::opacity)) asset.opacity_file = fields.safe_path(key::opacity);
   asset.maps = read_maps(fields);
   asset.origin = read_origin(fields);
@@ -214,8 +289,8 @@ std::pair<PrtDescription, FormatHead> read_description(const fs::path& file, Fau
   if (!faults.guard([&] { document = parse_json(file, is_pca ? "kiln-compress" : "kiln-bake", remedy); }))
     return {asset, {}};
   const Fields fields(file.string(), "", document, remedy, &faults);
-  std::vector<std::string> known = {requirement::albedo, requirement::albedo_size, requirement::normal_size,
-                                    requirement::opacity, requirement::tangent_normals};
+  std::vector<std::string> known = {requirement::albedo,  requirement::albedo_size, requirement::normal_size,
+                                    requirement::opacity, requirement::spectrum,    requirement::tangent_normals};
   if (!is_pca) known.emplace_back(requirement::vertices);
   const FormatHead head = read_head(fields, is_pca ? pca_format : prt_format, known);
   asset.bands = fields.integer(key::bands, 1, most_asset_bands);
@@ -230,6 +305,7 @@ std::vector<std::string> requirements(const PrtDescription& asset) {
   if (asset.albedo.has_own_size()) required.emplace_back(requirement::albedo_size);
   if (asset.normal_width > 0) required.emplace_back(requirement::normal_size);
   if (!asset.opacity_file.empty()) required.emplace_back(requirement::opacity);
+  if (asset.spectrum) required.emplace_back(requirement::spectrum);
   if (!asset.normals_file.empty() && asset.normal_space == NormalSpace::tangent)
     required.emplace_back(requirement::tangent_normals);
   if (asset.vertices > 0) required.emplace_back(requirement::vertices);

@@ -40,6 +40,19 @@ void add_albedo(Json& head, const PrtAlbedo& albedo) {
     head[key::albedo] = {constant.x(), constant.y(), constant.z()};
 }
 
+void add_spectra(Json& head, const PrtDescription& asset) {
+  if (const auto& reflectance = asset.albedo.reflectance)
+    head[key::reflectance] = {{key::name, reflectance->name},
+                              {key::first_nm, reflectance->first_nm},
+                              {key::step_nm, reflectance->step_nm},
+                              {key::values, reflectance->values}};
+  if (!asset.spectrum) return;
+  Json lamps = Json::array();
+  for (const PrtSpectrum::Lamp& lamp : asset.spectrum->lamps)
+    lamps.push_back({{key::name, lamp.name}, {key::xyz, lamp.xyz_from_channels}});
+  head[key::spectrum] = {{key::wavelengths_nm, asset.spectrum->wavelengths_nm}, {key::lamps, lamps}};
+}
+
 /// Adds the sizes, and the files that both descriptions name.
 void add_shared(Json& head, const PrtDescription& asset) {
   if (asset.vertices > 0) {
@@ -57,6 +70,7 @@ void add_shared(Json& head, const PrtDescription& asset) {
   }
   if (!asset.normals_file.empty() && asset.normal_space == NormalSpace::tangent) head[key::normal_space] = "tangent";
   add_albedo(head, asset.albedo);
+  add_spectra(head, asset);
   if (!asset.opacity_file.empty()) head[key::opacity] = asset.opacity_file;
   for (const PrtMap& map : asset.maps) {
     Json& entry = head[key::maps][map.name] = {{key::file, map.file}};

@@ -8,6 +8,7 @@
 
 #include "base/errors.h"
 #include "image/srgb.h"
+#include "material/measured_reflectance.h"
 #include "material/require_texture.h"
 
 namespace kiln {
@@ -136,6 +137,8 @@ std::vector<std::string> LoadedAlbedo::warnings() const {
   if (clamped > 0)
     all.push_back(std::to_string(clamped) +
                   " pixels or materials have a reflectance outside 0 to 1, and were clamped to that");
+  if (beyond_rgb)
+    all.emplace_back("the reflectance has a colour outside of sRGB under D65, which renderers by RGB show clamped");
   if (ignores_colors) all.emplace_back("the mesh has colours of vertices besides its materials; they are not used");
   return all;
 }
@@ -150,15 +153,33 @@ LoadedAlbedo load_emission(const ImportedMesh& mesh) {
   return glows && !mesh.surface.material_of.empty() ? MeshMaterials(mesh, ColorEncoding::srgb).load_emission() : dark;
 }
 
+void require_one_albedo(const MaterialSettings& settings) {
+  const auto refuse = [](bool first, const char* first_name, bool second, const char* second_name) {
+    if (first && second)
+      throw WrongUsage("found both --" + std::string(first_name) + " and --" + second_name + "; expected one of them");
+  };
+  const bool constant = settings.albedo.has_value(), texture = !settings.texture.empty();
+  refuse(constant, "albedo", texture, "albedo-texture");
+  refuse(!settings.reflectance.empty(), "reflectance", constant, "albedo");
+  refuse(!settings.reflectance.empty(), "reflectance", texture, "albedo-texture");
+}
+
+LoadedAlbedo load_constant_albedo(const MaterialSettings& settings) {
+  LoadedAlbedo loaded;
+  if (settings.albedo) loaded.albedo = SurfaceAlbedo::constant(Eigen::Vector3f(settings.albedo->data()));
+  if (settings.reflectance.empty()) return loaded;
+  MeasuredReflectance measured = load_reflectance(settings.reflectance);
+  loaded.albedo = SurfaceAlbedo::measured(measured.albedo, std::move(measured.spectrum.values));
+  loaded.files = std::move(measured.files);
+  loaded.beyond_rgb = measured.is_clamped;
+  return loaded;
+}
+
 LoadedAlbedo load_albedo(const ImportedMesh& mesh, const MaterialSettings& settings) {
   const auto given = settings.albedo;
-  if (given && !settings.texture.empty())
-    throw WrongUsage("found both --albedo and --albedo-texture; expected one of them");
+  require_one_albedo(settings);
+  if (given || !settings.reflectance.empty()) return load_constant_albedo(settings);
   LoadedAlbedo loaded;
-  if (given) {
-    loaded.albedo = SurfaceAlbedo::constant({(*given)[0], (*given)[1], (*given)[2]});
-    return loaded;
-  }
   if (!settings.texture.empty()) return load_texture(mesh, settings);
   if (mesh.surface.materials_fault) throw BadInput(*mesh.surface.materials_fault);
   if (MeshMaterials materials(mesh, settings.encoding); materials.exist()) return materials.load();

@@ -23,6 +23,12 @@ std::optional<std::array<float, 3>> parse_albedo(const std::string& text) {
 
 }  // namespace
 
+bool is_test_sample(const std::string& reflectance) {
+  if (reflectance.size() != 5 || (reflectance.substr(0, 3) != "TCS" && reflectance.substr(0, 3) != "tcs")) return false;
+  const std::string digits = reflectance.substr(3);
+  return digits >= "01" && digits <= "15" && digits[1] >= '0' && digits[1] <= '9';
+}
+
 void add_material_options(OptionSet& options, MaterialSettings& settings) {
   options.typed<std::optional<std::array<float, 3>>>(
       "albedo", settings.albedo, "auto, one number or R,G,B, each 0 to 1",
@@ -32,6 +38,9 @@ void add_material_options(OptionSet& options, MaterialSettings& settings) {
   options.file("albedo-texture", settings.texture,
                "A picture looked up with the high mesh's texture coordinates, in place of its file's materials (PNG, "
                "JPEG, EXR)");
+  options.file("reflectance", settings.reflectance,
+               "A measured spectrum of the high mesh's surface, in place of its albedo, which becomes the spectrum's "
+               "colour under D65: a file of one reflectance, or TCS01 to TCS15, a test colour sample of the CIE");
   options.choice<ColorEncoding>("albedo-encoding", settings.encoding,
                                 {{"srgb", ColorEncoding::srgb}, {"linear", ColorEncoding::linear}},
                                 "How colours of vertices, of materials and of pictures of integers are stored; those "

@@ -19,11 +19,16 @@ enum class OpacitySource { file, none };
 struct MaterialSettings {
   std::optional<std::array<float, 3>> albedo = {};  ///< linear, 0 to 1; nothing: what the mesh file says
   std::string texture = {};  ///< a picture looked up with the mesh's uvs, in place of its own materials
+  std::string reflectance =
+      {};  ///< a measured spectrum for all of the surface, in its place: a file, or TCS01 to TCS15
   ColorEncoding encoding = ColorEncoding::srgb;  ///< of vertex colours, Kd and pictures of integers
   OpacitySource opacity = OpacitySource::file;
   std::string opacity_texture = {};           ///< a picture looked up with the mesh's uvs, in place of its file's
   std::optional<double> opacity_cutoff = {};  ///< opacity below which nothing is there; nothing: the file's, or 0.5
 };
+
+/// Tells whether a reflectance is the name of a test colour sample of the CIE, TCS01 to TCS15, and no file.
+bool is_test_sample(const std::string& reflectance);
 
 /// Adds the options of albedo and opacity to a stage's options.
 void add_material_options(OptionSet& options, MaterialSettings& settings);

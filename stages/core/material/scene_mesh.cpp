@@ -16,9 +16,13 @@ void SceneMesh::add(const TriangleMesh& part, SurfaceAlbedo albedo) {
   albedos.push_back(std::move(albedo));
 }
 
-Eigen::Vector3f SceneMesh::albedo_at(std::uint32_t triangle, float u, float v) const {
+std::size_t SceneMesh::part_of(std::uint32_t triangle) const {
   const auto after = std::upper_bound(first_triangles.begin(), first_triangles.end(), triangle);
-  const auto part = static_cast<std::size_t>(after - first_triangles.begin()) - 1;
+  return static_cast<std::size_t>(after - first_triangles.begin()) - 1;
+}
+
+Eigen::Vector3f SceneMesh::albedo_at(std::uint32_t triangle, float u, float v) const {
+  const std::size_t part = part_of(triangle);
   return albedos[part].at(triangle - first_triangles[part], u, v);
 }
 

@@ -20,6 +20,9 @@ struct SceneMesh {
   void add(const TriangleMesh& part);
   void add(const TriangleMesh& part, SurfaceAlbedo albedo);
 
+  /// Returns the number of the mesh that a triangle of `mesh` is of.
+  std::size_t part_of(std::uint32_t triangle) const;
+
   /// Returns the albedo, linear red, green and blue, at a point of a triangle of `mesh`: u weighs its second corner, v
   /// its third.
   Eigen::Vector3f albedo_at(std::uint32_t triangle, float u, float v) const;

@@ -21,6 +21,12 @@ SurfaceAlbedo SurfaceAlbedo::constant(const Eigen::Vector3f& linear, Source sour
   return albedo;
 }
 
+SurfaceAlbedo SurfaceAlbedo::measured(const Eigen::Vector3f& linear, Spectrum reflectance) {
+  SurfaceAlbedo albedo = constant(linear);
+  albedo.reflectance_ = std::make_shared<const Spectrum>(std::move(reflectance));
+  return albedo;
+}
+
 SurfaceAlbedo SurfaceAlbedo::of_vertices(std::vector<Eigen::Vector3f> linear, std::vector<Triangle> triangles) {
   SurfaceAlbedo albedo;
   albedo.source_ = Source::vertex_colors;

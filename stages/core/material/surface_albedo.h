@@ -10,6 +10,7 @@
 
 #include "material/color_texture.h"
 #include "mesh/triangle_mesh.h"
+#include "spectrum/spectrum.h"
 
 namespace kiln {
 
@@ -41,6 +42,9 @@ class SurfaceAlbedo {
 
   static SurfaceAlbedo constant(const Eigen::Vector3f& linear, Source source = Source::constant);
 
+  /// Makes a constant albedo whose reflectance at all wavelengths is known.
+  static SurfaceAlbedo measured(const Eigen::Vector3f& linear, Spectrum reflectance);
+
   /// Makes an albedo of linear vertex colours, interpolated linearly over `triangles`.
   static SurfaceAlbedo of_vertices(std::vector<Eigen::Vector3f> linear, std::vector<Triangle> triangles);
 
@@ -59,6 +63,9 @@ class SurfaceAlbedo {
   bool is_constant() const { return vertices_ == nullptr && textured_ == nullptr; }
   const Eigen::Vector3f& constant_value() const { return constant_; }
 
+  /// Returns the reflectance of a measured surface; null where only its albedo is known.
+  const Spectrum* reflectance() const { return reflectance_.get(); }
+
   /// Tells whether red, green and blue are equal everywhere.
   bool is_grey() const { return is_grey_; }
 
@@ -76,6 +83,7 @@ class SurfaceAlbedo {
   Source source_ = Source::none;
   bool is_grey_ = true;
   Eigen::Vector3f constant_ = Eigen::Vector3f::Ones();
+  std::shared_ptr<const Spectrum> reflectance_;
   std::shared_ptr<const Vertices> vertices_;
   std::shared_ptr<const Textured> textured_;
 };

@@ -74,7 +74,8 @@ Neighbour parse_neighbour(const std::string& text) {
   const auto refuse = [&](const std::string& found) {
     throw WrongUsage("neighbour: found " + found + " in '" + text +
                      "'; expected FILE[;place=X,Y,Z[,AZIMUTH[,SCALE]]][;albedo=...][;albedo-texture=...]"
-                     "[;albedo-encoding=...][;opacity=...][;opacity-texture=...][;opacity-cutoff=...][;up=...][;unit=.."
+                     "[;reflectance=...][;albedo-encoding=...][;opacity=...][;opacity-texture=...][;opacity-cutoff=...]"
+                     "[;up=...][;unit=.."
                      ".][;scale=...][;normals=...][;fill-holes=...]");
   };
   if (neighbour.file.empty()) refuse("no file");
@@ -121,8 +122,7 @@ std::vector<PlacedMesh> load_surroundings(const Surroundings& surroundings, cons
   ground.name = "the ground";
   ground.mesh = ground_square(centre, half_size);
   move_to_asset(ground.mesh, {}, asset, frame);
-  if (const auto constant = material.albedo)
-    ground.material.albedo = SurfaceAlbedo::constant({(*constant)[0], (*constant)[1], (*constant)[2]});
+  if (with_albedo) ground.material = load_constant_albedo(material);
   return placed;
 }
 

@@ -99,6 +99,21 @@ std::vector<NamedSpectrum> StandardSpectra::reflectances(const std::string& name
   return reflectances;
 }
 
+NamedSpectrum StandardSpectra::reflectance(const std::string& name) const {
+  const std::string capitals = in_capitals(name);
+  if (std::error_code error; !fs::is_regular_file(name, error) && capitals.starts_with("TCS"))
+    for (NamedSpectrum& sample : reflectances("CIE-TCS"))
+      if (sample.name == capitals) return sample;
+  if (std::error_code error; !fs::is_regular_file(name, error) && capitals != "CIE-TCS")
+    throw WrongUsage("reflectance: found '" + name +
+                     "'; expected TCS01 to TCS15, a test colour sample of the CIE, or a file of a reflectance");
+  std::vector<NamedSpectrum> found = reflectances(name);
+  if (found.size() != 1)
+    throw BadInput(name, fmt::format("holds {} reflectances", found.size()), "one",
+                   "copy the one that is meant into a file of its own");
+  return found.front();
+}
+
 SpectrumMatrix StandardSpectra::observer(Observer which) const {
   const fs::path file =
       folder_ / (which == Observer::cie_1931 ? "cmf/CIE1931-2deg-XYZ.cmf" : "cmf/CIE1964-10deg-XYZ.cmf");

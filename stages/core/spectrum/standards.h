@@ -35,6 +35,10 @@ class StandardSpectra {
   /// and TCS15), or the spectra of a file. Throws as light().
   std::vector<NamedSpectrum> reflectances(const std::string& name) const;
 
+  /// Returns one reflectance: TCS01 to TCS15, a test colour sample of the CIE, or that of a file which holds one.
+  /// Throws as light().
+  NamedSpectrum reflectance(const std::string& name) const;
+
   /// Returns x, y and z of an observer in three columns.
   SpectrumMatrix observer(Observer observer) const;
 

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "asset/prt_asset.h"
+#include "material/wavelength_albedo.h"
+#include "spectrum/spectrum.h"
+
+namespace kiln {
+
+/// Folds an asset's transfer at wavelengths into three channels.
+class WavelengthFold {
+ public:
+  /// The surface has the measured reflectance, or else the asset's albedo, lifted at the planes' texels, or, where that
+  /// is not known, all of 1. `asset` outlives this. Throws MachineLacks.
+  WavelengthFold(const PrtAsset& asset, const std::optional<Spectrum>& measured);
+
+  /// Returns the asset with, as transfer, that of the wavelengths times what the surface reflects of them, through
+  /// `channels`, 3 x wavelengths: planes of 16 bits, and an albedo of 1 if the reflectance is known.
+  PrtAsset through(const Eigen::MatrixXd& channels) const;
+
+ private:
+  void shares_at(std::size_t place, std::span<float> shares) const;
+  std::vector<float> vectors(const Eigen::MatrixXf& channels, std::size_t places) const;
+
+  const PrtAsset& asset_;
+  WavelengthAlbedo at_wavelengths_;
+  std::vector<float> constant_;  ///< reflectances of all of the surface; empty where its albedo is a picture
+  bool is_known_;
+};
+
+}  // namespace kiln
