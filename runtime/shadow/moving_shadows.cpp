@@ -189,7 +189,7 @@ void MovingShadows::Implementation::update_trees(const ShadowStage& stage) {
       siblings[k][sort] = sibling_occluders(stage, node, settings.composite_balls, sort == 1);
       const double unit = std::max(placed[k].ball.radius, 1e-30);
       StateKey key = key_of(node, siblings[k][sort].meshes, stage.poses, unit, false, 0);
-      // Of composite nodes the balls count: the own one's centre is the point. What moves within them changes nothing.
+      // A composite node counts by its ball, whose centre is the point: what moves within it changes nothing.
       std::vector<int> composites = siblings[k][sort].balls;
       if (!is_mesh) composites.push_back(node);
       for (const int composite : composites)

@@ -317,7 +317,7 @@ TEST(MovingShadows, NothingFlickersAsABallPasses) {
   }
   const auto least = std::min_element(means.begin(), means.end());
   EXPECT_EQ(means.front(), means.back());
-  // Of 12 degrees of light a ball of 7.2 leaves all but a share of their squared sines.
+  // A ball of 7.2 degrees takes from a light of 12 the share of their squared sines.
   EXPECT_NEAR(*least / means.front(), 1 - std::pow(std::sin(std::asin(1.0 / 8)) / std::sin(12 * pi / 180), 2), 0.01);
   const double direction = means.front() / 1024;
   for (auto value = means.begin() + 1; value != means.end(); ++value) {

@@ -148,7 +148,7 @@ TEST(SpectralBasis, MetamersSplitAsTheyDoInTruth) {
 
 TEST(SpectralBasis, ChainsAreAllCombinationsOrThinnedEvenly) {
   EXPECT_EQ(reflection_chains(3, 2), (std::vector<ReflectionChain>{{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}}));
-  // Of too many, so many that are spread evenly: each surface is met about as often.
+  // Combinations that are too many are thinned evenly: each surface is met about as often.
   const auto few = reflection_chains(100, 6, 10000);
   ASSERT_EQ(few.size(), 10000u);
   EXPECT_EQ(few[7], ReflectionChain(6, 7));

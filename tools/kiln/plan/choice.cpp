@@ -57,7 +57,7 @@ ChoiceGrid full_grid(const AssetModel& model) {
   for (int bands = 1; bands <= model.most_bands(); ++bands) grid.bands.push_back(bands);
   grid.directions = {64,   96,   128,  192,  256,  384,  512,   768,   1024,
                      1536, 2048, 3072, 4096, 6144, 8192, 12288, 16384, 32768};
-  // Of choices that cost the same the first is taken: that without shadows, if it serves.
+  // The first of equally cheap choices is taken: the one without shadows, if it serves.
   if (model.pilot().may_be_unshadowed) grid.directions.insert(grid.directions.begin(), 0);
   grid.bits = {8, 16};
   grid.bounces = {false};

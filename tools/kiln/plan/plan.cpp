@@ -72,6 +72,8 @@ class AssetPlanner {
     if (model_.pilot().must_be_vertices && !model_.pilot().may_be_vertices)
       return {asset_.name, goal_.error, "per-vertex: what its albedo or opacity costs at vertices is not known",
               {},          {},          {}};
+    if (keeps("bake.shadows") && !has_shadows(asset_) && !model_.pilot().may_be_unshadowed)
+      return {asset_.name, goal_.error, "shadows: what leaving them out costs is not known", {}, {}, {}};
     ChoiceGrid grid = full_grid(model_);
     keep_in(grid);
     double allowance = asset_.settings.contains("compress") ? share_of_compression * goal_.error : 0;

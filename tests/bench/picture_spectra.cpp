@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The examples of [Peercy 1995] as a picture and a table (docs/spectral.md): a smooth interface, a thin film and a
 // fluorescent paint, by spectra in steps of 1 nm, by six functions of light, and by red, green and blue.
-//   spectrum-examples docs/spectral-examples.png
+//   picture_spectra docs/spectral-examples.png
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -146,8 +146,8 @@ void draw_strip(Image<std::uint8_t>& picture, int top, const Eye& eye, const std
 }  // namespace
 
 int main(int argc, char** argv) {
-  return run_program("spectrum-examples", [&] {
-    CommandLine command("spectrum-examples", "Draws interfaces, films and fluorescence by spectra, a basis and RGB.");
+  return run_program("picture_spectra", [&] {
+    CommandLine command("picture_spectra", "Draws interfaces, films and fluorescence by spectra, a basis and RGB.");
     std::vector<std::filesystem::path> files;
     command.paths("PICTURE", files, "The picture, .png");
     command.parse(argc, argv);
