@@ -336,6 +336,7 @@ TEST(ShadowChoice, TakesTheSmallestMapUnderTheFloor) {
   EXPECT_NEAR(choice.floor, quantisation_floor(stand.embree(), 8), 0.1 * choice.floor);
   // Maps alone need more texels.
   settings.shadows.refine = false;
+  settings.directions = 16;
   const ShadowSizeChoice alone = choose_shadow_size(receivers.view(), {receivers, occluders, settings, 1});
   EXPECT_GT(alone.size_texels, 256);
   EXPECT_EQ(alone.reached, alone.error <= alone.floor);

@@ -51,7 +51,7 @@ TEST(HardShapes, AThinBowlIsNotTorn) {
 }
 
 TEST(HardShapes, AFineThinBowlIsNotTorn) {
-  const TriangleMesh bowl = shapes::thin_bowl(192, 48, 0.002f);
+  const TriangleMesh bowl = shapes::thin_bowl(144, 36, 0.002f);
   for (const SimplifyQuality quality : all_qualities)
     for (const int faces : {400, 2000}) {
       SCOPED_TRACE(std::string(name_of(quality)) + " to " + std::to_string(faces));

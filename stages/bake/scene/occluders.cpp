@@ -1,33 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bake/scene/occluders.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/convex_hull_3.h>
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
+#include "mesh/convex_hull.h"
 #include "mesh/hard_edges.h"
 
 namespace kiln {
 
 namespace {
-
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-
-std::vector<Eigen::Vector3f> hull_corners(const TriangleMesh& mesh) {
-  std::vector<Kernel::Point_3> points, corners;
-  for (const Triangle& triangle : mesh.triangles)
-    for (std::uint32_t vertex : triangle) {
-      const Eigen::Vector3f& p = mesh.positions[vertex];
-      points.emplace_back(p.x(), p.y(), p.z());
-    }
-  CGAL::extreme_points_3(points, std::back_inserter(corners));
-  std::sort(corners.begin(), corners.end());
-  std::vector<Eigen::Vector3f> hull;
-  for (const Kernel::Point_3& p : corners) hull.emplace_back(p.x(), p.y(), p.z());
-  return hull;
-}
 
 /// Sets the corner normals of the whole if one of its parts has them; other parts get those of their creases.
 void join_corner_normals(const std::vector<TriangleMesh>& parts, TriangleMesh& whole) {

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "import/triangulate.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+
+#include "mesh/polygon_triangles.h"
 
 namespace kiln {
 
 namespace {
 
-using CgalPoint = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
 using Corners = std::vector<std::uint32_t>;  ///< indices of SourceMesh::corners
 
 class Cutter {
@@ -60,21 +59,11 @@ class Cutter {
   }
 
   bool cut_polygon(const Corners& corners) {
-    using Face = CGAL::Triple<int, int, int>;
-    // Work near the origin, so that no digits are lost far from it.
-    const Eigen::Vector3d origin = at(corners[0]);
-    std::vector<CgalPoint> points;
-    for (const std::uint32_t corner : corners) {
-      const Eigen::Vector3d p = at(corner) - origin;
-      points.emplace_back(p.x(), p.y(), p.z());
-    }
-    std::vector<Face> faces;
-    CGAL::Polygon_mesh_processing::triangulate_hole_polyline(
-        points, std::back_inserter(faces), CGAL::parameters::use_2d_constrained_delaunay_triangulation(true));
-    for (const Face& face : faces)
-      add(corners[static_cast<std::size_t>(face.first)], corners[static_cast<std::size_t>(face.second)],
-          corners[static_cast<std::size_t>(face.third)]);
-    return !faces.empty();
+    std::vector<Eigen::Vector3d> places;
+    for (const std::uint32_t corner : corners) places.push_back(at(corner));
+    const std::vector<Triangle> cut = triangulate_polygon(places);
+    for (const Triangle& t : cut) add(corners[t[0]], corners[t[1]], corners[t[2]]);
+    return !cut.empty();
   }
 
   const SourceMesh& source_;

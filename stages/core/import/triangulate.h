@@ -17,8 +17,8 @@ struct CutTriangle {
 };
 
 /// Cuts faces into triangles, in their order, each wound as its face. Quads are cut along the shorter of the diagonals
-/// that keep both halves on the same side. Polygons of more corners are cut by CGAL's triangulate_hole_polyline, in
-/// their plane or else with least area, so that concave ones are cut within themselves; where that fails, as a fan.
+/// that keep both halves on the same side. Polygons of more corners are cut by triangulate_polygon, so that concave
+/// ones are cut within themselves; where that fails, as a fan.
 /// `polygons`, if given, counts the faces of more than three corners.
 std::vector<CutTriangle> triangulate(const SourceMesh& source, int* polygons = nullptr);
 
