@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "base/errors.h"
+#include "damaged_text.h"
 #include "import/readers.h"
 #include "scratch.h"
 
@@ -55,21 +55,6 @@ inline testing::AssertionResult warns_only(const SourceMesh& mesh, const std::ve
     return failure;
   }
   return says(mesh.warnings[0], parts);
-}
-
-/// Flips, drops, doubles or cuts some bytes of a text.
-inline std::string mutated(std::string text, std::mt19937& random) {
-  const auto below = [&](std::size_t count) { return static_cast<std::size_t>(random()) % count; };
-  for (std::size_t k = 1 + below(4); k > 0 && !text.empty(); --k) {
-    const std::size_t at = below(text.size()), kind = below(6);
-    if (kind == 0) text[at] = static_cast<char>(random());
-    if (kind == 1) text.erase(at, 1 + below(8));
-    if (kind == 2) text.insert(at, text.substr(below(text.size()), 1 + below(12)));
-    if (kind == 3) text.resize(at);
-    if (kind == 4) text[at] = " \t\n\r\\/#-\"09e.,"[below(15)];
-    if (kind == 5) text[at] = static_cast<char>(text[at] ^ 1 << below(8));
-  }
-  return text;
 }
 
 }  // namespace kiln

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/errors.h"
+#include "damaged_text.h"
 #include "runtime/play/moving_scene.h"
 #include "runtime/scene/cluster_tree.h"
 #include "runtime/scene_file/scene_file.h"
@@ -333,6 +334,28 @@ PrtAsset box_asset() {
   asset.mesh = shapes::cube(1);
   asset.bands = 3;
   return asset;
+}
+
+TEST(SceneFile, DamagedScenesAreReadOrRefused) {
+  const SceneFolder folder;
+  const std::string good =
+      "nodes:\n"
+      "  - {name: still, asset: a, static: true, rotate: {axis: [0, 0, 2], degrees: 90}}\n"
+      "  - name: pair\n"
+      "    nodes:\n"
+      "      - {name: mover, asset: b, animate: {keyframes: [{time: 0, scale: 1}, {time: 1, translate: [0, 1.6, "
+      "0]}]}}\n"
+      "      - {name: moon, mesh: m.obj, animate: {orbit: {axis: [0, 1, 0], radius: 2, period: 4}}}\n"
+      "lights: [{directional: [0, 80], radiance: 1, radius: 6}, {ambient: [0.25, 1, 0]}]\n"
+      "camera: {azimuth: 30, elevation: 20}\n";
+  const int refused = count_refused(good, 1000, [&](const std::string& text) {
+    const SceneDescription scene = folder.read(text);
+    EXPECT_FALSE(scene.items.empty());
+    EXPECT_GE(duration_of(scene), 0);
+    for (const SceneLight& light : scene.lights) light_at(light, 0.5);
+  });
+  EXPECT_GT(refused, 300);
+  EXPECT_LT(refused, 1000);
 }
 
 TEST(MovingScene, NodesAndLightAreWhereTheyAreInTime) {

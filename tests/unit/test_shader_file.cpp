@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/errors.h"
+#include "damaged_text.h"
 #include "gpu/egl_context.h"
 #include "runtime/shading/shader_file.h"
 #include "runtime/shading/shader_programs.h"
@@ -103,6 +104,24 @@ TEST(ShaderFile, FaultsNameTheLine) {
             "none");
   expect("", "a.glsl:1: ", "has no function before_light");
   expect(parts.substr(0, parts.find("vec3")), "a.glsl:1: ", "has no function after_light");
+}
+
+TEST(ShaderFile, DamagedShadersAreReadOrRefused) {
+  const std::string good =
+      "parameter float rough = .25 in -1e-1 to 1.5;  // line 1\n"
+      "parameter vec3 tint = vec3(1, 0.5, -2);\n"
+      "uniform vec2 swing = vec2(sin(time), rough);\n"
+      "varying vec2 place = surface.object.xz;\n"
+      "texture grain = \"wood 1.png\" clamped linear;\n"
+      "#define TWICE(x) (2.0 * x)\n"
+      "/* what follows */ float helper(float a) { float inner = a * rough; return TWICE(inner); }\n" +
+      parts;
+  const int refused = count_refused(good, 3000, [](const std::string& text) {
+    const SurfaceShader shader = parse_shader(text, "a.glsl");
+    with_prefix(shader.text, shader.names, "a_");
+  });
+  EXPECT_GT(refused, 500);
+  EXPECT_LT(refused, 3000);
 }
 
 TEST(ShaderFile, PrefixesLeaveMembersAlone) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/errors.h"
+#include "damaged_text.h"
 #include "scratch.h"
 #include "spectra.h"
 #include "spectrum/colorimetry.h"
@@ -173,6 +174,32 @@ TEST(SpectrumFile, CgatsIsReadByItsHeader) {
   EXPECT_THROW(read(head + data + " 1\nEND_DATA\n"), BadInput);  // a value too many
   EXPECT_THROW(read(head + " SPEC_710" + data + " 25\nEND_DATA"), BadInput);  // a band too many
   EXPECT_THROW(read("CTI3\nBEGIN_DATA_FORMAT\nRGB_R\nEND_DATA_FORMAT\nBEGIN_DATA\n1\nEND_DATA\n"), BadInput);
+}
+
+TEST(SpectrumFile, DamagedFilesAreReadOrRefused) {
+  const Scratch scratch;
+  const std::string columns =
+      "# measured\nnm; \"white wall\"; black\n380; 0.9; 0\n400; 0.91; 0.1 # note\n420; 0.8; 1e-1\n440; .7; 0.1\n" +
+      std::string("460; 0.6; 0.2\n480; 0.5; 0.3\n500; 0.4; 0.4\n520; 0.3; 0.5\n540; 0.2; 0.6\n560; 0.1; 0.7\n") +
+      "580; 0.1; 0.8\n600; 0.1; 0.9\n620; 0.1; 1.0\n640; 0.1; 1\n660; 0.1; 1\n680; 0.1; 1\n700; 0.1; 1\n";
+  std::string cgats =
+      "CTI3\n\nDESCRIPTOR \"two\"\nSPECTRAL_BANDS \"16\"\nSPECTRAL_START_NM \"400.0\"\nSPECTRAL_END_NM \"700.0\"\n"
+      "NUMBER_OF_FIELDS 17\nBEGIN_DATA_FORMAT\nSAMPLE_ID";
+  for (int nm = 400; nm <= 700; nm += 20) cgats += " SPEC_" + std::to_string(nm);
+  cgats += "\nEND_DATA_FORMAT\nNUMBER_OF_SETS 1\nBEGIN_DATA\n\"A 1\"";
+  for (int nm = 400; nm <= 700; nm += 20) cgats += " 25.0";
+  cgats += "\nEND_DATA\n";
+  for (const std::string& good : {columns, cgats}) {
+    const int refused = count_refused(good, 1000, [&](const std::string& text) {
+      std::ofstream(scratch / "s.txt", std::ios::binary) << text;
+      for (const SampledSpectrum& spectrum : read_spectra(scratch / "s.txt", SpectrumKind::reflectance)) {
+        EXPECT_EQ(spectrum.values.size(), spectrum.wavelengths_nm.size());
+        for (const double value : resample(spectrum)) EXPECT_TRUE(value >= 0 && value <= 1) << text;
+      }
+    });
+    EXPECT_GT(refused, 300);
+    EXPECT_LT(refused, 1000);
+  }
 }
 
 TEST(SpectrumFile, FaultsAreSaidWithTheirLines) {
