@@ -114,7 +114,9 @@ class Paint {
         channels_(in_map_ ? std::max(3, input.asset.channels) : input.asset.channels) {
     if (!within_ && !in_map_) return;
     const PathAlbedo albedo({*input.albedo}, wavelengths_of(input.asset));
-    const auto color_at = [&](const SurfacePoint& point) { return albedo.lifted_at(0, point.triangle, point.u, point.v); };
+    const auto color_at = [&](const SurfacePoint& point) {
+      return albedo.lifted_at(0, point.triangle, point.u, point.v);
+    };
     std::ranges::transform(samples.seen, std::back_inserter(seen_), color_at);
     std::ranges::transform(samples.stood, std::back_inserter(stood_), color_at);
     if (is_spectral_) {
@@ -151,8 +153,7 @@ class Paint {
   /// Looks up what an asset stores at the slots, times its map.
   TransferRows shown(const TransferRows& stored, const std::vector<Lookup>& lookups,
                      const std::vector<std::uint32_t>& slots) const {
-    if (is_spectral_)
-      return kiln::looked_up(lookups, slots, painted(stored, shown_));
+    if (is_spectral_) return kiln::looked_up(lookups, slots, painted(stored, shown_));
     return painted(kiln::looked_up(lookups, slots, stored), shown_);
   }
   TransferRows slots(const TransferRows& vectors) const { return within_ ? painted(vectors, slots_) : vectors; }

@@ -278,8 +278,7 @@ std::string coefficients_section(const AssetFolder& asset, const fs::path& scrat
       "(l, m), and the range. One row is one band.</p>\n";
   for (int channel = 0; channel < asset.baked.channels; ++channel) {
     if (asset.baked.spectrum)
-      html +=
-          fmt::format("<h3>{} nm</h3>\n", asset.baked.spectrum->wavelengths_nm[static_cast<std::size_t>(channel)]);
+      html += fmt::format("<h3>{} nm</h3>\n", asset.baked.spectrum->wavelengths_nm[static_cast<std::size_t>(channel)]);
     else if (asset.baked.channels > 1)
       html += fmt::format("<h3>Channel {}</h3>\n", channel);
     if (asset.baked.bands > pyramid_bands) {

@@ -98,8 +98,8 @@ std::string facts(const AssetFolder& asset, const Report& report, const Json& me
        compressed ? metric_value("gpu_bytes", report.comparison.compressed_gpu_bytes) + " compressed"
                   : "mesh, textures, light");
   // Wavelengths are read for a lamp as an asset is loaded, into three channels.
-  const auto planes = asset.baked.spectrum ? 3 * asset.baked.bands * asset.baked.bands
-                                           : static_cast<int>(asset.baked.planes.size());
+  const auto planes =
+      asset.baked.spectrum ? 3 * asset.baked.bands * asset.baked.bands : static_cast<int>(asset.baked.planes.size());
   fact("Lookups", asset.is_per_vertex() ? "none" : grouped((planes + 3) / 4),
        asset.baked.spectrum    ? "of textures, a pixel, in one lamp's light"
        : compressed            ? compress_value("lookups_out") + " compressed"

@@ -16,8 +16,8 @@ struct PictureLamp {
   SpectralView view;  ///< what a monitor of sRGB's primaries shows of it, light of D65's colour being white
 };
 
-/// Returns the first lamp that an asset of wavelengths has a matrix for and whose spectrum is at hand: one of the CIE's,
-/// a computed one, or a file. Throws BadInput where there is none, MachineLacks without the CIE's spectra.
+/// Returns the first lamp that an asset of wavelengths has a matrix for and whose spectrum is at hand: one of the
+/// CIE's, a computed one, or a file. Throws BadInput where there is none, MachineLacks without the CIE's spectra.
 PictureLamp picture_lamp(const PrtDescription& asset);
 
 /// Throws WrongUsage, naming the option, for lights that have a colour: a lamp's spectrum is theirs.

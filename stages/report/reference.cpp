@@ -30,7 +30,7 @@ struct VisiblePoints {
   std::vector<Eigen::Vector3f> normals;
   std::vector<Eigen::Vector3f> albedos;
   std::vector<PathShares> reflected;  // of wavelengths, which albedos leave out then
-  std::vector<std::size_t> pixels;  // pixel of each sample, j * width + i
+  std::vector<std::size_t> pixels;    // pixel of each sample, j * width + i
 };
 
 /// Finds the points that samples see, in the order of rows: element s of the result holds those of the samples at place

@@ -59,10 +59,11 @@ struct ReferenceRays {
 /// Draws pictures of a mesh under each of `lights`: the first hit of each sample's ray is shaded by the transfer
 /// integral over the directions of `rays` (against the view's scene, with interpolated normals), and by paths for light
 /// that bounces (report/bounce_paths.h) or scatters beneath the surface (report/scatter_paths.h), projected on the
-/// view's bands. By wavelengths, each point's transfer is multiplied by what its surface reflects and read as red, green
-/// and blue; lights have no colour then. The samples of a pixel share the directions among them: sample s of n takes every n-th of a set from the s-th on, so the pixel's mean is over all of them at the
-/// price of one sample (interleaved sampling, [Keller 2001]). A light near the mesh is evaluated at every point.
-/// Without atlas, textures or rasteriser, this is what the baked asset approximates.
+/// view's bands. By wavelengths, each point's transfer is multiplied by what its surface reflects and read as red,
+/// green and blue; lights have no colour then. The samples of a pixel share the directions among them: sample s of n
+/// takes every n-th of a set from the s-th on, so the pixel's mean is over all of them at the price of one sample
+/// (interleaved sampling, [Keller 2001]). A light near the mesh is evaluated at every point. Without atlas, textures or
+/// rasteriser, this is what the baked asset approximates.
 std::vector<ReferencePicture> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
                                                  std::span<const LightSpec> lights, const ReferenceRays& rays,
                                                  const ProgressFunction& progress = no_progress);
