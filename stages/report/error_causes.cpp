@@ -97,6 +97,22 @@ TransferRows unshadowed_rows(const std::vector<Eigen::Vector3f>& normals, int ba
 
 using Colors = std::vector<PathShares>;
 
+/// Returns what a reflectance that ships has at wavelengths: linear between its values, and constant beyond them.
+PathShares shipped_shares(const PrtReflectance& reflectance, const std::vector<int>& wavelengths_nm) {
+  PathShares shares(static_cast<Eigen::Index>(wavelengths_nm.size()));
+  const double last = static_cast<double>(reflectance.values.size() - 1);
+  for (std::size_t k = 0; k < wavelengths_nm.size(); ++k) {
+    const double place =
+        std::clamp(static_cast<double>(wavelengths_nm[k] - reflectance.first_nm) / reflectance.step_nm, 0.0, last);
+    const auto before = static_cast<std::size_t>(std::min(place, std::max(0.0, last - 1)));
+    const double share = place - static_cast<double>(before);
+    const std::size_t after = std::min(before + 1, reflectance.values.size() - 1);
+    shares[static_cast<Eigen::Index>(k)] =
+        static_cast<float>((1 - share) * reflectance.values[before] + share * reflectance.values[after]);
+  }
+  return shares;
+}
+
 /// Returns the wavelengths that channels are of; none where they are colours.
 std::vector<int> wavelengths_of(const PrtAsset& asset) {
   return asset.spectrum ? asset.spectrum->wavelengths_nm : std::vector<int>();
@@ -121,7 +137,15 @@ class Paint {
     std::ranges::transform(samples.stood, std::back_inserter(stood_), color_at);
     if (is_spectral_) {
       // Who draws wavelengths multiplies them by what the map reflects at the texels of the planes.
-      for (const std::uint32_t texel : slots) shown_.push_back(albedo.of(input.asset.albedo.at(texel)));
+      std::vector<PathShares> measured;
+      for (const PrtReflectance& reflectance : input.asset.albedo.reflectances)
+        measured.push_back(shipped_shares(reflectance, input.asset.spectrum->wavelengths_nm));
+      for (const std::uint32_t texel : slots) {
+        const PrtReflectance* const of_texel = input.asset.albedo.measured(texel);
+        shown_.push_back(of_texel == nullptr
+                             ? albedo.of(input.asset.albedo.at(texel))
+                             : measured[static_cast<std::size_t>(of_texel - input.asset.albedo.reflectances.data())]);
+      }
       return;
     }
     if (in_map_) {

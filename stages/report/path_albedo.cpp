@@ -25,28 +25,36 @@ PathAlbedo::PathAlbedo(std::vector<SurfaceAlbedo> surfaces, const std::vector<in
   if (wavelengths_nm.empty()) return;
   lift_.emplace(wavelengths_nm);
   lift_->prepare_table();
+  const auto of_one = [&](const Spectrum* measured, bool is_one_color, const Eigen::Vector3f& color) {
+    return measured != nullptr ? shares_of(lift_->of(*measured))
+           : is_one_color      ? shares_of(lift_->of(color))
+                               : PathShares();
+  };
   for (const SurfaceAlbedo& surface : surfaces_) {
-    PathShares& constant = constants_.emplace_back();
-    if (surface.reflectance() != nullptr)
-      constant = shares_of(lift_->of(*surface.reflectance()));
-    else if (surface.is_constant())
-      constant = shares_of(lift_->of(surface.constant_value()));
+    std::vector<PathShares>& constants = constants_.emplace_back();
+    if (surface.materials().empty())
+      constants.push_back(of_one(surface.reflectance(), surface.is_constant(), surface.constant_value()));
+    for (const SurfaceAlbedo::Material& material : surface.materials())
+      constants.push_back(of_one(material.measured.spectrum.get(), material.texture == nullptr, material.color));
   }
 }
 
 PathShares PathAlbedo::at(std::size_t surface, std::uint32_t triangle, float u, float v) const {
-  if (const PathShares* const found = known(surface)) return *found;
+  if (const PathShares* const found = known(surface, triangle)) return *found;
   return of(surfaces_[surface].at(triangle, u, v));
 }
 
 PathShares PathAlbedo::lifted_at(std::size_t surface, std::uint32_t triangle, float u, float v) const {
-  if (const PathShares* const found = known(surface)) return *found;
+  if (const PathShares* const found = known(surface, triangle)) return *found;
   const Eigen::Vector3f albedo = surfaces_[surface].at(triangle, u, v);
   return shares_of(lift_ ? lift_->of(albedo) : std::vector<float>(albedo.begin(), albedo.end()));
 }
 
-const PathShares* PathAlbedo::known(std::size_t surface) const {
-  return lift_ && constants_[surface].size() > 0 ? &constants_[surface] : nullptr;
+const PathShares* PathAlbedo::known(std::size_t surface, std::uint32_t triangle) const {
+  if (!lift_) return nullptr;
+  const SurfaceAlbedo& albedo = surfaces_[surface];
+  const PathShares& constant = constants_[surface][albedo.materials().empty() ? 0 : albedo.material_at(triangle)];
+  return constant.size() > 0 ? &constant : nullptr;
 }
 
 PathShares PathAlbedo::of(const Eigen::Vector3f& albedo) const {

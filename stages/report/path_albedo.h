@@ -42,11 +42,12 @@ class PathAlbedo {
 
  private:
   /// Returns what was measured, or lifted before; nothing where that differs from place to place.
-  const PathShares* known(std::size_t surface) const;
+  const PathShares* known(std::size_t surface, std::uint32_t triangle) const;
 
   std::vector<SurfaceAlbedo> surfaces_;
   std::optional<WavelengthAlbedo> lift_;
-  std::vector<PathShares> constants_;  ///< by surface, at wavelengths; empty where it differs from place to place
+  /// At wavelengths, by surface, and by material where it has materials; empty where it differs from place to place.
+  std::vector<std::vector<PathShares>> constants_;
 };
 
 }  // namespace kiln

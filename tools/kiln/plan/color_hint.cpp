@@ -45,7 +45,11 @@ class Surfaces {
 
   void add(const BakeSettings& bake, const StandardSpectra& standards, const RgbLift& lift) {
     const MaterialSettings& material = bake.material;
-    if (material.reflectance.empty() && !material.albedo) return add(standards, stand_ins);
+    for (const auto& [name, reflectance] : reflectances_of_materials(material.reflectance_of))
+      add_measured(standards, reflectance);
+    if (material.reflectance.empty() && !material.albedo && material.reflectance_of.empty())
+      return add(standards, stand_ins);
+    if (!material.reflectance_of.empty()) return;
     if (material.albedo) {
       const auto& [red, green, blue] = *material.albedo;
       const std::string name = fmt::format("albedo {:.3g},{:.3g},{:.3g}", red, green, blue);
@@ -53,14 +57,17 @@ class Surfaces {
         reflectances.push_back({name, lift.lift(Eigen::Vector3d(red, green, blue)).spectrum()});
       return;
     }
-    const bool is_file = !is_test_sample(material.reflectance);
-    add(standards, is_file ? (pipeline_.folder / material.reflectance).string() : material.reflectance);
+    add_measured(standards, material.reflectance);
   }
 
   std::vector<NamedSpectrum> reflectances;
   std::set<std::string> names;
 
  private:
+  void add_measured(const StandardSpectra& standards, const std::string& name) {
+    add(standards, is_test_sample(name) ? name : (pipeline_.folder / name).string());
+  }
+
   void add(const StandardSpectra& standards, const std::string& name) {
     if (!names.insert(name).second) return;
     std::vector<NamedSpectrum> found =
@@ -76,7 +83,9 @@ class Surfaces {
 
 std::optional<ColorHint> color_hint(const Pipeline& pipeline, const Asset& asset, const ColorGoal& goal) {
   const BakeSettings bake = bake_of(asset);
-  if (bake.subsurface.wanted() || (!bake.bounces.any() && bake.material.reflectance.empty())) return std::nullopt;
+  if (bake.subsurface.wanted() ||
+      (!bake.bounces.any() && bake.material.reflectance.empty() && bake.material.reflectance_of.empty()))
+    return std::nullopt;
   const StandardSpectra standards;
   const RgbLift lift(standards);
   Surfaces surfaces(pipeline);
