@@ -129,7 +129,8 @@ class Paint {
         baked_channels_(input.asset.channels),
         channels_(in_map_ ? std::max(3, input.asset.channels) : input.asset.channels) {
     if (!within_ && !in_map_) return;
-    const PathAlbedo albedo({*input.albedo}, wavelengths_of(input.asset));
+    PathAlbedo albedo({*input.albedo}, wavelengths_of(input.asset));
+    albedo.prepare_table();
     const auto color_at = [&](const SurfacePoint& point) {
       return albedo.lifted_at(0, point.triangle, point.u, point.v);
     };

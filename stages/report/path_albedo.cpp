@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/path_albedo.h"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -24,7 +25,6 @@ PathAlbedo::PathAlbedo(std::vector<SurfaceAlbedo> surfaces, const std::vector<in
     : surfaces_(std::move(surfaces)) {
   if (wavelengths_nm.empty()) return;
   lift_.emplace(wavelengths_nm);
-  lift_->prepare_table();
   const auto of_one = [&](const Spectrum* measured, bool is_one_color, const Eigen::Vector3f& color) {
     return measured != nullptr ? shares_of(lift_->of(*measured))
            : is_one_color      ? shares_of(lift_->of(color))
@@ -37,6 +37,13 @@ PathAlbedo::PathAlbedo(std::vector<SurfaceAlbedo> surfaces, const std::vector<in
     for (const SurfaceAlbedo::Material& material : surface.materials())
       constants.push_back(of_one(material.measured.spectrum.get(), material.texture == nullptr, material.color));
   }
+  for (const std::vector<PathShares>& constants : constants_)
+    if (std::ranges::any_of(constants, [](const PathShares& constant) { return constant.size() == 0; }))
+      prepare_table();
+}
+
+void PathAlbedo::prepare_table() {
+  if (lift_) lift_->prepare_table();
 }
 
 PathShares PathAlbedo::at(std::size_t surface, std::uint32_t triangle, float u, float v) const {

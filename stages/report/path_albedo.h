@@ -37,6 +37,9 @@ class PathAlbedo {
   PathShares at(std::size_t surface, std::uint32_t triangle, float u, float v) const;
   PathShares lifted_at(std::size_t surface, std::uint32_t triangle, float u, float v) const;
 
+  /// Prepares the table even where no surface needs it, for `of`.
+  void prepare_table();
+
   /// Returns what an albedo reflects, by the table.
   PathShares of(const Eigen::Vector3f& albedo) const;
 

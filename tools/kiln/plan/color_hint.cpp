@@ -95,11 +95,12 @@ std::optional<ColorHint> color_hint(const Pipeline& pipeline, const Asset& asset
         pipeline.places.contains(other.name))
       surfaces.add(bake_of(other), standards, lift);
   SpectralScene scene{{}, std::move(surfaces.reflectances), standards.observer(Observer::cie_1931)};
-  for (const std::string& light : names_between_commas(goal.lights)) scene.lights.push_back(standards.light(light));
+  const std::vector<std::string> lamps = names_between_commas(goal.lights);
+  for (const std::string& light : lamps) scene.lights.push_back(standards.light(light));
   if (scene.reflectances.empty()) return std::nullopt;
 
   ColorHint hint;
-  hint.goal = goal;
+  hint.goal = {fmt::format("{}", fmt::join(lamps, ",")), goal.max_ciede2000};
   hint.surfaces = fmt::format("{}", fmt::join(surfaces.names, " and "));
   if (bake.bounces.any())
     hint.reflections =
