@@ -8,7 +8,7 @@
 
 #include "bake/backends.h"
 #include "bake/levels.h"
-#include "bake/measured_map.h"
+#include "bake/scene/measured_map.h"
 #include "bake/scene/vertex_receivers.h"
 #include "bake/spectral_channels.h"
 #include "base/asset_layout.h"

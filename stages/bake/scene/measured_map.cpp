@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "bake/measured_map.h"
+#include "bake/scene/measured_map.h"
 
 #include <algorithm>
 #include <cmath>
