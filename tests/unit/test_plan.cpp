@@ -356,7 +356,7 @@ assets:
   std::ifstream written(file("plan.yaml"));
   const std::string text((std::istreambuf_iterator<char>(written)), std::istreambuf_iterator<char>());
   EXPECT_NE(text.find("# lit: colour: red, green and blue are wrong by 24 CIEDE2000"), std::string::npos) << text;
-  EXPECT_NE(text.find("--lights D65,A,F11 --size 8"), std::string::npos) << text;
+  EXPECT_NE(text.find("--lights D65,A,F11 --reflectances CIE-TCS --size 8"), std::string::npos) << text;
   Pipeline read = load_pipeline(file("pipeline.yaml"));
   apply_plan(read, file("plan.yaml"));
 }

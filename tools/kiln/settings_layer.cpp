@@ -84,7 +84,11 @@ class BlockReader {
         renamed["reflectance-of"] = reflectances_text(block["reflectance"]);
       }
       // Settings given for the stage itself take precedence.
-      layer.blocks[stage->name].settings.merge(stage_settings(*stage, renamed));
+      std::map<std::string, WrittenSetting> settings = stage_settings(*stage, renamed);
+      // That text stands in no file.
+      if (const auto made = settings.find("reflectance-of"); made != settings.end())
+        made->second.where = file_.where(block["reflectance"]);
+      layer.blocks[stage->name].settings.merge(std::move(settings));
     }
   }
 

@@ -53,6 +53,7 @@ class Surfaces {
     if (material.albedo) {
       const auto& [red, green, blue] = *material.albedo;
       const std::string name = fmt::format("albedo {:.3g},{:.3g},{:.3g}", red, green, blue);
+      arguments.insert(stand_ins);
       if (names.insert(name).second && std::max({red, green, blue}) > 0)
         reflectances.push_back({name, lift.lift(Eigen::Vector3d(red, green, blue)).spectrum()});
       return;
@@ -62,6 +63,7 @@ class Surfaces {
 
   std::vector<NamedSpectrum> reflectances;
   std::set<std::string> names;
+  std::set<std::string> arguments;  ///< of kiln-spectrum
 
  private:
   void add_measured(const StandardSpectra& standards, const std::string& name) {
@@ -69,6 +71,7 @@ class Surfaces {
   }
 
   void add(const StandardSpectra& standards, const std::string& name) {
+    arguments.insert(name == stand_ins || is_test_sample(name) ? stand_ins : name);
     if (!names.insert(name).second) return;
     std::vector<NamedSpectrum> found =
         name == stand_ins ? standards.reflectances(name) : std::vector{standards.reflectance(name)};
@@ -101,6 +104,7 @@ std::optional<ColorHint> color_hint(const Pipeline& pipeline, const Asset& asset
 
   ColorHint hint;
   hint.goal = {fmt::format("{}", fmt::join(lamps, ",")), goal.max_ciede2000};
+  hint.reflectances = fmt::format("{}", fmt::join(surfaces.arguments, ","));
   hint.surfaces = fmt::format("{}", fmt::join(surfaces.names, " and "));
   if (bake.bounces.any())
     hint.reflections =
@@ -129,10 +133,11 @@ std::string to_text(const ColorHint& hint) {
     return "colour: " + wrong + "; the bake has no colour, and kiln-render --lamp draws a lamp's light in full";
   const int size = hint.least.value_or(most_wavelengths);
   return fmt::format(
-      "colour: {}; {} wavelengths by {:.2g}{}: kiln-spectrum -o basis.json --lights {} --size {}, and 'bake: "
+      "colour: {}; {} wavelengths by {:.2g}{}: kiln-spectrum -o basis.json --lights {} --reflectances {} --size {}, "
+      "and 'bake: "
       "{{spectrum: basis.json}}'",
       wrong, size, hint.of_least, hint.least ? "" : fmt::format(", more than {:.3g}", hint.goal.max_ciede2000),
-      hint.goal.lights, size);
+      hint.goal.lights, hint.reflectances, size);
 }
 
 Json to_json(const ColorHint& hint) {

@@ -19,6 +19,7 @@ struct ColorGoal {
 struct ColorHint {
   ColorGoal goal;
   std::string surfaces;      ///< whose colours were compared
+  std::string reflectances;  ///< the same as kiln-spectrum takes them: files, CIE-TCS for all others
   int reflections = 1;       ///< that were compared: those of the bake's bounces and the surface's own, 4 at most
   double of_rgb = 0;         ///< CIEDE2000 of red, green and blue at worst
   std::optional<int> least;  ///< wavelengths within the goal, 4 to 8; 0: red, green and blue are; nothing: none is
@@ -26,9 +27,9 @@ struct ColorHint {
 };
 
 /// Says so for an asset whose light bounces or whose surface was measured, nothing for others. What stands in its scene
-/// counts, too. Surfaces of materials, textures or vertex colours are taken for the CIE's test colour samples, and an
-/// albedo for what it is lifted to. Throws WrongUsage and BadInput for lights and reflectances that are none,
-/// MachineLacks without the CIE's spectra.
+/// counts, too. Surfaces of materials, textures or vertex colours of which none was measured are taken for the CIE's
+/// test colour samples, and an albedo for what it is lifted to. Throws WrongUsage and BadInput for lights and
+/// reflectances that are none, MachineLacks without the CIE's spectra.
 std::optional<ColorHint> color_hint(const Pipeline& pipeline, const Asset& asset, const ColorGoal& goal);
 
 /// Says it in one sentence, with what to do.
