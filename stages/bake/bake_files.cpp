@@ -112,6 +112,10 @@ Json write_textured(OutputSet& outputs, const BakePaths& paths, const BakeScene&
     fs::copy_file(paths.detail / albedo_map_name, outputs.add(albedo_map_name), fs::copy_options::overwrite_existing);
   else
     outputs.remove_stale(albedo_map_name);
+  if (!asset.albedo.measured_file.empty())
+    write_png(outputs.add(measured_map_name), asset.albedo.measured_at);
+  else
+    outputs.remove_stale(measured_map_name);
   if (scene.has_opacity_map) {
     asset.opacity_file = opacity_map_name;
     fs::copy_file(paths.detail / opacity_map_name, outputs.add(opacity_map_name), fs::copy_options::overwrite_existing);

@@ -8,12 +8,15 @@
 
 #include "bake/backends.h"
 #include "bake/levels.h"
+#include "bake/scene/measured_map.h"
 #include "bake/scene/vertex_receivers.h"
 #include "bake/spectral_channels.h"
+#include "base/asset_layout.h"
 #include "base/errors.h"
 #include "base/extent.h"
 #include "base/file_names.h"
 #include "base/files.h"
+#include "base/json.h"
 #include "import/import_mesh.h"
 #include "maps/asset_hints.h"
 #include "maps/detail_maps.h"
@@ -59,7 +62,8 @@ std::vector<TriangleMesh> load_occluders(const BakePaths& paths, const BakeSetti
   scene.said_warnings = hints.warnings;
 
   std::vector<SurfaceAlbedo> albedos;
-  const bool bounces = settings.bounces.any(), with_albedo = bounces || settings.bake_albedo;
+  const bool bounces = settings.bounces.any(), by_material = !settings.material.reflectance_of.empty();
+  const bool with_albedo = bounces || settings.bake_albedo || by_material;
   const auto add_albedo = [&](const std::string& name, const LoadedAlbedo& loaded) {
     if (bounces && loaded.albedo.source() == SurfaceAlbedo::Source::none)
       throw WrongUsage("bounces: found no albedo in " + name +
@@ -139,12 +143,7 @@ std::optional<PrtAlbedo> given_albedo(const BakeSettings& settings, BakeScene& s
   if (!settings.bounces.any()) scene.add_warnings(load_constant_albedo(material).warnings());
   scene.further_files.insert(scene.further_files.end(), measured.files.begin(), measured.files.end());
   PrtAlbedo albedo = PrtAlbedo::of_constant(measured.albedo);
-  PrtReflectance& shipped = albedo.reflectance.emplace();
-  shipped.name = text_of_path(measured.spectrum.name);
-  shipped.first_nm = first_wavelength_nm;
-  constexpr double stored_steps = 1e6;
-  for (const double share : measured.spectrum.values)
-    shipped.values.push_back(std::round(share * stored_steps) / stored_steps);
+  albedo.reflectance = shipped_reflectance(measured.spectrum.name, measured.spectrum.values);
   return albedo;
 }
 
@@ -159,6 +158,18 @@ void require_bounces_of_spectrum(const BakeSettings& settings) {
   refuse(settings.subsurface.wanted(), "subsurface", "none, whose materials are measured as red, green and blue");
 }
 
+/// Throws where the maps of the normals stage have the colours of other measured materials.
+void require_same_materials(const fs::path& detail, const std::string& reflectance_of) {
+  const fs::path file = layout::record_in(detail, "normals");
+  std::error_code error;
+  const Json record = fs::is_regular_file(file, error) ? Json::parse(read_text(file), nullptr, false) : Json::object();
+  const Json settings = record.is_object() ? record.value("settings", Json::object()) : Json::object();
+  const std::string of_maps = settings.is_object() ? settings.value("reflectance-of", std::string()) : std::string();
+  if (reflectances_of_materials(of_maps) != reflectances_of_materials(reflectance_of))
+    throw BadInput(file.string(), "has an albedo made with --reflectance-of '" + of_maps + "'",
+                   "the bake's, '" + reflectance_of + "'", "run kiln-normals again with the same option");
+}
+
 BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings) {
   if (!paths.detail.empty())
     throw WrongUsage(
@@ -170,6 +181,8 @@ BakeScene load_vertex_scene(const BakePaths& paths, const BakeSettings& settings
     throw WrongUsage("per-vertex: found --adaptive; expected none, it goes by squares of texels");
   if (settings.ship.all_maps || !settings.ship.maps.empty())
     throw WrongUsage("per-vertex: found maps in --ship; expected none, they are looked up with the uvs of an atlas");
+  if (!settings.material.reflectance_of.empty())
+    throw WrongUsage("per-vertex: found --reflectance-of; expected none, whose map is of texels, or --reflectance");
   if (settings.size.width != 0) throw WrongUsage("per-vertex: found --size; expected none, which is for texels");
   BakeScene scene;
   std::vector<std::string> warnings;
@@ -262,6 +275,14 @@ BakeScene load_bake_scene(const BakePaths& paths, const BakeSettings& settings) 
   const std::vector<TriangleMesh> occluders = load_occluders(paths, settings, scene);
   if (settings.receiver == BakeReceiver::high && !paths.occluders.empty())
     scene.high_area = surface_area(occluders.front());
+  if (!settings.material.reflectance_of.empty() && !has_albedo_within(settings)) {
+    if (scene.albedo.file.empty())
+      throw WrongUsage(
+          "reflectance-of: found no map of the albedo in --detail; expected the output of kiln-normals, "
+          "which was given the same --reflectance-of");
+    require_same_materials(paths.detail, settings.material.reflectance_of);
+    add_measured_materials(scene.albedo, scene.receivers, scene.occluders);
+  }
   set_aside_buried(paths, settings, scene);
   if (settings.bake_albedo && detail && !settings.material.albedo && settings.material.reflectance.empty())
     take_albedos(scene.receivers, *detail);

@@ -135,6 +135,9 @@ const StageInfo& bake_stage() {
                                  .rivals = {{"albedo", "albedo-texture"},
                                             {"albedo", "reflectance"},
                                             {"albedo-texture", "reflectance"},
+                                            {"albedo", "reflectance-of"},
+                                            {"albedo-texture", "reflectance-of"},
+                                            {"reflectance", "reflectance-of"},
                                             {"opacity", "opacity-texture"}},
                                  .metrics = metric_groups(),
                                  .run = run};

@@ -23,7 +23,8 @@ int main(int argc, char** argv) {
     command.list_option(
         "neighbour", settings.surroundings.neighbours, "Bake",
         "Mesh beside the asset that casts shadows, may be repeated: FILE[;place=X,Y,Z[,AZIMUTH[,SCALE]]]"
-        "[;albedo=...][;albedo-texture=...][;reflectance=...][;albedo-encoding=...][;opacity=...][;opacity-texture=...]"
+        "[;albedo=...][;albedo-texture=...][;reflectance=...][;reflectance-of=...][;albedo-encoding=...][;opacity=...]["
+        ";opacity-texture=...]"
         "[;opacity-cutoff=...][;up=...][;unit=...][;scale=...][;normals=...][;fill-holes=...]");
     command.input_option("merge", run.shards, "Folder of a shard; once for each. Adds them up in place of integrating");
     command.output(paths.output, "Folder for coeff_<c>_<ii>.png (per vertex: vertices.drc) and ranges.json");

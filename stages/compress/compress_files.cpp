@@ -39,6 +39,7 @@ EncodedFiles encode_all(const std::vector<Work>& work, PngEffort effort) {
 PrtDescription shared_description(const PrtAsset& asset) {
   PrtDescription form = asset;
   form.albedo.picture = {};
+  form.albedo.measured_at = {};
   form.planes.clear();
   return form;
 }
@@ -136,6 +137,10 @@ Json save_compressed(OutputSet& outputs, const fs::path& input, const PrtAsset& 
     copy_into(outputs, input, asset.albedo.file);
   else
     outputs.remove_stale(albedo_map_name);
+  if (!asset.albedo.measured_file.empty())
+    copy_into(outputs, input, asset.albedo.measured_file);
+  else
+    outputs.remove_stale(measured_map_name);
   if (!asset.opacity_file.empty())
     copy_into(outputs, input, asset.opacity_file);
   else

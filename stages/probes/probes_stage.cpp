@@ -64,6 +64,9 @@ const StageInfo& probes_stage() {
                                             {"albedo", "albedo-texture"},
                                             {"albedo", "reflectance"},
                                             {"albedo-texture", "reflectance"},
+                                            {"albedo", "reflectance-of"},
+                                            {"albedo-texture", "reflectance-of"},
+                                            {"reflectance", "reflectance-of"},
                                             {"opacity", "opacity-texture"}},
                                  .metrics = {{metric_names}},
                                  .run = run};

@@ -18,11 +18,13 @@ class BouncePaths {
  public:
   /// Keeps references to both. `scene` is the surface's hierarchy; `surface` has albedos. Light bounces at most
   /// `bounces` times.
-  BouncePaths(const RayScene& scene, const SceneMesh& surface, int bounces, float ray_offset);
+  BouncePaths(const RayScene& scene, const SceneMesh& surface, int bounces, float ray_offset,
+              const std::vector<int>& wavelengths_nm = {});
 
-  /// Adds the bounced transfer of the receivers to `channels`, three of them: a path starts along each of `directions`,
-  /// which stand for the whole sphere, and goes on in a random direction, by the cosine, from every front that it hits.
-  /// `first` numbers the receivers among all of the picture, whose paths differ; the same number gives the same paths.
+  /// Adds the bounced transfer of the receivers to `channels`, red, green and blue or the wavelengths: a path starts
+  /// along each of `directions`, which stand for the whole sphere, and goes on in a random direction, by the cosine,
+  /// from every front that it hits. `first` numbers the receivers among all of the picture, whose paths differ; the
+  /// same number gives the same paths.
   void add(const Receivers& receivers, std::span<const Eigen::Vector3f> directions, std::uint64_t first,
            std::vector<TransferVectors>& channels) const;
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "base/asset_layout.h"
 #include "base/errors.h"
@@ -13,6 +14,7 @@
 #include "material/load_albedo.h"
 #include "mesh/camera_record.h"
 #include "mesh/draco_file.h"
+#include "report/picture_lamp.h"
 #include "report/pictures.h"
 #include "report/recorded_scene.h"
 #include "report/reference.h"
@@ -70,6 +72,12 @@ std::uint64_t gpu_bytes_of(const Json& drawn) {
 Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high_file, const ReportSettings& settings,
                                   const ComparisonRun& run) {
   Comparison comparison;
+  std::optional<PictureLamp> lamp;
+  if (asset.baked.spectrum) {
+    lamp = picture_lamp(asset.baked);
+    require_no_color("lights", parse_lights("lights", list_of(settings.lights)));
+    comparison.lamp = lamp->name;
+  }
   const double albedo = settings.albedo_factor(asset.baked.albedo.known);
   const std::vector<CameraView> views = camera_views(settings);
 
@@ -126,6 +134,7 @@ Comparison compare_with_reference(const AssetFolder& asset, const fs::path& high
   view.bounces = static_cast<int>(bounces_taken(asset.record("bake")));
   view.scene = scene_of(asset, imported, view.bounces > 0 || error_bounces(asset, settings) > 0);
   view.bands = asset.baked.bands;
+  if (lamp) view.spectral = lamp->view;
   // Take other directions than the bake, so that an error of the bake's does not cancel.
   const ReferenceRays rays{settings.directions, static_cast<std::uint64_t>(run.seed) + 1};
   auto light = comparison.lights.begin();

@@ -32,6 +32,7 @@ struct LightComparison {
 
 struct Comparison {
   std::vector<LightComparison> lights;  ///< of the settings' camera first
+  std::string lamp;                     ///< whose spectrum all lights have; empty: they are red, green and blue
   std::size_t compared_pixels = 0;      ///< number of pixels covered wholly by both, of the first
   double silhouette_difference =
       0;  ///< share of the pixels in either silhouette that lie (by half or more) in only one

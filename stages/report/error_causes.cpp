@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "image/srgb.h"
 #include "raycast/ray_scene.h"
+#include "report/path_albedo.h"
 #include "report/split_transport.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
@@ -94,7 +95,28 @@ TransferRows unshadowed_rows(const std::vector<Eigen::Vector3f>& normals, int ba
   return rows;
 }
 
-using Colors = std::vector<Eigen::Vector3f>;
+using Colors = std::vector<PathShares>;
+
+/// Returns what a reflectance that ships has at wavelengths: linear between its values, and constant beyond them.
+PathShares shipped_shares(const PrtReflectance& reflectance, const std::vector<int>& wavelengths_nm) {
+  PathShares shares(static_cast<Eigen::Index>(wavelengths_nm.size()));
+  const double last = static_cast<double>(reflectance.values.size() - 1);
+  for (std::size_t k = 0; k < wavelengths_nm.size(); ++k) {
+    const double place =
+        std::clamp(static_cast<double>(wavelengths_nm[k] - reflectance.first_nm) / reflectance.step_nm, 0.0, last);
+    const auto before = static_cast<std::size_t>(std::min(place, std::max(0.0, last - 1)));
+    const double share = place - static_cast<double>(before);
+    const std::size_t after = std::min(before + 1, reflectance.values.size() - 1);
+    shares[static_cast<Eigen::Index>(k)] =
+        static_cast<float>((1 - share) * reflectance.values[before] + share * reflectance.values[after]);
+  }
+  return shares;
+}
+
+/// Returns the wavelengths that channels are of; none where they are colours.
+std::vector<int> wavelengths_of(const PrtAsset& asset) {
+  return asset.spectrum ? asset.spectrum->wavelengths_nm : std::vector<int>();
+}
 
 /// What albedo does to transfer: nothing, or what the high mesh's own and the asset's make of it.
 class Paint {
@@ -103,12 +125,30 @@ class Paint {
         const PointList& slot_points)
       : within_(input.albedo != nullptr && input.albedo_within),
         in_map_(input.albedo != nullptr && !within_ && input.asset.albedo.picture.width() > 0),
+        is_spectral_(input.asset.spectrum.has_value()),
         baked_channels_(input.asset.channels),
-        channels_(in_map_ ? 3 : input.asset.channels) {
+        channels_(in_map_ ? std::max(3, input.asset.channels) : input.asset.channels) {
     if (!within_ && !in_map_) return;
-    const auto color_at = [&](const SurfacePoint& point) { return input.albedo->at(point.triangle, point.u, point.v); };
+    PathAlbedo albedo({*input.albedo}, wavelengths_of(input.asset));
+    albedo.prepare_table();
+    const auto color_at = [&](const SurfacePoint& point) {
+      return albedo.lifted_at(0, point.triangle, point.u, point.v);
+    };
     std::ranges::transform(samples.seen, std::back_inserter(seen_), color_at);
     std::ranges::transform(samples.stood, std::back_inserter(stood_), color_at);
+    if (is_spectral_) {
+      // Who draws wavelengths multiplies them by what the map reflects at the texels of the planes.
+      std::vector<PathShares> measured;
+      for (const PrtReflectance& reflectance : input.asset.albedo.reflectances)
+        measured.push_back(shipped_shares(reflectance, input.asset.spectrum->wavelengths_nm));
+      for (const std::uint32_t texel : slots) {
+        const PrtReflectance* const of_texel = input.asset.albedo.measured(texel);
+        shown_.push_back(of_texel == nullptr
+                             ? albedo.of(input.asset.albedo.at(texel))
+                             : measured[static_cast<std::size_t>(of_texel - input.asset.albedo.reflectances.data())]);
+      }
+      return;
+    }
     if (in_map_) {
       for (const Eigen::Vector2f& uv : samples.uvs) shown_.push_back(color_in_map(input.asset.albedo.picture, uv));
       return;
@@ -122,7 +162,7 @@ class Paint {
     if (input.detail == nullptr || !input.map_albedo) return;
     const auto width = static_cast<std::uint32_t>(input.detail->width);
     std::ranges::transform(slots, baked_.begin(), [&](std::uint32_t texel) {
-      return input.detail->albedo_at(static_cast<int>(texel % width), static_cast<int>(texel / width));
+      return shares_of(input.detail->albedo_at(static_cast<int>(texel % width), static_cast<int>(texel / width)));
     });
   }
 
@@ -134,7 +174,13 @@ class Paint {
   /// where the albedo is within, slots as the high mesh and as the bake have them.
   TransferRows seen(const TransferRows& vectors) const { return painted(vectors, seen_); }
   TransferRows stood(const TransferRows& vectors) const { return painted(vectors, stood_); }
-  TransferRows shown(const TransferRows& vectors) const { return painted(vectors, shown_); }
+
+  /// Looks up what an asset stores at the slots, times its map.
+  TransferRows shown(const TransferRows& stored, const std::vector<Lookup>& lookups,
+                     const std::vector<std::uint32_t>& slots) const {
+    if (is_spectral_) return kiln::looked_up(lookups, slots, painted(stored, shown_));
+    return painted(kiln::looked_up(lookups, slots, stored), shown_);
+  }
   TransferRows slots(const TransferRows& vectors) const { return within_ ? painted(vectors, slots_) : vectors; }
   TransferRows baked(const TransferRows& vectors) const { return within_ ? painted(vectors, baked_) : vectors; }
 
@@ -149,7 +195,7 @@ class Paint {
   }
 
   /// Looks up a picture of sRGB bytes bilinearly, as a GPU does.
-  static Eigen::Vector3f color_in_map(const Image<std::uint8_t>& picture, const Eigen::Vector2f& uv) {
+  static PathShares color_in_map(const Image<std::uint8_t>& picture, const Eigen::Vector2f& uv) {
     const float x = uv.x() * static_cast<float>(picture.width()) - 0.5f,
                 y = uv.y() * static_cast<float>(picture.height()) - 0.5f;
     const int i = static_cast<int>(std::floor(x)), j = static_cast<int>(std::floor(y));
@@ -162,10 +208,10 @@ class Paint {
       for (int c = 0; c < 3; ++c)
         color[c] += weight * linear_from_srgb(static_cast<float>(texel[static_cast<std::size_t>(c)]) / 255);
     }
-    return color;
+    return shares_of(color);
   }
 
-  const bool within_, in_map_;
+  const bool within_, in_map_, is_spectral_;
   const int baked_channels_, channels_;
   Colors seen_, stood_, shown_, slots_, baked_;
 };
@@ -187,6 +233,7 @@ class SplitWay {
                // A pixel's points have noise of their own.
                .lines = input.sampling.pixel_size > 0 ? scatter_lines / 4 : scatter_lines,
                .channels = input.asset.channels,
+               .wavelengths_nm = wavelengths_of(input.asset),
                .seed = input.sampling.seed},
         transport_(input.scene, input.high, light_) {
     if (input.on_low != nullptr) low_transport_.emplace(input.on_low->shadows, input.low, light_);
@@ -209,8 +256,8 @@ class SplitWay {
     steps_.push_back({"compression", stored, compressed});
     const Station* shown = &compressed;
     if (paint_.in_map()) {
-      shown =
-          &add(Station(paint_.shown(looked_up_in(input_.compressed == nullptr ? input_.asset : *input_.compressed))));
+      const PrtAsset& drawn = input_.compressed == nullptr ? input_.asset : *input_.compressed;
+      shown = &add(Station(paint_.shown(stored_rows(drawn, slots_), samples_.lookups, slots_)));
       steps_.push_back({"albedo", compressed, *shown});
     }
     progress_(0.97);

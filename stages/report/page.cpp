@@ -100,6 +100,12 @@ std::string relit_section(const AssetFolder& asset, const Report& report, const 
       settings.value("directions", Json("–")).dump(), asset.baked.bands,
       metric_value("pixels", comparison.compared_pixels),
       metric_value("silhouette_difference", comparison.silhouette_difference));
+  if (!comparison.lamp.empty())
+    html += fmt::format(
+        "<p class=note>Transfer is at {} wavelengths. Pictures show it in the light of {}, the first of the lamps that "
+        "it was made for, as a monitor shows that; the reference follows light at the same wavelengths, off what "
+        "surfaces reflect of each. Colours beyond the monitor's are cut off here, not in the numbers.</p>\n",
+        asset.baked.channels, html_escaped(comparison.lamp));
   if (const std::size_t bounces = bounces_taken(asset.record("bake")); bounces > 0)
     html += fmt::format(
         "<p class=note>Its light bounces, too: {} time{}, by paths that end in the sky, so without the points of the "
@@ -271,7 +277,10 @@ std::string coefficients_section(const AssetFolder& asset, const fs::path& scrat
       "its highest value: band and order "
       "(l, m), and the range. One row is one band.</p>\n";
   for (int channel = 0; channel < asset.baked.channels; ++channel) {
-    if (asset.baked.channels > 1) html += fmt::format("<h3>Channel {}</h3>\n", channel);
+    if (asset.baked.spectrum)
+      html += fmt::format("<h3>{} nm</h3>\n", asset.baked.spectrum->wavelengths_nm[static_cast<std::size_t>(channel)]);
+    else if (asset.baked.channels > 1)
+      html += fmt::format("<h3>Channel {}</h3>\n", channel);
     if (asset.baked.bands > pyramid_bands) {
       html += "<div class=sheet>\n";
       for (const PrtPlane& plane : asset.baked.planes)

@@ -71,7 +71,11 @@ std::string page_live(const AssetFolder& asset, const Report& report, const Json
   std::uintmax_t bytes = 0;
   for (const fs::path& file : files) bytes += fs::file_size(file);
   std::string html;
-  if (bytes > most_bytes) {
+  if (asset.baked.spectrum) {
+    html =
+        "<p class='note on-screen'>The asset is not live on this page, whose viewer has red, green and blue alone, and "
+        "its transfer is at wavelengths; <code>kiln-render --lamp</code> draws it.</p>\n";
+  } else if (bytes > most_bytes) {
     html = fmt::format(
         "<p class='note on-screen'>The asset is not live on this page, since its {} would make it too "
         "large; <code>kiln serve</code> shows it.</p>\n",

@@ -97,9 +97,12 @@ std::string facts(const AssetFolder& asset, const Report& report, const Json& me
   fact("On the GPU", metric_value("gpu_bytes", report.comparison.gpu_bytes),
        compressed ? metric_value("gpu_bytes", report.comparison.compressed_gpu_bytes) + " compressed"
                   : "mesh, textures, light");
-  const auto planes = static_cast<int>(asset.baked.planes.size());
+  // Wavelengths are read for a lamp as an asset is loaded, into three channels.
+  const auto planes =
+      asset.baked.spectrum ? 3 * asset.baked.bands * asset.baked.bands : static_cast<int>(asset.baked.planes.size());
   fact("Lookups", asset.is_per_vertex() ? "none" : grouped((planes + 3) / 4),
-       compressed              ? compress_value("lookups_out") + " compressed"
+       asset.baked.spectrum    ? "of textures, a pixel, in one lamp's light"
+       : compressed            ? compress_value("lookups_out") + " compressed"
        : asset.is_per_vertex() ? "transfer is at vertices"
                                : "of textures, a pixel");
   fact("Worst light", metric_value("relative_l2", metrics.at("report").at("relative_l2")), "off rays in its bands");

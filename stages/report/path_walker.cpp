@@ -39,14 +39,23 @@ Eigen::Vector3f cosine_direction(const Eigen::Vector3f& normal, float squared_si
       .normalized();
 }
 
+PathWalker::PathWalker(const RayScene& scene, const SceneMesh& surface, int bounces, float ray_offset,
+                       const std::vector<int>& wavelengths_nm)
+    : scene_(scene),
+      surface_(surface),
+      albedo_(surface.albedos, wavelengths_nm),
+      bounces_(bounces),
+      ray_offset_(ray_offset) {}
+
 std::optional<Escape> PathWalker::walk(Eigen::Vector3f origin, Eigen::Vector3f direction, PathRandom& random) const {
-  Eigen::Vector3f throughput = Eigen::Vector3f::Ones();
+  PathShares throughput = PathShares::Ones(channels());
   for (int hits = 0;; ++hits) {
     const SurfacePoint hit = scene_.first_hit(origin, direction, 0, std::numeric_limits<float>::infinity());
     if (!hit.found()) return Escape{direction, throughput, hits};
     const Eigen::Vector3f normal = face_normal(surface_.mesh, hit.triangle);
     if (hits == bounces_ || normal.dot(direction) >= 0) return std::nullopt;
-    throughput = throughput.cwiseProduct(surface_.albedo_at(hit.triangle, hit.u, hit.v));
+    const std::size_t part = surface_.part_of(hit.triangle);
+    throughput *= albedo_.at(part, hit.triangle - surface_.first_triangles[part], hit.u, hit.v);
     if (throughput.maxCoeff() <= 0) return std::nullopt;
     origin = position_at(surface_.mesh, hit) + ray_offset_ * normal;
     const float squared_sine = random.uniform(), turn = random.uniform();

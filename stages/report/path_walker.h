@@ -4,9 +4,11 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "material/scene_mesh.h"
 #include "raycast/ray_scene.h"
+#include "report/path_albedo.h"
 
 namespace kiln {
 
@@ -27,11 +29,11 @@ class PathRandom {
 /// angle with the normal, and its turn about it.
 Eigen::Vector3f cosine_direction(const Eigen::Vector3f& normal, float squared_sine, float turn);
 
-/// End of a path: the direction in which it leaves the scene, how often it bounced, and the share of each colour that
-/// it carries.
+/// End of a path: the direction in which it leaves the scene, how often it bounced, and the share of each colour or
+/// wavelength that it carries.
 struct Escape {
   Eigen::Vector3f direction;
-  Eigen::Vector3f throughput;
+  PathShares throughput;
   int bounces = 0;
 };
 
@@ -39,9 +41,9 @@ struct Escape {
 class PathWalker {
  public:
   /// Keeps references to both. `scene` is the surface's hierarchy; `surface` has albedos where `bounces`, the most that
-  /// a path makes, is more than 0.
-  PathWalker(const RayScene& scene, const SceneMesh& surface, int bounces, float ray_offset)
-      : scene_(scene), surface_(surface), bounces_(bounces), ray_offset_(ray_offset) {}
+  /// a path makes, is more than 0. Paths carry red, green and blue, or these wavelengths. Throws as PathAlbedo does.
+  PathWalker(const RayScene& scene, const SceneMesh& surface, int bounces, float ray_offset,
+             const std::vector<int>& wavelengths_nm = {});
 
   /// Follows a path that leaves `origin` along `direction`, and goes on in a random direction, by the cosine, from
   /// every front that it hits. Nothing where it meets a back, or the surface more often than light bounces.
@@ -49,9 +51,13 @@ class PathWalker {
 
   float ray_offset() const { return ray_offset_; }
 
+  /// Returns how many shares a path carries.
+  int channels() const { return albedo_.channels(); }
+
  private:
   const RayScene& scene_;
   const SceneMesh& surface_;
+  PathAlbedo albedo_;
   int bounces_;
   float ray_offset_;
 };

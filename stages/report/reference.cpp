@@ -29,7 +29,8 @@ struct VisiblePoints {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
   std::vector<Eigen::Vector3f> albedos;
-  std::vector<std::size_t> pixels;  // pixel of each sample, j * width + i
+  std::vector<PathShares> reflected;  // of wavelengths, which albedos leave out then
+  std::vector<std::size_t> pixels;    // pixel of each sample, j * width + i
 };
 
 /// Finds the points that samples see, in the order of rows: element s of the result holds those of the samples at place
@@ -43,6 +44,8 @@ std::vector<VisiblePoints> visible_points(const RayScene& scene, const TriangleM
           scene.first_hit(view.camera.position, view.camera.pixel_direction(column, row, columns, rows), 0,
                           std::numeric_limits<float>::infinity());
   });
+  std::optional<PathAlbedo> by_wavelengths;
+  if (view.spectral) by_wavelengths.emplace(std::vector{view.surface_albedo}, view.spectral->wavelengths_nm);
   std::vector<VisiblePoints> places(static_cast<std::size_t>(view.supersample) * view.supersample);
   for (std::size_t k = 0; k < hits.size(); ++k) {
     const SurfacePoint& hit = hits[k];
@@ -51,7 +54,10 @@ std::vector<VisiblePoints> visible_points(const RayScene& scene, const TriangleM
     VisiblePoints& points = places[row % view.supersample * view.supersample + column % view.supersample];
     points.positions.push_back(position_at(mesh, hit));
     points.normals.push_back(normal_at(mesh, hit));
-    points.albedos.emplace_back(view.albedo * view.surface_albedo.at(hit.triangle, hit.u, hit.v));
+    if (by_wavelengths) points.reflected.push_back(by_wavelengths->at(0, hit.triangle, hit.u, hit.v));
+    const Eigen::Vector3f albedo =
+        by_wavelengths ? Eigen::Vector3f::Ones() : view.surface_albedo.at(hit.triangle, hit.u, hit.v);
+    points.albedos.emplace_back(view.albedo * albedo);
     points.pixels.push_back(row / view.supersample * view.width + column / view.supersample);
   }
   return places;
@@ -91,6 +97,24 @@ std::vector<Eigen::Vector3f> radiance_of(const std::vector<TransferVectors>& cha
   return radiance;
 }
 
+/// Reads transfer at wavelengths, or of one channel that serves for all, as red, green and blue.
+std::vector<TransferVectors> read_as_rgb(const std::vector<TransferVectors>& channels, const SpectralView& view,
+                                         std::span<const PathShares> reflected) {
+  const TransferVectors& first = channels.front();
+  std::vector<TransferVectors> rgb(3, TransferVectors(first.receivers, first.coefficients));
+  parallel_ranges(0, first.receivers, 512, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r)
+      for (int c = 0; c < 3; ++c)
+        for (Eigen::Index k = 0; k < reflected[r].size(); ++k) {
+          const TransferVectors& from = channels[channels.size() == 1 ? 0 : static_cast<std::size_t>(k)];
+          const float share = view.rgb_from_wavelengths(c, k) * reflected[r][k];
+          for (int i = 0; i < first.coefficients; ++i)
+            rgb[static_cast<std::size_t>(c)].plane(i)[r] += share * from.plane(i)[r];
+        }
+  });
+  return rgb;
+}
+
 /// Adds samples from the `begin`-th on, of `share` of a pixel each, to a picture.
 void add_samples(Image<float>& picture, const VisiblePoints& points, std::size_t begin,
                  const std::vector<Eigen::Vector3f>& radiance, float share) {
@@ -120,7 +144,9 @@ class Shader {
         ray_offset_(rounding_offset(surface.mesh.positions)),
         walker_(scene, surface, view.bounces, ray_offset_) {
     if (!view.scattering.empty()) beneath_.emplace(mesh, view.scattering, view.mm_per_unit);
-    if (view.bounces > 0) paths_.emplace(scene, surface, view.bounces, ray_offset_);
+    if (view.bounces > 0)
+      paths_.emplace(scene, surface, view.bounces, ray_offset_,
+                     view.spectral ? view.spectral->wavelengths_nm : std::vector<int>());
   }
 
   /// Computes the radiance of `size` points from the `begin`-th on, by `directions`, and gives it to `put(light,
@@ -135,16 +161,24 @@ class Shader {
     std::iota(numbers.begin(), numbers.end(), first);
     if (beneath_)
       entries = beneath_->entries(receivers, std::max(1, static_cast<int>(directions.size()) / line_step), numbers);
-    const PointTransfer transfer =
+    PointTransfer transfer =
         entries ? scattered_transfer(*entries, numbers) : surface_transfer(receivers, directions, first);
+    const std::span<const PathShares> reflected =
+        view_.spectral ? std::span(points.reflected).subspan(begin, size) : std::span<const PathShares>();
+    if (view_.spectral) {
+      transfer.all = read_as_rgb(transfer.all, *view_.spectral, reflected);
+      transfer.direct = read_as_rgb(transfer.direct, *view_.spectral, reflected);
+    }
     for (std::size_t light = 0; light < lights_.size(); ++light) {
       const std::vector<Eigen::Vector3f> in_bands = radiance_of(transfer.all, lights_[light], view_, receivers);
       std::vector<Eigen::Vector3f> in_full = in_bands;
       if (!has_few_bands(lights_[light])) {
         // What bounced stays as the bands have it.
         const auto cut = radiance_of(transfer.direct, lights_[light], view_, receivers);
-        const auto full = entries ? scattered_radiance(*entries, lights_[light], first)
-                                  : direct_radiance(scene_, receivers, lights_[light], ray_offset_, first);
+        auto full = entries ? scattered_radiance(*entries, lights_[light], first)
+                            : direct_radiance(scene_, receivers, lights_[light], ray_offset_, first);
+        for (std::size_t r = 0; r < reflected.size(); ++r)
+          full[r].array() *= (view_.spectral->rgb_from_wavelengths * reflected[r].matrix()).array();
         for (std::size_t r = 0; r < size; ++r) in_full[r] += full[r] - cut[r];
       }
       put(light, in_bands, in_full);
@@ -159,7 +193,7 @@ class Shader {
     transfer.direct = {transfer_by_rays(scene_, receivers, directions, view_.bands, ray_offset_)};
     transfer.all = transfer.direct;
     if (paths_) {
-      transfer.all.resize(3, transfer.direct.front());
+      transfer.all.resize(view_.spectral ? view_.spectral->wavelengths_nm.size() : 3, transfer.direct.front());
       paths_->add(receivers, every_nth(directions, 0, path_step), first, transfer.all);
     }
     return transfer;

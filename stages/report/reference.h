@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,6 +19,12 @@
 
 namespace kiln {
 
+/// Wavelengths that light is computed at, and what a picture shows of them.
+struct SpectralView {
+  std::vector<int> wavelengths_nm = {};
+  Eigen::Matrix3Xf rgb_from_wavelengths = {};  ///< linear red, green and blue of a white surface in one lamp's light
+};
+
 /// View of the reference picture that an asset is compared with.
 struct ReferenceView {
   Camera camera;
@@ -28,6 +36,7 @@ struct ReferenceView {
   SceneMesh scene;               ///< casts shadows, and reflects where light bounces: the mesh first, then what
                                  ///< surrounds it, which is not seen; empty: the mesh alone
   int bounces = 0;               ///< how often light bounces off the scene, which then has albedos
+  std::optional<SpectralView> spectral = {};  ///< by wavelengths, in place of red, green and blue; without scattering
   std::vector<ScatterProfile> scattering;  ///< light beneath the mesh's surface, for one colour or three; none: empty
   double mm_per_unit = 1000;               ///< millimetres to an object unit
   int bands = 5;                           ///< number of bands that light is projected on
@@ -50,10 +59,11 @@ struct ReferenceRays {
 /// Draws pictures of a mesh under each of `lights`: the first hit of each sample's ray is shaded by the transfer
 /// integral over the directions of `rays` (against the view's scene, with interpolated normals), and by paths for light
 /// that bounces (report/bounce_paths.h) or scatters beneath the surface (report/scatter_paths.h), projected on the
-/// view's bands. The samples of a pixel share the directions
-/// among them: sample s of n takes every n-th of a set from the s-th on, so the pixel's mean is over all of them at the
-/// price of one sample (interleaved sampling, [Keller 2001]). A light near the mesh is evaluated at every point.
-/// Without atlas, textures or rasteriser, this is what the baked asset approximates.
+/// view's bands. By wavelengths, each point's transfer is multiplied by what its surface reflects and read as red,
+/// green and blue; lights have no colour then. The samples of a pixel share the directions among them: sample s of n
+/// takes every n-th of a set from the s-th on, so the pixel's mean is over all of them at the price of one sample
+/// (interleaved sampling, [Keller 2001]). A light near the mesh is evaluated at every point. Without atlas, textures or
+/// rasteriser, this is what the baked asset approximates.
 std::vector<ReferencePicture> reference_pictures(const TriangleMesh& mesh, const ReferenceView& view,
                                                  std::span<const LightSpec> lights, const ReferenceRays& rays,
                                                  const ProgressFunction& progress = no_progress);

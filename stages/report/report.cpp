@@ -53,6 +53,7 @@ Json Report::to_json() const {
                {"reference_seconds", comparison.reference_seconds},
                {"gpu_bytes", comparison.gpu_bytes},
                {"lights", lights}};
+  if (!comparison.lamp.empty()) json["lamp"] = comparison.lamp;
   put_verdicts(json, budgets);
   if (is_compressed) {
     json["compressed_relative_l2"] = compressed_relative_l2;
@@ -74,12 +75,6 @@ Json all_metrics(const AssetFolder& asset, const Json& report_result) {
 
 Report make_report(const AssetFolder& asset, const std::filesystem::path& high_file,
                    const std::vector<std::string>& budgets, const ReportSettings& settings, const ComparisonRun& run) {
-  if (asset.baked.spectrum)
-    throw BadInput(asset.baked.ranges_file.string(),
-                   "has transfer at " + std::to_string(asset.baked.channels) + " wavelengths",
-                   "red, green and blue, by which reports measure",
-                   "draw it with kiln-render --lamp, measure it with kiln-bake --verify-directions, or bake it without "
-                   "--spectrum");
   const Stopwatch watch;
   // Check budgets first: a mistyped metric should not cost the time of the comparison.
   std::vector<Budget> limits;

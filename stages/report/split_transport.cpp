@@ -24,6 +24,8 @@ SplitTransport::SplitTransport(const SceneMesh& scene, const TriangleMesh& surfa
     : scene_(scene), light_(light), rays_(scene.mesh), offset_(rounding_offset(scene.mesh.positions)) {
   if (!light.scattering.empty())
     scatter_ = std::make_unique<const ScatterPaths>(surface, light.scattering, light.mm_per_unit);
+  if (light.bounces > 0)
+    paths_ = std::make_unique<const BouncePaths>(rays_, scene, light.bounces, offset_, light.wavelengths_nm);
 }
 
 TransferRows SplitTransport::direct(const Receivers& receivers, int bands,
@@ -37,11 +39,11 @@ Station SplitTransport::bounced(const Receivers& receivers, int bands) const {
 
 TransferRows SplitTransport::bounced_by(const Receivers& receivers, int bands, std::uint64_t set) const {
   const int coefficients = coefficient_count(bands);
-  std::vector<TransferVectors> colors(3, TransferVectors(receivers.size(), coefficients));
-  if (light_.bounces > 0) {
+  const std::size_t carried = light_.wavelengths_nm.empty() ? 3 : light_.wavelengths_nm.size();
+  std::vector<TransferVectors> colors(carried, TransferVectors(receivers.size(), coefficients));
+  if (paths_) {
     const std::uint64_t seed = seed_of_set(light_, set);
-    const BouncePaths paths(rays_, scene_, light_.bounces, offset_);
-    paths.add(receivers, sample_directions(Sampling::fibonacci, path_directions, seed), seed << 32, colors);
+    paths_->add(receivers, sample_directions(Sampling::fibonacci, path_directions, seed), seed << 32, colors);
   }
   return in_rows(colors, light_.channels);
 }

@@ -9,6 +9,7 @@
 
 #include "material/scene_mesh.h"
 #include "raycast/ray_scene.h"
+#include "report/bounce_paths.h"
 #include "report/scatter_paths.h"
 #include "report/transfer_rows.h"
 
@@ -21,6 +22,7 @@ struct SplitLight {
   double mm_per_unit = 1000;                        ///< millimetres to an object unit
   int lines = 512;                                  ///< about every point, of each set, where light scatters
   int channels = 1;                                 ///< of the asset
+  std::vector<int> wavelengths_nm = {};             ///< that the channels are of; none: colours
   std::uint64_t seed = 1;
 };
 
@@ -53,6 +55,7 @@ class SplitTransport {
   const RayScene rays_;
   const float offset_;
   std::unique_ptr<const ScatterPaths> scatter_;
+  std::unique_ptr<const BouncePaths> paths_;
 };
 
 }  // namespace kiln

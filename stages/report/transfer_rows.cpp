@@ -57,10 +57,10 @@ TransferRows sum_of(TransferRows a, const TransferRows& b) {
   return a;
 }
 
-TransferRows times(TransferRows vectors, const std::vector<Eigen::Vector3f>& colors, int channels) {
+TransferRows times(TransferRows vectors, const std::vector<PathShares>& colors, int channels) {
   const std::size_t each = vectors.length / static_cast<std::size_t>(channels);
   for (std::size_t k = 0; k < vectors.values.size(); ++k) {
-    const Eigen::Vector3f& color = colors[k / vectors.length];
+    const PathShares& color = colors[k / vectors.length];
     const auto channel = static_cast<Eigen::Index>(k % vectors.length / each);
     vectors.values[k] *= channels == 1 ? color.mean() : color[channel];
   }

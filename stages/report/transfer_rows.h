@@ -8,6 +8,7 @@
 
 #include "asset/prt_asset.h"
 #include "report/error_samples.h"
+#include "report/path_albedo.h"
 #include "sh/transfer.h"
 
 namespace kiln {
@@ -24,7 +25,8 @@ struct TransferRows {
 /// Returns vectors of one channel.
 TransferRows in_rows(const TransferVectors& transfer);
 
-/// Returns vectors of red, green and blue as an asset of 1 or 3 channels has them: a single one stands for all colours.
+/// Returns vectors of red, green and blue, or of wavelengths, as an asset has them: a single channel stands for all
+/// colours.
 TransferRows in_rows(const std::vector<TransferVectors>& colors, int channels);
 
 /// Returns the first coefficients of vectors of one channel, once for every channel.
@@ -35,8 +37,8 @@ TransferRows cut_to(const TransferRows& vectors, int coefficients, int channels)
 
 TransferRows sum_of(TransferRows a, const TransferRows& b);
 
-/// Multiplies each channel of vectors by a colour of their own; a single channel by the mean of three.
-TransferRows times(TransferRows vectors, const std::vector<Eigen::Vector3f>& colors, int channels);
+/// Multiplies each channel of vectors by that of a colour of their own; a single channel by the mean of three.
+TransferRows times(TransferRows vectors, const std::vector<PathShares>& colors, int channels);
 
 /// Looks up vectors at all points of the samples. `of_slot` are vectors of `slots`, which are sorted.
 TransferRows looked_up(const std::vector<Lookup>& lookups, const std::vector<std::uint32_t>& slots,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a pipeline says of surfaces, of the sizes of maps and of scenes, and what the stages' commands make of it.
+#include <algorithm>
 #include <gtest/gtest.h>
 
 #include "pipelines.h"
@@ -64,11 +65,17 @@ assets:
   odd: {mesh: a.obj, material: {albedo: 0.5}, bake: {albedo: 0.6}}
   measured: {mesh: a.obj, material: {reflectance: paint.csv}}
   sample: {mesh: b.obj, material: {reflectance: tcs05}}
-scene: {plain: '0,0,0', sample: '1,0,0'}
+  door: {mesh: b.obj, material: {reflectance: {wood: oak.csv, lock: TCS05}}}
+scene: {plain: '0,0,0', sample: '1,0,0', door: '2,0,0'}
 )");
   const std::vector<MakeRule> rules = make_rules(pipeline);
   EXPECT_EQ(value_after(run_of(rules, "plain", "bake").command, "--neighbour"), "b.obj;place=1,0,0;reflectance=tcs05");
+  const std::vector<std::string> of_sample = run_of(rules, "sample", "bake").command;
+  EXPECT_NE(std::ranges::find(of_sample, "b.obj;place=2,0,0;reflectance-of=wood=oak.csv,lock=TCS05"), of_sample.end())
+      << "in the order of the file";
   for (const char* stage : {"normals", "bake"}) {
+    EXPECT_EQ(value_after(run_of(rules, "door", stage).command, "--reflectance-of"), "wood=oak.csv,lock=TCS05");
+    EXPECT_EQ(value_after(run_of(rules, "door", stage).command, "--albedo"), "") << "the default's";
     EXPECT_EQ(value_after(run_of(rules, "plain", stage).command, "--albedo"), "0.8");
     // A texture drives out the number that is the default.
     EXPECT_EQ(value_after(run_of(rules, "painted", stage).command, "--albedo-texture"), "paint.png");

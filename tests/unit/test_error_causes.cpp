@@ -5,14 +5,18 @@
 #include <numeric>
 #include <random>
 
+#include "asset/prt_asset.h"
 #include "image/srgb.h"
 #include "mesh/uv_raster.h"
+#include "raycast/ray_scene.h"
 #include "raycast/ray_transfer.h"
+#include "report/bounce_paths.h"
 #include "report/error_causes.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 #include "sh/light_prior.h"
 #include "sh/ray_offset.h"
+#include "spectrum/spectrum.h"
 
 namespace kiln {
 namespace {
@@ -135,6 +139,66 @@ TEST(ErrorCauses, AreZeroWhereNothingDiffers) {
   EXPECT_LT(cause(split, "seams"), 1e-6);
   EXPECT_GT(cause(split, "bands"), 0.01);
   EXPECT_GT(cause(split, "texels"), 1e-4);
+}
+
+TEST(ErrorCauses, OfWavelengthsAreMeasuredForEachOfThem) {
+  // Four wavelengths bounce off the wall, which reflects each otherwise: as they are stored, and two of them exchanged.
+  Floor floor(256);
+  const std::vector<int> wavelengths = {450, 520, 580, 650};
+  const std::vector<float> reflected = {0.1f, 0.3f, 0.6f, 0.9f};
+  Spectrum wall = Spectrum::Constant(wavelength_count, 0.3);
+  for (std::size_t k = 0; k < 4; ++k) wall(wavelengths[k] - first_wavelength_nm) = double{reflected[k]};
+  floor.scene.albedos = {SurfaceAlbedo::constant(Eigen::Vector3f::Zero()), SurfaceAlbedo::measured({1, 1, 1}, wall)};
+  std::vector<Eigen::Vector3f> positions, normals(std::size_t{size} * size, Eigen::Vector3f::UnitY());
+  for (int k = 0; k < size * size; ++k)
+    positions.push_back(Eigen::Map<const Eigen::Vector3f>(floor.detail.position.pixel(k % size, k / size).data()));
+  const RayScene rays(floor.scene.mesh);
+  const float offset = rounding_offset(floor.scene.mesh.positions);
+  const TransferVectors direct = transfer_by_rays(rays, {positions, normals}, floor.directions, bands, offset);
+  // The floor is black, so light bounces once: at a wavelength it is what a white wall sends, times its reflectance.
+  SceneMesh white = floor.scene;
+  white.albedos[1] = SurfaceAlbedo::constant(Eigen::Vector3f::Ones());
+  std::vector<TransferVectors> bounced(3, TransferVectors(positions.size(), direct.coefficients));
+  BouncePaths(rays, white, 1, offset)
+      .add({positions, normals}, sample_directions(Sampling::fibonacci, 1024, 77), 0, bounced);
+  const auto error_of = [&](const std::vector<float>& stored) {
+    PrtAsset asset;
+    asset.bands = bands;
+    asset.channels = 4;
+    asset.bits = 16;
+    asset.width = asset.height = size;
+    asset.spectrum.emplace().wavelengths_nm = wavelengths;
+    std::vector<Image<std::uint16_t>> pictures;
+    for (int c = 0; c < 4; ++c)
+      for (int i = 0; i < direct.coefficients; ++i) {
+        std::vector<float> values;
+        for (std::size_t r = 0; r < positions.size(); ++r)
+          values.push_back(direct.plane(i)[r] + stored[static_cast<std::size_t>(c)] * bounced[0].plane(i)[r]);
+        PrtPlane& plane = asset.planes.emplace_back();
+        plane.channel = c;
+        plane.coefficient = i;
+        plane.bits = 16;
+        plane.range = range_of(values);
+        Image<std::uint16_t>& picture = pictures.emplace_back(size, size, 1);
+        std::ranges::transform(values, picture.values().begin(), [&](float value) {
+          return static_cast<std::uint16_t>(plane.range.store(double{value}, 16));
+        });
+      }
+    asset.pictures = std::move(pictures);
+    SplitInput input = {.high = floor.high,
+                        .low = floor.low,
+                        .scene = floor.scene,
+                        .asset = asset,
+                        .detail = &floor.detail,
+                        .bake_directions = floor.directions,
+                        .bounces = 1};
+    input.sampling.pixels = 512;
+    return error_causes(input);
+  };
+  const ErrorSplit right = error_of(reflected), wrong = error_of({0.1f, 0.9f, 0.6f, 0.3f});
+  EXPECT_LT(cause(right, "bounces"), 0.01) << "noise";
+  EXPECT_GT(cause(wrong, "bounces"), 4 * cause(right, "bounces"));
+  EXPECT_GT(cause(wrong, "bounces"), 0.02);
 }
 
 TEST(ErrorCauses, AddUpInSquares) {

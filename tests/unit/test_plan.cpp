@@ -3,10 +3,12 @@
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <iterator>
 #include <limits>
 
 #include "base/errors.h"
 #include "kiln/plan/choice.h"
+#include "kiln/plan/color_hint.h"
 #include "kiln/plan/plan.h"
 #include "kiln/plan/plan_file.h"
 #include "kiln/presets.h"
@@ -310,6 +312,53 @@ TEST_F(PlanFile, GivesBackWhatItWasWrittenOf) {
   EXPECT_EQ(ball.budgets, std::vector<std::string>{"report.error.total<=0.02"}) << "in place of the pipeline's";
   EXPECT_EQ(ball.settings.at("report").at("predicted"),
             "asked=0.02; total=0.018; bands=0.015; geometry=0.01; cpu_seconds=3.5; bytes=12345");
+}
+
+TEST_F(PlanFile, SaysWhetherRedGreenAndBlueAreEnough) {
+  write("pipeline.yaml", R"(
+defaults: {report: {picture-size: 64}}
+assets:
+  plain: {mesh: ball.obj}
+  lit: {mesh: ball.obj, bake: {bounces: 2}}
+  grey: {mesh: ball.obj, bake: {bounces: auto}, material: {albedo: 0.5}}
+  blue: {mesh: ball.obj, material: {reflectance: TCS12}}
+)");
+  const Pipeline pipeline = load_pipeline(file("pipeline.yaml"));
+  const auto hint_of = [&](std::size_t asset, const ColorGoal& goal) {
+    return color_hint(pipeline, pipeline.assets[asset], goal);
+  };
+  EXPECT_FALSE(hint_of(0, {})) << "nothing bounces, and nothing was measured";
+  // Figures of docs/spectral.md: three reflections of the CIE's test colour samples.
+  const ColorHint day = hint_of(1, {.lights = "D65", .max_ciede2000 = 20}).value();
+  EXPECT_EQ(day.reflections, 3);
+  EXPECT_EQ(day.surfaces, "CIE-TCS");
+  EXPECT_NEAR(day.of_rgb, 18.63, 0.01);
+  EXPECT_EQ(day.least, 0);
+  EXPECT_NE(to_text(day).find("which is enough"), std::string::npos);
+  const ColorGoal three_lamps{.lights = "D65, A,F11", .max_ciede2000 = 2};
+  const ColorHint lamps = hint_of(1, three_lamps).value();
+  EXPECT_NEAR(lamps.of_rgb, 24.49, 0.01);
+  EXPECT_EQ(lamps.least, 8);
+  EXPECT_NEAR(lamps.of_least, 1.66, 0.01);
+  EXPECT_EQ(hint_of(1, {.lights = "D65,A,F11", .max_ciede2000 = 1.5})->least, std::nullopt);
+  const ColorHint grey = hint_of(2, three_lamps).value();
+  EXPECT_EQ(grey.least, 0) << "grey is grey under any lamp";
+  EXPECT_EQ(grey.reflections, 4);
+  const ColorHint direct = hint_of(3, {}).value();
+  EXPECT_EQ(direct.reflections, 1);
+  EXPECT_NEAR(direct.of_rgb, 5.23, 0.01);
+  EXPECT_NE(to_text(direct).find("kiln-render --lamp"), std::string::npos);
+  EXPECT_THROW(hint_of(1, {.lights = "D65,moon"}), WrongUsage);
+
+  PlannedAsset planned{"lit", 0.02, "", {}, {}, {}};
+  planned.color = lamps;
+  write_plan(file("plan.yaml"), "pipeline.yaml", {planned}, 7);
+  std::ifstream written(file("plan.yaml"));
+  const std::string text((std::istreambuf_iterator<char>(written)), std::istreambuf_iterator<char>());
+  EXPECT_NE(text.find("# lit: colour: red, green and blue are wrong by 24 CIEDE2000"), std::string::npos) << text;
+  EXPECT_NE(text.find("--lights D65,A,F11 --reflectances CIE-TCS --size 8"), std::string::npos) << text;
+  Pipeline read = load_pipeline(file("pipeline.yaml"));
+  apply_plan(read, file("plan.yaml"));
 }
 
 TEST_F(PlanFile, RefusesWhatThePipelineHasNot) {

@@ -2,6 +2,7 @@
 // Tests of the picture that assets are compared with: points, paths and the difference of pictures.
 #include <cmath>
 #include <gtest/gtest.h>
+#include <memory>
 #include <numbers>
 #include <numeric>
 #include <random>
@@ -18,6 +19,8 @@
 #include "sh/light_spec.h"
 #include "sh/transfer.h"
 #include "shapes.h"
+#include "spectrum/rgb_lift.h"
+#include "spectrum/standards.h"
 
 namespace kiln {
 namespace test_reference {
@@ -294,6 +297,67 @@ TEST(BouncePaths, InAnOpenSphereHaveTheirGeometricSeries) {
   }
 }
 
+/// Returns a reflectance that is of one value up to a wavelength and of another from the next on.
+Spectrum step_at(int nm, double below, double above) {
+  Spectrum spectrum = Spectrum::Constant(wavelength_count, above);
+  spectrum.head(nm - first_wavelength_nm + 1) = below;
+  return spectrum;
+}
+
+TEST(BouncePaths, CarryWavelengthsThatSurfacesReflectEachByItself) {
+  // A sphere of two measured materials, of a colour, which is lifted, and of one albedo at all wavelengths.
+  constexpr double open = 0.25, unoccluded = 0.282095;
+  const TriangleMesh mesh = open_sphere(open);
+  const std::vector<int> wavelengths = {450, 520, 580, 650, 700};
+  SurfaceAlbedo::Textured textured;
+  textured.materials.resize(2);
+  for (SurfaceAlbedo::Material& material : textured.materials)
+    material.measured = {"step", std::make_shared<const Spectrum>(step_at(550, 0.2, 0.9))};
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    textured.material_of.push_back(static_cast<std::uint32_t>(t % 2));
+  const Eigen::Vector3f orange(0.7f, 0.3f, 0.05f);
+  const RgbLift lift{StandardSpectra()};
+  const SmoothReflectance lifted = lift.lift(orange.cast<double>());
+  struct Case {
+    SurfaceAlbedo albedo;
+    std::vector<double> reflected;
+  };
+  Case cases[] = {{SurfaceAlbedo::of_materials(textured, SurfaceAlbedo::Source::materials), {0.2, 0.2, 0.9, 0.9, 0.9}},
+                  {SurfaceAlbedo::constant(orange), {}},
+                  {SurfaceAlbedo::measured({1, 0, 0}, step_at(500, 0.5, 0)), {0.5, 0, 0, 0, 0}}};
+  for (const int nm : wavelengths) cases[1].reflected.push_back(lifted.at(nm));
+  std::vector<Eigen::Vector3f> positions, normals;
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 997) {
+    const SurfacePoint place{static_cast<std::uint32_t>(t), 0.3f, 0.3f, 0};
+    positions.push_back(position_at(mesh, place));
+    normals.push_back(face_normal(mesh, place.triangle));
+  }
+  const Receivers receivers{positions, normals};
+  const auto directions = sample_directions(Sampling::fibonacci, 256, 1);
+  for (const Case& each : cases) {
+    SceneMesh surface;
+    surface.add(mesh, each.albedo);
+    const RayScene scene(surface.mesh);
+    std::vector<TransferVectors> channels(5, TransferVectors(receivers.size(), 1));
+    BouncePaths(scene, surface, 3, 1e-5f, wavelengths).add(receivers, directions, 7, channels);
+    for (std::size_t c = 0; c < 5; ++c) {
+      double mean = 0, series = 0;
+      for (const float value : channels[c].plane(0)) mean += value / static_cast<double>(receivers.size());
+      const double rho = each.reflected[c];
+      for (int k = 1; k <= 3; ++k) series += std::pow(rho * (1 - open), k);
+      EXPECT_NEAR(mean, unoccluded * open * series, 0.03 * unoccluded * open * (series + 0.1)) << wavelengths[c];
+
+      // Along the very same paths, a grey surface of that albedo.
+      SceneMesh grey;
+      grey.add(mesh, SurfaceAlbedo::constant(Eigen::Vector3f::Constant(static_cast<float>(rho))));
+      std::vector<TransferVectors> alone(3, TransferVectors(receivers.size(), 1));
+      BouncePaths(scene, grey, 3, 1e-5f).add(receivers, directions, 7, alone);
+      for (std::size_t r = 0; r < receivers.size(); ++r)
+        EXPECT_NEAR(channels[c].plane(0)[r], alone[0].plane(0)[r], 1e-6f);
+    }
+  }
+}
+
 /// Returns a large square at a height, facing up or down.
 TriangleMesh square(float side, float height, bool up) {
   TriangleMesh mesh;
@@ -303,6 +367,32 @@ TriangleMesh square(float side, float height, bool up) {
     for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   mesh.normals.assign(4, up ? Eigen::Vector3f::UnitY() : Eigen::Vector3f(0, -1, 0));
   return mesh;
+}
+
+TEST(Reference, ShowsWavelengthsAsTheLampsMatrixReadsThem) {
+  // A plane in the open under ambient light sends out what it reflects of each wavelength.
+  const TriangleMesh plane = square(1, 0, true);
+  ReferenceView view;
+  view.camera = make_camera(plane.positions, {.elevation_degrees = 70, .target = {}}, 8, 8);
+  view.width = view.height = 8;
+  view.surface_albedo = SurfaceAlbedo::measured({1, 1, 1}, step_at(550, 0.2, 0.9));
+  view.albedo = 0.5f;
+  SpectralView& spectral = view.spectral.emplace();
+  spectral.wavelengths_nm = {450, 520, 580, 650};
+  spectral.rgb_from_wavelengths = Eigen::Matrix3Xf(3, 4);
+  spectral.rgb_from_wavelengths << 0, 0, 0.25f, 0.75f, 0.1f, 0.6f, 0.3f, 0, 1.2f, -0.2f, 0, 0;
+  const LightSpec lights[] = {parse_light_spec("ambient:2"), parse_light_spec("0,90")};
+  const std::vector<ReferencePicture> pictures = reference_pictures(plane, view, lights, {.directions = 2048});
+  for (std::size_t l = 0; l < 2; ++l) {
+    // A directional light's radiance is that of a white surface which faces it.
+    const float radiance = 0.5f * (l == 0 ? 2.f : 1.f);
+    for (const PictureEstimates* estimates : {&pictures[l].in_bands, &pictures[l].in_full}) {
+      const Image<float> picture = mean_of(*estimates);
+      EXPECT_NEAR(picture.at(4, 4, 0), radiance * 0.9f, 0.01f) << l;
+      EXPECT_NEAR(picture.at(4, 4, 1), radiance * (0.7f * 0.2f + 0.3f * 0.9f), 0.01f) << l;
+      EXPECT_NEAR(picture.at(4, 4, 2), radiance * 0.2f, 0.01f) << l;
+    }
+  }
 }
 
 /// Returns the numbers of receivers from the `first` on.

@@ -219,6 +219,16 @@ Commands::Commands(CLI::App& app) : values_(std::make_unique<Values>()) {
   plan_command
       .add_option("--seconds", plan_settings.seconds, "CPU seconds that an asset's build may take (default any)")
       ->check(CLI::PositiveNumber);
+  auto* const lights =
+      plan_command
+          .add_option("--lights", plan_settings.color.lights,
+                      "Lamps that assets are seen in, between commas, as kiln-spectrum takes them, for which the plan "
+                      "says whether red, green and blue are enough (default D65)")
+          ->type_name("NAMES");
+  plan_command
+      .add_option("--max-ciede2000", plan_settings.color.max_ciede2000,
+                  "Difference of colours that they may cost at worst (default 1; 0.01 to 100)")
+      ->check(CLI::Range(0.01, 100.0));
   plan_command
       .add_option("--least", plan_settings.least,
                   "The cost that is made least: seconds, bytes, or both, their product (default both)")
@@ -234,7 +244,8 @@ Commands::Commands(CLI::App& app) : values_(std::make_unique<Values>()) {
       ->check(CLI::Range(0, 1024));
   plan_command.add_flag("--json", plan_settings.json, "Print the plan as one JSON object on stdout");
   plan_command.add_flag("--quiet", plan_settings.quiet, "Print errors only");
-  plan_command.callback([&v] {
+  plan_command.callback([&v, lights] {
+    v.plan_settings.names_lights = lights->count() > 0;
     const Pipeline pipeline = take_pipeline(v.words);
     v.status = plan(pipeline, select_assets(pipeline, v.words), v.plan_settings);
   });

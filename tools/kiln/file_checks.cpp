@@ -81,6 +81,14 @@ void check_named_files(const Pipeline& pipeline, const Asset& asset, std::vector
     if (settings == asset.settings.end()) continue;
     const StageOptions options = stage->options();
     for (const auto& [name, file] : settings->second) {
+      if (name == "reflectance-of" && seen.insert(file).second)
+        for (const auto& [material, of_material] : reflectances_of_materials(file))
+          if (const std::string fault = fault_of_file(pipeline.folder / of_material);
+              !fault.empty() && !is_test_sample(of_material))
+            faults.emplace_back(asset.setting_lines.at(stage->name).at(name),
+                                fmt::format("the reflectance of material '{}' of '{}', {}, {}", material, asset.name,
+                                            of_material, fault),
+                                "a file", "check the path");
       const bool is_texture = name == "albedo-texture" || name == "opacity-texture";
       if (name == "reflectance" && is_test_sample(file)) continue;
       if (!options.find(name)->names_file || (textures_alone && !is_texture && name != "reflectance") ||

@@ -40,8 +40,8 @@ std::string neighbour_text(const fs::path& mesh, const std::string& place, const
     for (std::size_t k; (k = value.find("; ")) != std::string::npos;) value.replace(k, 2, ",");  // separators of a list
     text += fmt::format(";{}={}", name, field_text(value));
   };
-  for (const char* name :
-       {"albedo", "albedo-texture", "reflectance", "albedo-encoding", "opacity", "opacity-texture", "opacity-cutoff"})
+  for (const char* name : {"albedo", "albedo-texture", "reflectance", "reflectance-of", "albedo-encoding", "opacity",
+                           "opacity-texture", "opacity-cutoff"})
     add("normals", name);
   ImportSettings import;
   OptionSet import_options;

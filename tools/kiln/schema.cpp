@@ -107,6 +107,12 @@ Json material_schema() {
                      {"opacity", option_schema(*options.find("opacity"))},
                      {"opacity-texture", option_schema(*options.find("opacity-texture"))},
                      {"opacity-cutoff", option_schema(*options.find("opacity-cutoff"))}};
+  Json& reflectance = properties["reflectance"];
+  reflectance["type"] = {"string", "object"};
+  reflectance["additionalProperties"] = {{"type", "string"}};
+  reflectance["minProperties"] = 1;
+  reflectance["description"] = reflectance["description"].get<std::string>() +
+                               "; or a mapping of such, by the names of materials of the mesh's file";
   Json schema = object_of(properties);
   schema["not"] = {{"anyOf",
                     {{{"required", {"albedo", "texture"}}},

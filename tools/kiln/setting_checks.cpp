@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "kiln/setting_checks.h"
 
+#include <array>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <functional>
@@ -29,6 +30,7 @@ class Checks {
     check_simplify();
     check_bake();
     check_subsurface();
+    if (!text("bake", "spectrum").empty()) check_spectrum();
     check_low_receivers();
     if (bakes_vertices(asset_.settings)) check_vertices();
     if (asset_.settings.contains("compress")) check_compress();
@@ -86,8 +88,6 @@ class Checks {
             "a low mesh of the asset's own beside it, whose cage it is", "add 'low: FILE', or leave the line out");
     require(text("normals", "part-cage").empty() || text("normals", "match") == "names", "normals", "part-cage",
             "'match: names' beside it", "add that, or leave the line out");
-    require(text("bake", "spectrum").empty(), "bake", "spectrum",
-            "none in a pipeline, whose reports measure red, green and blue", "bake it with kiln-bake --spectrum");
     require(value("bake", "size") == 0, "bake", "size",
             "none in a pipeline, where the maps of the normals stage say it", "set the size of atlas");
   }
@@ -125,6 +125,29 @@ class Checks {
                 "see kiln-bake --help", [&] { subsurface_profiles(settings.subsurface); });
     require(!settings.subsurface.wanted() || !settings.bake_albedo, "bake", "bake-albedo",
             "none beside subsurface, whose material has its own albedo", "remove one of them");
+  }
+
+  /// Refuses what is computed as red, green and blue beside light that bounces at wavelengths.
+  void check_spectrum() const {
+    require(text("bake", "bounces") != "0", "bake", "spectrum",
+            "bounces beside it, since direct transfer is the same at all wavelengths",
+            "add 'bounces: 2' or 'bounces: auto', or leave the line out");
+    require(value("bake", "bake-albedo") == false, "bake", "bake-albedo",
+            "none beside spectrum, since lamps decide the albedo's colour", "remove one of them");
+    require(text("bake", "subsurface") == "none", "bake", "subsurface",
+            "none beside spectrum, since materials are measured as red, green and blue", "remove one of them");
+    if (asset_.settings.contains("probes"))
+      require(text("probes", "bounces") == "0", "probes", "bounces",
+              "0 beside spectrum of bake, since light bounces to probes as red, green and blue", "remove one of them");
+    for (const std::string& light : list_of(text("report", "lights")))
+      try_parsing(where("report", {"lights"}), "leave out the colour", [&] {
+        const LightSpec spec = parse_light_spec(light);
+        const auto is_grey = [](const std::array<float, 3>& c) { return c[0] == c[1] && c[1] == c[2]; };
+        if (!is_grey(spec.color) || !is_grey(spec.ground))
+          throw WrongUsage("'" + light +
+                           "' of report; expected lights of one radiance beside spectrum of bake, since a "
+                           "lamp's spectrum is their colour");
+      });
   }
 
   /// Refuses low receivers with materials: the low mesh has none, and its uvs are not those of the textures.

@@ -79,9 +79,34 @@ class BlockReader {
       if (stage->options().find("albedo-texture") == nullptr) continue;
       YAML::Node renamed;
       for (const auto& entry : block) renamed[names.at(entry.first.Scalar())] = entry.second;
+      if (block["reflectance"].IsDefined() && block["reflectance"].IsMap()) {
+        renamed.remove("reflectance");
+        renamed["reflectance-of"] = reflectances_text(block["reflectance"]);
+      }
       // Settings given for the stage itself take precedence.
-      layer.blocks[stage->name].settings.merge(stage_settings(*stage, renamed));
+      std::map<std::string, WrittenSetting> settings = stage_settings(*stage, renamed);
+      // That text stands in no file.
+      if (const auto made = settings.find("reflectance-of"); made != settings.end())
+        made->second.where = file_.where(block["reflectance"]);
+      layer.blocks[stage->name].settings.merge(std::move(settings));
     }
+  }
+
+  /// Turns reflectances by the names of materials into the text of an option, with paths as seen from the pipeline.
+  std::string reflectances_text(const YAML::Node& map) const {
+    file_.check_keys(map, {});
+    file_.require(map.size() > 0, map, "no material", "names of materials, each with a file or TCS01 to TCS15");
+    std::string text;
+    for (const auto& entry : map) {
+      const std::string name = entry.first.Scalar(), given = file_.scalar(entry.second, "a file or TCS01 to TCS15");
+      const std::string value =
+          is_test_sample(given) ? given : (prefix_ / file_.path(entry.second)).lexically_normal().string();
+      for (const std::string& part : {name, value})
+        file_.require(part.find_first_of(",=;") == std::string::npos, entry.first, "'" + part + "'",
+                      "names of materials and files without commas, semicolons and equals signs");
+      text += (text.empty() ? "" : ",") + name + "=" + value;
+    }
+    return text;
   }
 
   /// Adds `maps`, the sizes of what ships: the atlas is packed for the planes, whose size other maps have unless they

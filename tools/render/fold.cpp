@@ -37,6 +37,13 @@ void put_planes(PrtAsset& asset, const std::vector<float>& vectors) {
 
 }  // namespace
 
+Spectrum spectrum_of(const PrtReflectance& shipped) {
+  SampledSpectrum sampled{shipped.name, {}, shipped.values};
+  for (std::size_t k = 0; k < shipped.values.size(); ++k)
+    sampled.wavelengths_nm.push_back(shipped.first_nm + static_cast<double>(k) * shipped.step_nm);
+  return resample(sampled);
+}
+
 WavelengthFold::WavelengthFold(const PrtAsset& asset, const std::optional<Spectrum>& measured)
     : asset_(asset), at_wavelengths_(asset.spectrum->wavelengths_nm), is_known_(measured || asset.albedo.known) {
   const PrtAlbedo& albedo = asset.albedo;
@@ -48,10 +55,15 @@ WavelengthFold::WavelengthFold(const PrtAsset& asset, const std::optional<Spectr
     constant_ = at_wavelengths_.of(albedo.constant);
   else
     at_wavelengths_.prepare_table();
+  for (const PrtReflectance& reflectance : albedo.reflectances)
+    of_materials_.push_back(at_wavelengths_.of(spectrum_of(reflectance)));
 }
 
 void WavelengthFold::shares_at(std::size_t place, std::span<float> shares) const {
-  if (constant_.empty())
+  if (const PrtReflectance* material = constant_.empty() ? asset_.albedo.measured(place) : nullptr)
+    std::ranges::copy(of_materials_[static_cast<std::size_t>(material - asset_.albedo.reflectances.data())],
+                      shares.begin());
+  else if (constant_.empty())
     at_wavelengths_.look_up(asset_.albedo.at(place), shares);
   else
     std::ranges::copy(constant_, shares.begin());

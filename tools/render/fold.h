@@ -12,11 +12,15 @@
 
 namespace kiln {
 
+/// Returns a reflectance that an asset ships with.
+Spectrum spectrum_of(const PrtReflectance& shipped);
+
 /// Folds an asset's transfer at wavelengths into three channels.
 class WavelengthFold {
  public:
-  /// The surface has the measured reflectance, or else the asset's albedo, lifted at the planes' texels, or, where that
-  /// is not known, all of 1. `asset` outlives this. Throws MachineLacks.
+  /// The surface has the measured reflectance, or else at the planes' texels that of the asset's materials which were
+  /// measured, else its albedo, lifted there, or, where that is not known, all of 1. `asset` outlives this. Throws
+  /// MachineLacks.
   WavelengthFold(const PrtAsset& asset, const std::optional<Spectrum>& measured);
 
   /// Returns the asset with, as transfer, that of the wavelengths times what the surface reflects of them, through
@@ -29,6 +33,7 @@ class WavelengthFold {
 
   const PrtAsset& asset_;
   WavelengthAlbedo at_wavelengths_;
+  std::vector<std::vector<float>> of_materials_;  ///< of the asset's reflectances
   std::vector<float> constant_;  ///< reflectances of all of the surface; empty where its albedo is a picture
   bool is_known_;
 };

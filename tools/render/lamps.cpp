@@ -194,12 +194,23 @@ class SensorChoice {
   std::optional<LightSensor> camera_;
 };
 
-/// Returns the reflectance that an asset ships with.
-Spectrum spectrum_of(const PrtReflectance& shipped) {
-  SampledSpectrum sampled{shipped.name, {}, shipped.values};
-  for (std::size_t k = 0; k < shipped.values.size(); ++k)
-    sampled.wavelengths_nm.push_back(shipped.first_nm + static_cast<double>(k) * shipped.step_nm);
-  return resample(sampled);
+/// Shows measured materials in a picture of what a lamp shows: in each of its texels that of the planes' nearest texel.
+void show_measured(const LampView& lamp, const PrtAsset& asset, Image<std::uint8_t>& shown) {
+  std::vector<std::array<std::uint8_t, 3>> colors;
+  for (const PrtReflectance& reflectance : asset.albedo.reflectances) {
+    const Eigen::Vector3d share = lamp.share(spectrum_of(reflectance));
+    std::array<std::uint8_t, 3>& color = colors.emplace_back();
+    for (int c = 0; c < 3; ++c)
+      color[static_cast<std::size_t>(c)] = byte_from_unit(srgb_from_linear(static_cast<float>(share(c))));
+  }
+  const Image<std::uint8_t>& numbers = asset.albedo.measured_at;
+  for (int j = 0; j < shown.height() && numbers.width() > 0; ++j)
+    for (int i = 0; i < shown.width(); ++i) {
+      const int number =
+          numbers.at(static_cast<int>((2 * std::int64_t{i} + 1) * numbers.width() / (2 * shown.width())),
+                     static_cast<int>((2 * std::int64_t{j} + 1) * numbers.height() / (2 * shown.height())), 0);
+      if (number > 0) std::ranges::copy(colors[static_cast<std::size_t>(number) - 1], shown.pixel(i, j).begin());
+    }
 }
 
 void require_plain_transfer(const PrtAsset& asset) {
@@ -316,7 +327,11 @@ LampScene lamp_scene(const std::vector<PrtAsset>& assets, const LightSettings& l
         albedo = PrtAlbedo::of_constant(lamp.share(*reflectances[k]).cast<float>());
       } else if (!albedo.picture.values().empty()) {
         albedo.picture = table->under(lamp, albedo.picture);
-        if (!albedo.at_planes.values().empty()) albedo.at_planes = table->under(lamp, albedo.at_planes);
+        show_measured(lamp, assets[k], albedo.picture);
+        if (!albedo.at_planes.values().empty()) {
+          albedo.at_planes = table->under(lamp, albedo.at_planes);
+          show_measured(lamp, assets[k], albedo.at_planes);
+        }
       } else if (albedo.known) {
         albedo.constant = lamp.share(lift.lift(albedo.constant.cast<double>()).spectrum()).cast<float>();
       }

@@ -37,6 +37,7 @@ class FileCheck {
       if (!level.mesh_file.empty()) faults_.guard([&] { check_level(level); });
     if (asset_.width == 0 || asset_.height == 0) return;  // without the asset's sizes, pictures cannot be checked
     faults_.guard([&] { read_albedo_picture(folder_, asset_); });
+    faults_.guard([&] { read_measured_picture(folder_, asset_); });
     faults_.guard([&] { read_opacity_picture(folder_, asset_); });
     for (const PrtMap& map : asset_.maps)
       if (!map.file.empty()) faults_.guard([&] { read_picture(folder_ / map.file); });

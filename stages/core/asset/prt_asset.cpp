@@ -73,6 +73,7 @@ void load_pictures(const fs::path& folder, PrtAsset& asset) {
   if (asset.albedo.has_own_size())
     asset.albedo.at_planes =
         srgb_bytes(resized(linear_from_srgb_bytes(asset.albedo.picture), asset.width, asset.height));
+  asset.albedo.measured_at = read_measured_picture(folder, asset);
   asset.opacity = read_opacity_picture(folder, asset);
   asset.mesh = read_atlas_mesh(folder, asset);
   if (asset.pca) asset.clusters = read_clusters(folder, asset);
@@ -92,6 +93,11 @@ void load_pictures(const fs::path& folder, PrtAsset& asset) {
 PrtDescription load_prt_description(const fs::path& folder) {
   Faults first;
   return read_description(description_file(folder), first).first;
+}
+
+const PrtReflectance* PrtAlbedo::measured(std::size_t texel) const {
+  const std::size_t number = measured_at.values().empty() ? 0 : measured_at.values()[texel];
+  return number == 0 ? nullptr : &reflectances[number - 1];
 }
 
 Eigen::Vector3f PrtAlbedo::at(std::size_t texel) const {

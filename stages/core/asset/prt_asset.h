@@ -54,7 +54,7 @@ struct PrtClusters {
   }
 };
 
-/// Measured reflectance of a surface that is the same everywhere, at even wavelengths; linear between them, and beyond
+/// Measured reflectance of a surface, or of one of its materials, at even wavelengths; linear between them, and beyond
 /// their ends as at them.
 struct PrtReflectance {
   std::string name = {};
@@ -87,10 +87,17 @@ struct PrtAlbedo {
   Image<std::uint8_t> at_planes = {};  ///< the same at the size of the planes, where that is another
   Eigen::Vector3f constant = Eigen::Vector3f::Ones();  ///< linear; used if there is no picture
   std::optional<PrtReflectance> reflectance = {};      ///< where it was measured; `constant` is its colour under D65
-  bool within_transfer = false;  ///< whether the bake has multiplied transfer by albedo, which is 1 here then
+  std::vector<PrtReflectance> reflectances = {};       ///< of materials that were measured
+  std::string measured_file = {};        ///< the picture of their numbers, relative to the asset's folder; empty: none
+  Image<std::uint8_t> measured_at = {};  ///< at the size of the planes: 0 where nothing was measured, else the number
+                                         ///< of the reflectance, from 1; empty where there are none
+  bool within_transfer = false;          ///< whether the bake has multiplied transfer by albedo, which is 1 here then
 
   /// Returns the linear albedo of a texel, j * width + i; ones where it is not known.
   Eigen::Vector3f at(std::size_t texel) const;
+
+  /// Returns the measured reflectance of a texel of the planes; null where only its albedo is known.
+  const PrtReflectance* measured(std::size_t texel) const;
 
   bool has_own_size() const { return width > 0; }
 

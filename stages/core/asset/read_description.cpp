@@ -48,16 +48,7 @@ PrtAlbedo read_albedo(const Fields& fields, bool has_pictures) {
 }
 
 /// Reads a measured reflectance, which spans what is seen.
-std::optional<PrtReflectance> read_reflectance(const Fields& fields, const PrtAlbedo& albedo) {
-  if (!fields.has(key::reflectance)) return std::nullopt;
-  const Json& object = *fields.find(key::reflectance, "");
-  if (!object.is_object()) {
-    fields.fail(key::reflectance, Fields::shown(object), "name, first_nm, step_nm and values");
-    return std::nullopt;
-  }
-  if (!albedo.known || !albedo.file.empty())
-    fields.fail(key::reflectance, "a reflectance without an albedo of three numbers", "the albedo that it is to RGB");
-  const Fields entry = fields.child(key::reflectance, object);
+std::optional<PrtReflectance> read_measured(const Fields& entry) {
   PrtReflectance reflectance{entry.text(key::name, "a name"),
                              entry.integer(key::first_nm, shortest_wavelength_nm, longest_wavelength_nm),
                              entry.integer(key::step_nm, 1, widest_reflectance_step_nm, 1),
@@ -78,6 +69,36 @@ std::optional<PrtReflectance> read_reflectance(const Fields& fields, const PrtAl
     return std::nullopt;
   }
   return reflectance;
+}
+
+/// Reads the reflectance of all of the surface.
+std::optional<PrtReflectance> read_reflectance(const Fields& fields, const PrtAlbedo& albedo) {
+  if (!fields.has(key::reflectance)) return std::nullopt;
+  const Json& object = *fields.find(key::reflectance, "");
+  if (!object.is_object()) {
+    fields.fail(key::reflectance, Fields::shown(object), "name, first_nm, step_nm and values");
+    return std::nullopt;
+  }
+  if (!albedo.known || !albedo.file.empty())
+    fields.fail(key::reflectance, "a reflectance without an albedo of three numbers", "the albedo that it is to RGB");
+  return read_measured(fields.child(key::reflectance, object));
+}
+
+/// Reads the reflectances of materials, and where they are.
+void read_reflectances(const Fields& fields, PrtAlbedo& albedo) {
+  if (!fields.has(key::reflectances) && !fields.has(key::measured)) return;
+  const Json* list = fields.list(key::reflectances, std::nullopt, "reflectances");
+  if (list == nullptr) return;
+  if (list->empty() || list->size() > most_reflectances)
+    fields.fail(key::reflectances, fmt::format("{} reflectances", list->size()),
+                fmt::format("1 to {}", most_reflectances));
+  if (albedo.file.empty())
+    fields.fail(key::reflectances, "reflectances of materials without a picture of the albedo",
+                "the albedo that they are to RGB");
+  for (std::size_t k = 0; k < list->size(); ++k)
+    if (auto read = read_measured(fields.child(key::reflectances, k, (*list)[k])))
+      albedo.reflectances.push_back(std::move(*read));
+  albedo.measured_file = fields.safe_path(key::measured);
 }
 
 /// Reads the wavelengths of the channels, and the lamps that show them.
@@ -155,6 +176,7 @@ void read_shared(const Fields& fields, PrtDescription& asset) {
     asset.albedo.height = fields.integer(key::albedo_height, 1, largest_asset_side);
   }
   asset.albedo.reflectance = read_reflectance(fields, asset.albedo);
+  if (asset.vertices == 0) read_reflectances(fields, asset.albedo);
   asset.spectrum = read_spectrum(fields, asset.channels);
   if (asset.vertices == 0 && fields.has(key::opacity)) asset.opacity_file = fields.safe_path(key::opacity);
   asset.maps = read_maps(fields);
@@ -318,7 +340,8 @@ std::string remedy_for(const PrtDescription& asset) {
 }
 
 std::vector<std::string> named_files(const PrtDescription& asset) {
-  std::vector<std::string> files = {asset.mesh_file, asset.normals_file, asset.albedo.file, asset.opacity_file};
+  std::vector<std::string> files = {asset.mesh_file, asset.normals_file, asset.albedo.file, asset.albedo.measured_file,
+                                    asset.opacity_file};
   for (const PrtLevel& level : asset.levels) files.push_back(level.mesh_file);
   for (const PrtMap& map : asset.maps) files.push_back(map.file);
   for (const PrtPlane& plane : asset.planes) files.push_back(plane.file);

@@ -150,6 +150,20 @@ Image<std::uint8_t> read_albedo_picture(const fs::path& folder, const PrtDescrip
   return picture;
 }
 
+Image<std::uint8_t> read_measured_picture(const fs::path& folder, const PrtDescription& asset) {
+  const PrtAlbedo& albedo = asset.albedo;
+  if (albedo.measured_file.empty()) return {};
+  const fs::path file = folder / albedo.measured_file;
+  Image<std::uint8_t> picture = read_png8(file);
+  require_picture(picture, file, asset.width, asset.height, 1, remedy_for(asset));
+  const std::size_t largest = *std::ranges::max_element(picture.values());
+  if (largest > albedo.reflectances.size())
+    throw BadInput(file.string(), fmt::format("has the number {}", largest),
+                   fmt::format("0 to {}, as many as there are reflectances", albedo.reflectances.size()),
+                   remedy_for(asset));
+  return picture;
+}
+
 Image<std::uint8_t> read_opacity_picture(const fs::path& folder, const PrtDescription& asset) {
   if (asset.opacity_file.empty()) return {};
   const fs::path file = folder / asset.opacity_file;

@@ -36,6 +36,10 @@ template <class Texel>
 void require_picture(const Image<Texel>& picture, const std::filesystem::path& file, int width, int height,
                      int channels, const std::string& remedy);
 
+/// Reads the picture of the numbers of measured reflectances, if the asset has one. Throws BadInput for a number that
+/// none has.
+Image<std::uint8_t> read_measured_picture(const std::filesystem::path& folder, const PrtDescription& asset);
+
 /// Reads the picture of the albedo, if the asset has one.
 Image<std::uint8_t> read_albedo_picture(const std::filesystem::path& folder, const PrtDescription& asset);
 

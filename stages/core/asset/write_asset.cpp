@@ -40,12 +40,18 @@ void add_albedo(Json& head, const PrtAlbedo& albedo) {
     head[key::albedo] = {constant.x(), constant.y(), constant.z()};
 }
 
+Json to_json(const PrtReflectance& reflectance) {
+  return {{key::name, reflectance.name},
+          {key::first_nm, reflectance.first_nm},
+          {key::step_nm, reflectance.step_nm},
+          {key::values, reflectance.values}};
+}
+
 void add_spectra(Json& head, const PrtDescription& asset) {
-  if (const auto& reflectance = asset.albedo.reflectance)
-    head[key::reflectance] = {{key::name, reflectance->name},
-                              {key::first_nm, reflectance->first_nm},
-                              {key::step_nm, reflectance->step_nm},
-                              {key::values, reflectance->values}};
+  if (const auto& reflectance = asset.albedo.reflectance) head[key::reflectance] = to_json(*reflectance);
+  for (const PrtReflectance& reflectance : asset.albedo.reflectances)
+    head[key::reflectances].push_back(to_json(reflectance));
+  if (!asset.albedo.measured_file.empty()) head[key::measured] = asset.albedo.measured_file;
   if (!asset.spectrum) return;
   Json lamps = Json::array();
   for (const PrtSpectrum::Lamp& lamp : asset.spectrum->lamps)

@@ -25,14 +25,19 @@ Eigen::Vector3f decoded(const Eigen::Vector3f& color, bool is_linear) {
 /// Materials of a mesh's triangles.
 class MeshMaterials {
  public:
-  MeshMaterials(const ImportedMesh& mesh, ColorEncoding encoding) : mesh_(mesh), encoding_(encoding) {}
+  MeshMaterials(const ImportedMesh& mesh, ColorEncoding encoding,
+                std::map<std::string, MeasuredReflectance> measured = {})
+      : mesh_(mesh), encoding_(encoding), measured_(std::move(measured)) {
+    require_measured_names();
+  }
 
   /// Tells whether any face has a material that gives a colour or a texture.
   bool exist() const {
     const ImportedSurface& surface = mesh_.surface;
     return !surface.material_of.empty() &&
-           std::any_of(surface.materials.begin(), surface.materials.end(),
-                       [](const SourceMaterial& m) { return m.has_diffuse || m.texture.has_value(); });
+           (!measured_.empty() ||
+            std::any_of(surface.materials.begin(), surface.materials.end(),
+                        [](const SourceMaterial& m) { return m.has_diffuse || m.texture.has_value(); }));
   }
 
   LoadedAlbedo load() {
@@ -75,8 +80,29 @@ class MeshMaterials {
     return std::move(result_);
   }
 
+  /// Throws where a material that was measured is none of the file's.
+  void require_measured_names() const {
+    for (const auto& [name, measured] : measured_) {
+      const auto& materials = mesh_.surface.materials;
+      if (std::ranges::find(materials, name, &SourceMaterial::name) != materials.end()) continue;
+      std::string names;
+      for (const SourceMaterial& material : materials) names += (names.empty() ? "" : ", ") + material.name;
+      throw BadInput(mesh_.file.string(), "has no material '" + name + "', for which a reflectance was given",
+                     names.empty() ? "a file with materials" : "one of " + names,
+                     names.empty() ? "give one for all of the surface: --reflectance" : "correct the name");
+    }
+  }
+
   SurfaceAlbedo::Material diffuse(const SourceMaterial& source) {
     SurfaceAlbedo::Material material;
+    if (const auto found = measured_.find(source.name); found != measured_.end()) {
+      const MeasuredReflectance& measured = found->second;
+      material.color = measured.albedo;
+      material.measured = {measured.spectrum.name, std::make_shared<const Spectrum>(measured.spectrum.values)};
+      result_.beyond_rgb = result_.beyond_rgb || measured.is_clamped;
+      result_.files.insert(result_.files.end(), measured.files.begin(), measured.files.end());
+      return material;
+    }
     // Exporters write a black Kd beside a map, although by the format its product with the map is black.
     const bool no_color = !source.has_diffuse || (source.texture && source.diffuse.isZero(0));
     if (!no_color) {
@@ -109,6 +135,7 @@ class MeshMaterials {
 
   const ImportedMesh& mesh_;
   ColorEncoding encoding_;
+  std::map<std::string, MeasuredReflectance> measured_;  ///< by material
   std::map<std::tuple<std::string, float, float>, std::shared_ptr<const ColorTexture>> textures_;
   LoadedAlbedo result_;
 };
@@ -162,6 +189,10 @@ void require_one_albedo(const MaterialSettings& settings) {
   refuse(constant, "albedo", texture, "albedo-texture");
   refuse(!settings.reflectance.empty(), "reflectance", constant, "albedo");
   refuse(!settings.reflectance.empty(), "reflectance", texture, "albedo-texture");
+  const bool by_material = !settings.reflectance_of.empty();
+  refuse(by_material, "reflectance-of", constant, "albedo");
+  refuse(by_material, "reflectance-of", texture, "albedo-texture");
+  refuse(by_material, "reflectance-of", !settings.reflectance.empty(), "reflectance");
 }
 
 LoadedAlbedo load_constant_albedo(const MaterialSettings& settings) {
@@ -182,7 +213,8 @@ LoadedAlbedo load_albedo(const ImportedMesh& mesh, const MaterialSettings& setti
   LoadedAlbedo loaded;
   if (!settings.texture.empty()) return load_texture(mesh, settings);
   if (mesh.surface.materials_fault) throw BadInput(*mesh.surface.materials_fault);
-  if (MeshMaterials materials(mesh, settings.encoding); materials.exist()) return materials.load();
+  if (MeshMaterials materials(mesh, settings.encoding, load_reflectances_of(settings)); materials.exist())
+    return materials.load();
   if (mesh.mesh.colors.empty()) return loaded;
   const bool is_linear = mesh.surface.linear_colors || settings.encoding == ColorEncoding::linear;
   std::vector<Eigen::Vector3f> linear;

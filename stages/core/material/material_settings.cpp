@@ -29,6 +29,25 @@ bool is_test_sample(const std::string& reflectance) {
   return digits >= "01" && digits <= "15" && digits[1] >= '0' && digits[1] <= '9';
 }
 
+std::vector<std::pair<std::string, std::string>> reflectances_of_materials(const std::string& text) {
+  std::vector<std::pair<std::string, std::string>> pairs;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string entry = text.substr(begin, end - begin);
+    const std::size_t equals = entry.find('=');
+    const bool is_pair = equals != std::string::npos && equals > 0 && equals + 1 < entry.size();
+    const std::string name = entry.substr(0, equals);
+    const bool is_double =
+        std::any_of(pairs.begin(), pairs.end(), [&](const auto& pair) { return pair.first == name; });
+    if (!is_pair || is_double)
+      throw WrongUsage("reflectance-of: found '" + entry + "'" + (is_pair ? ", the second for that material" : "") +
+                       "; expected MATERIAL=FILE or MATERIAL=TCS05, between commas, one for each");
+    pairs.emplace_back(name, entry.substr(equals + 1));
+    begin = end + 1;
+  }
+  return pairs;
+}
+
 void add_material_options(OptionSet& options, MaterialSettings& settings) {
   options.typed<std::optional<std::array<float, 3>>>(
       "albedo", settings.albedo, "auto, one number or R,G,B, each 0 to 1",
@@ -41,6 +60,9 @@ void add_material_options(OptionSet& options, MaterialSettings& settings) {
   options.file("reflectance", settings.reflectance,
                "A measured spectrum of the high mesh's surface, in place of its albedo, which becomes the spectrum's "
                "colour under D65: a file of one reflectance, or TCS01 to TCS15, a test colour sample of the CIE");
+  options.text("reflectance-of", settings.reflectance_of,
+               "Measured spectra of some of the materials of the high mesh's file, by their names and between commas: "
+               "oak=oak.csv,label=TCS05; the others keep their albedo");
   options.choice<ColorEncoding>("albedo-encoding", settings.encoding,
                                 {{"srgb", ColorEncoding::srgb}, {"linear", ColorEncoding::linear}},
                                 "How colours of vertices, of materials and of pictures of integers are stored; those "

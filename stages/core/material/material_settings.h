@@ -4,6 +4,8 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "base/options.h"
 
@@ -21,6 +23,7 @@ struct MaterialSettings {
   std::string texture = {};  ///< a picture looked up with the mesh's uvs, in place of its own materials
   std::string reflectance =
       {};  ///< a measured spectrum for all of the surface, in its place: a file, or TCS01 to TCS15
+  std::string reflectance_of = {};               ///< the same of materials by their names: "oak=oak.csv,label=TCS05"
   ColorEncoding encoding = ColorEncoding::srgb;  ///< of vertex colours, Kd and pictures of integers
   OpacitySource opacity = OpacitySource::file;
   std::string opacity_texture = {};           ///< a picture looked up with the mesh's uvs, in place of its file's
@@ -29,6 +32,9 @@ struct MaterialSettings {
 
 /// Tells whether a reflectance is the name of a test colour sample of the CIE, TCS01 to TCS15, and no file.
 bool is_test_sample(const std::string& reflectance);
+
+/// Reads `reflectance_of`: names of materials, each with a file or TCS01 to TCS15. Throws WrongUsage.
+std::vector<std::pair<std::string, std::string>> reflectances_of_materials(const std::string& text);
 
 /// Adds the options of albedo and opacity to a stage's options.
 void add_material_options(OptionSet& options, MaterialSettings& settings);

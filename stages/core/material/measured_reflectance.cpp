@@ -19,6 +19,13 @@ MeasuredReflectance load_reflectance(const std::string& reflectance) {
   return loaded;
 }
 
+std::map<std::string, MeasuredReflectance> load_reflectances_of(const MaterialSettings& settings) {
+  std::map<std::string, MeasuredReflectance> loaded;
+  for (const auto& [material, reflectance] : reflectances_of_materials(settings.reflectance_of))
+    loaded.emplace(material, load_reflectance(reflectance));
+  return loaded;
+}
+
 std::optional<Eigen::Vector3f> constant_albedo(const MaterialSettings& settings) {
   if (settings.albedo) return Eigen::Vector3f(settings.albedo->data());
   if (!settings.reflectance.empty()) return load_reflectance(settings.reflectance).albedo;

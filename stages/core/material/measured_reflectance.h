@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,9 @@ struct MeasuredReflectance {
 /// Loads what a reflectance of the settings names. Throws WrongUsage, BadInput and MachineLacks as StandardSpectra
 /// does.
 MeasuredReflectance load_reflectance(const std::string& reflectance);
+
+/// Loads those of materials, by name. Throws as load_reflectance, and WrongUsage for a text that is none.
+std::map<std::string, MeasuredReflectance> load_reflectances_of(const MaterialSettings& settings);
 
 /// Returns the albedo that the settings give for all of a surface, by a colour or by a reflectance; else nothing.
 std::optional<Eigen::Vector3f> constant_albedo(const MaterialSettings& settings);

@@ -50,6 +50,10 @@ SurfaceAlbedo SurfaceAlbedo::of_materials(Textured textured, Source source) {
   return albedo;
 }
 
+std::span<const SurfaceAlbedo::Material> SurfaceAlbedo::materials() const {
+  return textured_ == nullptr ? std::span<const Material>() : std::span<const Material>(textured_->materials);
+}
+
 SurfaceAlbedo SurfaceAlbedo::of_pieces(const std::vector<std::uint32_t>& origins,
                                        const std::vector<std::array<std::array<float, 3>, 3>>& weights) const {
   SurfaceAlbedo pieces = *this;

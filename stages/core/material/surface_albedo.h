@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,12 @@
 #include "spectrum/spectrum.h"
 
 namespace kiln {
+
+/// Measured reflectance of a surface; the spectrum is null where only an albedo is known.
+struct MeasuredSurface {
+  std::string name = {};
+  std::shared_ptr<const Spectrum> spectrum = {};
+};
 
 /// Share of light, as linear red, green and blue, each 0 to 1, that a mesh's diffuse surface reflects. Copies share
 /// large data. May be used by several threads at once.
@@ -28,6 +35,7 @@ class SurfaceAlbedo {
     /// Transform of the lookup: texture_transform * (u, v, 1).
     Eigen::Matrix<float, 2, 3> texture_transform = Eigen::Matrix<float, 2, 3>::Identity();
     ColorTexture::Wrap wrap_u = ColorTexture::Wrap::repeat, wrap_v = ColorTexture::Wrap::repeat;
+    MeasuredSurface measured = {};  ///< its reflectance where that was measured, of which `color` is what RGB has
   };
 
   /// Triangles with materials, and with the texture coordinates of their corners.
@@ -44,6 +52,12 @@ class SurfaceAlbedo {
 
   /// Makes a constant albedo whose reflectance at all wavelengths is known.
   static SurfaceAlbedo measured(const Eigen::Vector3f& linear, Spectrum reflectance);
+
+  /// Returns its materials, which have textures or one colour each; none where it has no materials.
+  std::span<const Material> materials() const;
+
+  /// Returns the number of a triangle's material.
+  std::size_t material_at(std::uint32_t triangle) const { return textured_->material_of[triangle]; }
 
   /// Makes an albedo of linear vertex colours, interpolated linearly over `triangles`.
   static SurfaceAlbedo of_vertices(std::vector<Eigen::Vector3f> linear, std::vector<Triangle> triangles);
@@ -63,7 +77,8 @@ class SurfaceAlbedo {
   bool is_constant() const { return vertices_ == nullptr && textured_ == nullptr; }
   const Eigen::Vector3f& constant_value() const { return constant_; }
 
-  /// Returns the reflectance of a measured surface; null where only its albedo is known.
+  /// Returns the reflectance of a surface that was measured as a whole; null where only its albedo is known, or where
+  /// `materials` were measured.
   const Spectrum* reflectance() const { return reflectance_.get(); }
 
   /// Tells whether red, green and blue are equal everywhere.

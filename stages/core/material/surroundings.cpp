@@ -74,7 +74,8 @@ Neighbour parse_neighbour(const std::string& text) {
   const auto refuse = [&](const std::string& found) {
     throw WrongUsage("neighbour: found " + found + " in '" + text +
                      "'; expected FILE[;place=X,Y,Z[,AZIMUTH[,SCALE]]][;albedo=...][;albedo-texture=...]"
-                     "[;reflectance=...][;albedo-encoding=...][;opacity=...][;opacity-texture=...][;opacity-cutoff=...]"
+                     "[;reflectance=...][;reflectance-of=...][;albedo-encoding=...][;opacity=...][;opacity-texture=...]"
+                     "[;opacity-cutoff=...]"
                      "[;up=...][;unit=.."
                      ".][;scale=...][;normals=...][;fill-holes=...]");
   };

@@ -23,7 +23,8 @@ struct Neighbour {
   ImportSettings import;
 };
 
-/// Reads "FILE[;place=X,Y,Z[,AZIMUTH[,SCALE]]][;albedo=A][;albedo-texture=PICTURE][;reflectance=R][;albedo-encoding=E]"
+/// Reads
+/// "FILE[;place=X,Y,Z[,AZIMUTH[,SCALE]]][;albedo=A][;albedo-texture=PICTURE][;reflectance=R][;reflectance-of=M=R][;albedo-encoding=E]"
 /// and the import options, such as ";up=+z" and ";fill-holes=EDGES", each value in the form that the option of that
 /// name takes. A semicolon or backslash in a name is escaped by a backslash. Throws WrongUsage.
 Neighbour parse_neighbour(const std::string& text);

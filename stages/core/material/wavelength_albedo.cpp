@@ -70,20 +70,37 @@ void WavelengthAlbedo::look_up(const Eigen::Vector3f& albedo, std::span<float> s
 
 SceneReflectance::SceneReflectance(const SceneMesh& scene, std::vector<int> wavelengths_nm)
     : albedo_(std::move(wavelengths_nm)) {
+  bool needs_table = false;
   for (const SurfaceAlbedo& albedo : scene.albedos) {
-    std::vector<float>& constant = constants_.emplace_back();
+    std::vector<std::vector<float>>& constants = constants_.emplace_back();
+    for (const SurfaceAlbedo::Material& material : albedo.materials()) {
+      std::vector<float>& constant = constants.emplace_back();
+      if (material.measured.spectrum != nullptr)
+        constant = albedo_.of(*material.measured.spectrum);
+      else if (material.texture == nullptr)
+        constant = albedo_.of(material.color);
+      needs_table = needs_table || constant.empty();
+    }
+    if (!constants.empty()) continue;
+    std::vector<float>& constant = constants.emplace_back();
     if (albedo.reflectance() != nullptr)
       constant = albedo_.of(*albedo.reflectance());
     else if (albedo.is_constant())
       constant = albedo_.of(albedo.constant_value());
-    else
-      albedo_.prepare_table();
+    needs_table = needs_table || constant.empty();
   }
+  if (needs_table) albedo_.prepare_table();
+}
+
+const std::vector<float>& SceneReflectance::constant_at(const SceneMesh& scene, std::size_t part,
+                                                        std::uint32_t triangle) const {
+  const SurfaceAlbedo& albedo = scene.albedos[part];
+  return constants_[part][albedo.materials().empty() ? 0 : albedo.material_at(triangle - scene.first_triangles[part])];
 }
 
 Eigen::Vector3f SceneReflectance::at(const SceneMesh& scene, std::uint32_t triangle, float u, float v,
                                      std::size_t first) const {
-  std::vector<float> shares = constants_[scene.part_of(triangle)];
+  std::vector<float> shares = constant_at(scene, scene.part_of(triangle), triangle);
   if (shares.empty()) {
     shares.resize(wavelengths());
     albedo_.look_up(scene.albedo_at(triangle, u, v), shares);

@@ -51,7 +51,10 @@ class SceneReflectance {
 
  private:
   WavelengthAlbedo albedo_;
-  std::vector<std::vector<float>> constants_;  ///< by mesh; empty where its albedo differs from place to place
+  const std::vector<float>& constant_at(const SceneMesh& scene, std::size_t part, std::uint32_t triangle) const;
+
+  /// By mesh and material, of which a mesh without any has one; empty where the albedo differs from place to place.
+  std::vector<std::vector<std::vector<float>>> constants_;
 };
 
 }  // namespace kiln

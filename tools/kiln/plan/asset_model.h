@@ -35,6 +35,7 @@ struct Pilot {
   PilotBuild coarse, fine;
   PilotBuild without_bounces;      ///< like `coarse`, without bounces, against a reference that has them
   bool has_bounces = false;        ///< whether light bounces, and `without_bounces` is there
+  bool must_bounce = false;        ///< whether it has to, at wavelengths; `without_bounces` is not there then
   PilotBuild compressed;           ///< like `fine`, with the bands chosen, compressed
   bool is_compressed = false;      ///< whether that is there
   double input_triangles = 0;      ///< of the high mesh

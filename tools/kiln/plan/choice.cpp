@@ -60,8 +60,8 @@ ChoiceGrid full_grid(const AssetModel& model) {
   // The first of equally cheap choices is taken: the one without shadows, if it serves.
   if (model.pilot().may_be_unshadowed) grid.directions.insert(grid.directions.begin(), 0);
   grid.bits = {8, 16};
-  grid.bounces = {false};
-  if (model.pilot().has_bounces) grid.bounces.push_back(true);
+  grid.bounces = {model.pilot().must_bounce};
+  if (model.pilot().has_bounces && !model.pilot().must_bounce) grid.bounces.push_back(true);
   if (model.pilot().must_be_vertices)
     grid.per_vertex = {true};
   else if (model.pilot().may_be_vertices)

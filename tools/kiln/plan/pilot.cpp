@@ -230,7 +230,8 @@ std::map<std::string, Pilot> PilotBuilds::build(const std::vector<const Asset*>&
                             allows(*assets[k], "bake.per-vertex", "true");
     pilot.may_be_unshadowed =
         !pilot.has_bounces && !pilot.fine.unshadowed.empty() && allows(*assets[k], "bake.shadows", "none");
-    if (!pilot.has_bounces) continue;
+    pilot.must_bounce = !effective_setting(assets[k]->settings, "bake", "spectrum").get<std::string>().empty();
+    if (!pilot.has_bounces || pilot.must_bounce) continue;
     Overrides bare = coarse_settings;
     bare.emplace_back("bake.bounces", "0");
     bare.emplace_back("report.error-bounces", std::to_string(bounces_of(assets[k]->name)));

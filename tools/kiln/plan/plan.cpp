@@ -217,6 +217,17 @@ class AssetPlanner {
   const PlanSettings& settings_;
 };
 
+/// Returns what is known of an asset's colours; nothing where the machine lacks the CIE's spectra and no lamp was
+/// named.
+std::optional<ColorHint> color_of(const Pipeline& pipeline, const Asset& asset, const PlanSettings& settings) {
+  try {
+    return color_hint(pipeline, asset, settings.color);
+  } catch (const MachineLacks&) {
+    if (settings.names_lights) throw;
+    return std::nullopt;
+  }
+}
+
 PlanGoal goal_of(const Asset& asset, const PlanSettings& settings) {
   PlanGoal goal;
   goal.error = asked_of(asset, settings);
@@ -243,6 +254,7 @@ Json to_json(const std::vector<PlannedAsset>& assets, double pilot_seconds) {
       entry["cpu_seconds"] = asset.prediction.cpu_seconds;
       entry["bytes"] = asset.prediction.bytes;
     }
+    if (asset.color) entry["color"] = to_json(*asset.color);
     list.push_back(entry);
   }
   return {{"assets", list}, {"pilot_cpu_seconds", pilot_seconds}};
@@ -265,6 +277,7 @@ void tell_missed(const PlannedAsset& asset) {
 }
 
 void tell(const PlannedAsset& asset) {
+  if (asset.color) std::fprintf(stderr, "[%s] %s\n", asset.name.c_str(), to_text(*asset.color).c_str());
   if (!asset.left_alone.empty()) {
     std::fprintf(stderr, "kiln: asset '%s' stays as it is: %s\n", asset.name.c_str(), asset.left_alone.c_str());
     return;
@@ -292,7 +305,9 @@ int plan(const Pipeline& pipeline, const std::vector<const Asset*>& assets, cons
       throw WrongUsage(fmt::format("keep: found '{}'; expected one of {}", name, fmt::join(decided, ", ")));
   std::vector<PlannedAsset> planned;
   std::vector<const Asset*> to_plan;
+  std::vector<std::optional<ColorHint>> colors;  // before pilots: a mistyped lamp should not cost their time
   for (const Asset* asset : assets) {
+    colors.push_back(color_of(pipeline, *asset, settings));
     const double asked = asked_of(*asset, settings);
     const std::string reason = reason_to_leave(*asset);
     if (reason.empty()) to_plan.push_back(asset);
@@ -305,6 +320,7 @@ int plan(const Pipeline& pipeline, const std::vector<const Asset*>& assets, cons
       *std::ranges::find(planned, asset->name, &PlannedAsset::name) =
           AssetPlanner(*asset, pilots.at(asset->name), builds, goal_of(*asset, settings), settings).decide();
   }
+  for (std::size_t k = 0; k < planned.size(); ++k) planned[k].color = std::move(colors[k]);
   if (settings.json) std::printf("%s\n", json_text(to_json(planned, builds.cpu_seconds())).c_str());
   const auto is_missed = [](const PlannedAsset& asset) { return asset.left_alone.empty() && asset.lines.empty(); };
   for (const PlannedAsset& asset : planned)

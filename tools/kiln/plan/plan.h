@@ -7,6 +7,7 @@
 
 #include "kiln/pipeline.h"
 #include "kiln/plan/choice.h"
+#include "kiln/plan/color_hint.h"
 
 namespace kiln {
 
@@ -18,6 +19,8 @@ struct PlanSettings {
   double levels = 0;              ///< the same in levels of 8 bits; 0: not given so
   double bytes = 0;               ///< that an asset may have; 0: any number
   double seconds = 0;             ///< CPU seconds that an asset's build may take; 0: any
+  ColorGoal color = {};           ///< of its lamps
+  bool names_lights = false;      ///< whether the lamps were asked for, so that what they lack is an error
   std::string least = "both";     ///< cost that is made least: both, seconds or bytes
   std::vector<std::string> keep;  ///< settings that stay as the pipeline has them: "atlas.size"
   std::filesystem::path output = "plan.yaml";

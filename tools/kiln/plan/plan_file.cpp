@@ -31,9 +31,10 @@ std::string yaml_text(const std::string& value) {
 std::string percent(double share) { return fmt::format("{:.3g} %", 100 * share); }
 
 std::string block_of(const PlannedAsset& asset) {
+  const std::string color = asset.color ? fmt::format("  # {}: {}.\n", asset.name, to_text(*asset.color)) : "";
   if (!asset.left_alone.empty())
-    return fmt::format("  # {}: its settings stay as they are, for {}.\n", asset.name, asset.left_alone);
-  std::string text = fmt::format("  {}:\n", yaml_text(asset.name));
+    return fmt::format("  # {}: its settings stay as they are, for {}.\n", asset.name, asset.left_alone) + color;
+  std::string text = color + fmt::format("  {}:\n", yaml_text(asset.name));
   text += fmt::format("    error: {:.4g}  # asked for; predicted {}\n", asset.asked, percent(asset.prediction.error));
   std::string stage;
   for (const PlanLine& line : asset.lines) {

@@ -8,6 +8,7 @@
 
 #include "kiln/pipeline.h"
 #include "kiln/plan/choice.h"
+#include "kiln/plan/color_hint.h"
 
 namespace kiln {
 
@@ -28,7 +29,8 @@ struct PlannedAsset {
   std::string left_alone;       ///< why nothing is planned for it; empty if something is
   std::vector<PlanLine> lines;  ///< in the order of the stages
   Prediction prediction;
-  std::optional<Prediction> of_final;  ///< what the preset `final` costs
+  std::optional<Prediction> of_final;   ///< what the preset `final` costs
+  std::optional<ColorHint> color = {};  ///< whether red, green and blue are enough, where that is a question
 };
 
 /// Writes a plan that people read, change and commit. `pipeline` is relative to the file's folder, or absolute;
