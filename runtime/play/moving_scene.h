@@ -57,6 +57,9 @@ class MovingScene {
   /// Returns the points at which light() has it, object space.
   const std::vector<Eigen::Vector3f>& points(int item) const;
 
+  /// Returns what finds shadows in place of rays, or null.
+  const VisibilityEngine* shadow_engine() const { return settings_.engine.get(); }
+
   /// Returns the tree that shadows go by.
   const SceneTree& tree();
   /// Returns how often a tree that is found has changed.
