@@ -2,6 +2,8 @@
 #include <epoxy/gl.h>
 
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <gtest/gtest.h>
 #include <memory>
 #include <numbers>
@@ -272,6 +274,25 @@ TEST(VisibilityMaps, NoBitDependsOnBatches) {
     EXPECT_EQ(shadows.statistics().computed, 0u);
   }
   EXPECT_LT(errors.back(), 0.6 * errors.front());
+}
+
+/// Where GL cannot draw in layers, the way is refused with what to do. In a process of its own, since Mesa reads the
+/// variable once.
+TEST(VisibilityMapsDeathTest, RefusesGlThatLacksLayers) {
+  testing::GTEST_FLAG(death_test_style) = "threadsafe";
+  const auto make = [] {
+    setenv("MESA_EXTENSION_OVERRIDE", "-GL_ARB_shader_viewport_layer_array", 1);
+    const EglContext context("software");
+    try {
+      const VisibilityMaps maps;
+    } catch (const MachineLacks& lack) {
+      std::fputs(lack.what(), stderr);
+      std::_Exit(5);
+    }
+    std::_Exit(0);
+  };
+  EXPECT_EXIT(make(), testing::ExitedWithCode(5),
+              "found no GL_ARB_shader_viewport_layer_array in .*--shadow-backend rays");
 }
 
 /// Drawing maps leaves the state of GL as it was.
