@@ -22,7 +22,8 @@ struct VisibilityMapWork {
 /// Finds what is blocked by small depth maps: from each point one along each cone or ball of light, up to six of a cube
 /// before skies, drawn in layers, many points in a pass. Nodes that no map may see are not drawn. A compute shader
 /// looks the light's directions up in them and projects what is blocked; sums are read back. A direction counts as
-/// blocked if the middle of the texel that it falls into is; what touches a point (touching_share) blocks nothing there.
+/// blocked if the middle of the texel that it falls into is; what touches a point (touching_share) blocks nothing
+/// there.
 ///
 /// Needs the OpenGL 4.5 context in which it was made to be current whenever it is used, also when it ends. Sets back
 /// the state that it changes (KeptGlState), but bindings of shader storage buffers 0 to 5 and of texture unit 0.
