@@ -37,7 +37,7 @@ ConeLight cone_around(const LightSpec& spec, const Eigen::Vector3d& axis, double
   const std::vector<double> bands_of_cone = cone_bands(bands, half_angle);
   for (std::size_t i = 0; i < cone.zonal.size(); ++i)
     cone.zonal[i] *= bands_of_cone[static_cast<std::size_t>(band_of(static_cast<int>(i)))];
-  if (half_angle < 1e-3) {  // as cone_bands decides
+  if (is_single_direction(half_angle)) {
     cone.half_angle = 0;
     return cone;
   }

@@ -15,6 +15,9 @@ namespace kiln {
 /// Three channels of coefficients, float64: channels[c][i].
 using LightSum = std::array<std::vector<double>, 3>;
 
+/// Tests whether light of a half-angle (radians) is so narrow that it counts as a single direction, as in cone_bands.
+inline bool is_single_direction(double half_angle) { return half_angle < 1e-3; }
+
 /// A light that covers a cone of directions, or a single one; scene's space.
 struct ConeLight {
   LightSpec spec;

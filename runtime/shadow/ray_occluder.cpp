@@ -9,6 +9,7 @@
 
 #include "base/errors.h"
 #include "base/one_thread.h"
+#include "runtime/shadow/placed_nodes.h"
 
 namespace kiln {
 
@@ -28,14 +29,15 @@ struct RayPacket {
   alignas(64) RTCRay16 rays;
   alignas(64) int valid[packet_rays];
 
-  void set(std::size_t lane, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float farthest) {
+  void set(std::size_t lane, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, float nearest,
+           float farthest) {
     rays.org_x[lane] = origin.x();
     rays.org_y[lane] = origin.y();
     rays.org_z[lane] = origin.z();
     rays.dir_x[lane] = direction.x();
     rays.dir_y[lane] = direction.y();
     rays.dir_z[lane] = direction.z();
-    rays.tnear[lane] = 0;
+    rays.tnear[lane] = nearest;
     rays.tfar[lane] = farthest;
     rays.time[lane] = 0;
     rays.mask[lane] = ~0u;
@@ -47,6 +49,7 @@ struct RayPacket {
 
 struct RayOccluder::Implementation {
   RTCScene scene = nullptr;
+  float nearest = 0;  ///< object units
 
   Implementation() = default;
   Implementation(const Implementation&) = delete;
@@ -57,6 +60,7 @@ struct RayOccluder::Implementation {
 };
 
 RayOccluder::RayOccluder(const TriangleMesh& mesh) : implementation_(std::make_unique<Implementation>()) {
+  implementation_->nearest = static_cast<float>(touching_share * std::max(0.0, bounding_ball(mesh).radius));
   const RTCDevice device = device_of_all();
   if (device == nullptr) throw MachineLacks("Embree finds no device it can run on");
   implementation_->scene = rtcNewScene(device);
@@ -103,7 +107,8 @@ void RayOccluder::block(const Placement& placement, const Eigen::Vector3d& origi
     for (std::size_t lane = 0; lane < packet_rays; ++lane) {
       packet.valid[lane] = lane < rays ? -1 : 0;
       const std::uint32_t d = which[first + std::min(lane, rays - 1)];
-      packet.set(lane, start, turn * set.direction(d), farthest.empty() ? infinity : unit * farthest[d]);
+      packet.set(lane, start, turn * set.direction(d), implementation_->nearest,
+                 farthest.empty() ? infinity : unit * farthest[d]);
     }
     rtcOccluded16(packet.valid, implementation_->scene, &context, &packet.rays);
     for (std::size_t lane = 0; lane < rays; ++lane)
@@ -124,6 +129,7 @@ bool RayOccluder::blocks(const Placement& placement, const Eigen::Vector3d& orig
   ray.dir_x = along.x();
   ray.dir_y = along.y();
   ray.dir_z = along.z();
+  ray.tnear = implementation_->nearest;
   ray.tfar = static_cast<float>(farthest / placement.scale);
   ray.mask = ~0u;
   rtcOccluded1(implementation_->scene, &context, &ray);

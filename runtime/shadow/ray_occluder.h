@@ -12,6 +12,10 @@
 
 namespace kiln {
 
+/// What is nearer to a point than this share of the radius of its own bounding ball touches the point, to the rounding
+/// of float32, and blocks nothing there.
+inline constexpr double touching_share = 1e-6;
+
 /// A mesh as rays see it, in Embree's hierarchy; each object of a scene has one, wherever its nodes stand. Queries may
 /// be made from many threads at once.
 class RayOccluder {

@@ -22,6 +22,15 @@ enum class ShadowMethod {
 inline constexpr std::array<std::string_view, 7> shadow_method_names = {
     "none", "thesis", "product", "subtraction", "exponentiation", "fields", "combined"};
 
+/// Ways in which `combined` finds which directions are blocked.
+enum class ShadowBackend {
+  rays,  ///< of Embree, on the CPU
+  gpu,   ///< maps drawn at the points (runtime/shadow_gl)
+};
+
+/// Names of the ways, in the order of the enumerators.
+inline constexpr std::array<std::string_view, 2> shadow_backend_names = {"rays", "gpu"};
+
 struct ShadowSettings {
   ShadowMethod method = ShadowMethod::combined;
 

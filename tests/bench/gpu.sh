@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Measures, on a machine with a GPU, programs that were built elsewhere: the EGL bake engine, the techniques of
-# relighting, and bounces. Needs bash, coreutils and the GPU's own driver; libraries that the machine lacks are carried
+# relighting, bounces, and moving shadows by maps. Needs bash, coreutils and the GPU's own driver; libraries that the machine lacks are carried
 # along.
 #
-#   tests/bench/gpu.sh --pack FOLDER [--bin build/release/bin] [--programs "bench_bake_egl bench_techniques bench_bounces"]
+#   tests/bench/gpu.sh --pack FOLDER [--bin build/release/bin] [--programs "bench_bake_egl bench_techniques bench_bounces bench_shadow_maps"]
 #       copies the programs, with the libraries they were built against, into FOLDER: 4 MB for the engine alone, 400 MB for
 #       all, since OpenImageIO comes with every codec
 #   tests/bench/gpu.sh [--bin FOLDER] [--asset out/bunny] [--high bunny.obj] [-o gpu.txt] [--directions 10000]
@@ -16,7 +16,7 @@
 set -u
 
 bin=build/release/bin asset='' high='' out=gpu.txt directions=10000 receivers=262144 seconds=450 device=auto pack=''
-programs='bench_bake_egl bench_techniques bench_bounces'
+programs='bench_bake_egl bench_techniques bench_bounces bench_shadow_maps'
 while [ $# -gt 0 ]; do
   [ $# -ge 2 ] || { echo "gpu.sh: $1 needs a value, or is no option" >&2; exit 2; }
   case $1 in
@@ -173,6 +173,16 @@ if [ -n "$asset" ] && [ -n "$high" ]; then
   done
 else
   say "did not run: bench_bounces (no --asset or no --high)"
+fi
+
+say
+say "Moving shadows (bench_shadow_maps): maps on the GPU beside rays of the cores"
+if [ -n "$high" ]; then
+  for stand in A B C D; do
+    run 60 bench_shadow_maps --mesh "$high" --gl-device "$device" --stand $stand --frames 6 && quote < "$work/stdout"
+  done
+else
+  say "did not run: bench_shadow_maps (no --high)"
 fi
 say
 say "$((SECONDS - started)) s in all"

@@ -250,7 +250,8 @@ ShadowStand stand_d(const StandBodies& bodies, int count) {
   return stand;
 }
 
-MovingShadows shadows_of(const ShadowStand& stand, const ShadowSettings& settings) {
+MovingShadows shadows_of(const ShadowStand& stand, const ShadowSettings& settings,
+                         std::shared_ptr<VisibilityEngine> engine) {
   std::vector<ShadowObject> objects;
   for (std::size_t k = 0; k < stand.objects.size(); ++k) {
     const StandObject& object = *stand.objects[k];
@@ -259,7 +260,7 @@ MovingShadows shadows_of(const ShadowStand& stand, const ShadowSettings& setting
     objects.back().points = object.mesh.positions;
     objects.back().normals = object.mesh.normals;
   }
-  return MovingShadows(stand.tree, std::move(objects), settings);
+  return MovingShadows(stand.tree, std::move(objects), settings, std::move(engine));
 }
 
 TrueFrame true_frame(const ShadowStand& stand, const ScenePoses& poses, const LightSpec& light, unsigned seed) {

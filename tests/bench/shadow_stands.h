@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -57,8 +58,9 @@ ShadowStand stand_b(const StandBodies& bodies);
 ShadowStand stand_c(const StandBodies& bodies, bool per_vertex);
 ShadowStand stand_d(const StandBodies& bodies, int count);
 
-/// Makes the shadows of a stand.
-MovingShadows shadows_of(const ShadowStand& stand, const ShadowSettings& settings);
+/// Makes the shadows of a stand, by rays where `engine` is null.
+MovingShadows shadows_of(const ShadowStand& stand, const ShadowSettings& settings,
+                         std::shared_ptr<VisibilityEngine> engine = nullptr);
 
 /// Exit radiance of all places of all receivers in one frame.
 using FrameRadiance = std::vector<float>;

@@ -50,11 +50,13 @@ void RenderCommand::check(const CommandLine& command) const {
       require(!command.given(option), std::string(option) + ": found it beside a scene; expected assets alone");
     require(!is_sheet(settings) && settings.space == PictureSpace::camera,
             "technique all, side-by-side and space: found one with a scene; expected a picture of the whole scene");
+    check_shadow_backend(film);
   } else {
     const auto is_scene = [](const std::filesystem::path& path) { return is_scene_file(path); };
     require(std::none_of(paths.assets.begin(), paths.assets.end(), is_scene),
             "found a scene beside other inputs; expected one scene, or assets");
-    for (const char* option : {"time", "fps", "shadows", "shadow-directions", "strip", "tree"})
+    for (const char* option :
+         {"time", "fps", "shadows", "shadow-directions", "shadow-backend", "shadow-texels", "strip", "tree"})
       require(!command.given(option), std::string(option) + ": found it without a scene; expected a scene.yaml");
   }
   picture_of(settings);

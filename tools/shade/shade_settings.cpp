@@ -20,7 +20,7 @@ OptionSet shade_options(ShadeSettings& settings) {
 }
 
 OptionSet shade_film_options(ShadeSettings& settings) {
-  return film_options(settings.film).without({"shadows", "shadow-directions"});
+  return film_options(settings.film).without({"shadows", "shadow-directions", "shadow-backend", "shadow-texels"});
 }
 
 }  // namespace kiln

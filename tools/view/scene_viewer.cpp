@@ -25,8 +25,9 @@ constexpr double pause_seconds = 0.1;  // while nothing happens
 // Width beside a square that panels on both sides need; at 96 dots per inch.
 constexpr double room_for_both_panels = 440;
 
-std::string method_name(ShadowMethod method) {
-  return std::string(shadow_method_names[static_cast<std::size_t>(method)]);
+std::string method_name(const FilmSettings& film) {
+  const std::string name(shadow_method_names[static_cast<std::size_t>(film.shadows)]);
+  return film.shadow_backend == ShadowBackend::gpu ? name + ", by maps" : name;
 }
 
 std::string samples_text(int samples) {
@@ -39,9 +40,9 @@ std::string samples_text(int samples) {
 SceneViewer::SceneViewer(const SceneViewerSetup& setup, const Film& film)
     : setup_(setup),
       window_("kiln-view: " + setup.name, setup.look.width, setup.look.height, setup.threads),
-      scene_(
-          film.description, film.asset_pointers(),
-          {shadow_settings_of(setup.film, setup.threads), film_samples_of(setup.look, setup.film, film.description)}),
+      scene_(film.description, film.asset_pointers(),
+             {shadow_settings_of(setup.film, setup.threads), film_samples_of(setup.look, setup.film, film.description),
+              shadow_engine_of(setup.film)}),
       samples_(film_samples_of(setup.look, setup.film, film.description)),
       assets_(scene_, setup.look, samples_),
       duration_(duration_of(film.description)) {
@@ -213,9 +214,9 @@ std::vector<PlacedPanel> SceneViewer::panels() {
   if (state_.readout && !(state_.help && is_narrow)) {
     const auto nodes = std::count_if(scene_.description().items.begin(), scene_.description().items.end(),
                                      [](const SceneItem& item) { return item.asset >= 0; });
-    panels.push_back({scene_readout(state_, {setup_.name, duration_, static_cast<int>(nodes),
-                                             method_name(setup_.film.shadows), samples_text(samples_),
-                                             clock_.steady_milliseconds(), light_clock_.steady_milliseconds()}),
+    panels.push_back({scene_readout(state_, {setup_.name, duration_, static_cast<int>(nodes), method_name(setup_.film),
+                                             samples_text(samples_), clock_.steady_milliseconds(),
+                                             light_clock_.steady_milliseconds()}),
                       Corner::upper_left});
   }
   if (state_.help) panels.push_back({scene_help_panel(), Corner::upper_right});
@@ -232,6 +233,7 @@ Json SceneViewer::metrics() const {
           {"frames", clock_.frames()},
           {"frame_milliseconds", clock_.mean_milliseconds()},
           {"light_milliseconds", light_clock_.mean_milliseconds()},
+          {"shadows", shadow_record(setup_.film, scene_.shadow_engine())},
           {"screenshots", screenshots_}};
 }
 

@@ -12,6 +12,7 @@
 #include "render/output/picture.h"
 #include "render/render_metrics.h"
 #include "runtime/scene_file/scene_file.h"
+#include "runtime/shadow_gl/visibility_maps.h"
 
 namespace kiln {
 
@@ -112,6 +113,24 @@ std::vector<SceneAsset> FilmAssets::now(const SurfaceLook& look) {
   return assets;
 }
 
+std::shared_ptr<VisibilityEngine> shadow_engine_of(const FilmSettings& film) {
+  if (film.shadow_backend == ShadowBackend::rays) return nullptr;
+  VisibilityMapSettings settings;
+  settings.texels = film.shadow_texels;
+  return std::make_shared<VisibilityMaps>(settings);
+}
+
+Json shadow_record(const FilmSettings& film, const VisibilityEngine* engine) {
+  Json record = {{"method", shadow_method_names[static_cast<std::size_t>(film.shadows)]}};
+  if (film.shadows != ShadowMethod::combined) return record;
+  record["backend"] = shadow_backend_names[static_cast<std::size_t>(film.shadow_backend)];
+  record["directions"] = film.shadow_directions;
+  if (engine == nullptr) return record;
+  record["renderer"] = engine->renderer();
+  record["texels"] = film.shadow_texels;
+  return record;
+}
+
 std::vector<Eigen::Vector3f> shape_now(MovingScene& scene) {
   std::vector<Eigen::Vector3f> shape;
   for (int item = 0; item < scene.item_count(); ++item)
@@ -164,7 +183,9 @@ Json film_to_files(OutputSet& outputs, const std::string& name, const Film& film
   const std::vector<double> times = film_times(film_settings, settings.frames, film.description);
   const int samples = film_samples_of(settings, film_settings, film.description);
   const EglContext context(settings.gl_device, threads);
-  MovingScene scene(film.description, film.asset_pointers(), {shadow_settings_of(film_settings, threads), samples});
+  const std::shared_ptr<VisibilityEngine> engine = shadow_engine_of(film_settings);
+  MovingScene scene(film.description, film.asset_pointers(),
+                    {shadow_settings_of(film_settings, threads), samples, engine});
   scene.set_time(times.front());
   FilmAssets assets(scene, settings, samples);
   const CameraSettings camera = film_camera(scene, settings);
@@ -186,6 +207,7 @@ Json film_to_files(OutputSet& outputs, const std::string& name, const Film& film
       metrics["frames"] = times.size();
       metrics["times"] = times;
       metrics["tree"] = tree_record(scene.tree());
+      metrics["shadows"] = shadow_record(film_settings, engine.get());
     }
     return radiance;
   };
@@ -195,7 +217,7 @@ Json film_to_files(OutputSet& outputs, const std::string& name, const Film& film
 }
 
 SceneTree film_tree(const Film& film, double time) {
-  MovingScene scene(film.description, film.asset_pointers(), {{}, 1});
+  MovingScene scene(film.description, film.asset_pointers(), {{}, 1, nullptr});
   scene.set_time(time);
   return scene.tree();
 }

@@ -48,6 +48,13 @@ class FilmAssets {
   std::vector<Technique> techniques_;
 };
 
+/// Makes what finds shadows by the GPU, in the GL context that is current; null where the settings ask for rays. Throws
+/// as VisibilityMaps does.
+std::shared_ptr<VisibilityEngine> shadow_engine_of(const FilmSettings& film);
+
+/// Describes how shadows are computed: the method and, of `combined`, the backend, with the renderer of a GPU.
+Json shadow_record(const FilmSettings& film, const VisibilityEngine* engine);
+
 /// Returns the vertices of all nodes as they are now.
 std::vector<Eigen::Vector3f> shape_now(MovingScene& scene);
 

@@ -16,13 +16,19 @@ OptionSet film_options(FilmSettings& settings) {
   std::vector<std::pair<std::string, ShadowMethod>> methods;
   for (const std::string_view name : shadow_method_names)
     methods.emplace_back(name, static_cast<ShadowMethod>(methods.size()));
+  std::vector<std::pair<std::string, ShadowBackend>> backends;
+  for (const std::string_view name : shadow_backend_names)
+    backends.emplace_back(name, static_cast<ShadowBackend>(backends.size()));
   options.number("time", settings.time, 0, 1e6, "Of the picture, or of the first of several, seconds")
       .number_or_auto("fps", settings.frames_per_second, 1e-3, 1000,
                       "Pictures per second of --frames; auto: they span the scene from --time to its end")
       .toggle("strip", settings.strip, "The frames side by side in one picture, in place of one picture each")
       .choice("shadows", settings.shadows, methods, "How the nodes' shadows on each other are computed")
       .integer("shadow-directions", settings.shadow_directions, 16, 1000000,
-               "In which a point at which light is computed looks for what shadows it");
+               "In which a point at which light is computed looks for what shadows it")
+      .choice("shadow-backend", settings.shadow_backend, backends,
+              "How it finds what is there: rays on the CPU, or small maps that the GL device draws at the point")
+      .integer("shadow-texels", settings.shadow_texels, 8, 1024, "Side of these maps, texels");
   return options;
 }
 
@@ -59,6 +65,12 @@ void use_scene_look(RenderSettings& settings, const SceneDescription& scene,
   if (!is_given("distance") && camera.distance) settings.framing.distance = fmt::format("{}", *camera.distance);
   if (!is_given("background") && scene.background)
     settings.background = fmt::format("{}", fmt::join(*scene.background, ","));
+}
+
+void check_shadow_backend(const FilmSettings& film) {
+  if (film.shadow_backend != ShadowBackend::rays && film.shadows != ShadowMethod::combined)
+    throw WrongUsage(fmt::format("shadow-backend: found gpu with --shadows {}; expected combined, or backend rays",
+                                 shadow_method_names[static_cast<std::size_t>(film.shadows)]));
 }
 
 ShadowSettings shadow_settings_of(const FilmSettings& film, int threads) {

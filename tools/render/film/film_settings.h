@@ -21,6 +21,8 @@ struct FilmSettings {
   bool strip = false;                       ///< whether the frames stand side by side in one picture
   ShadowMethod shadows = ShadowSettings{}.method;
   int shadow_directions = ShadowSettings{}.directions;
+  ShadowBackend shadow_backend = ShadowBackend::rays;
+  int shadow_texels = 64;  ///< side of the maps of ShadowBackend::gpu
 };
 
 OptionSet film_options(FilmSettings& settings);
@@ -36,6 +38,9 @@ std::vector<double> film_times(const FilmSettings& film, int frames, const Scene
 /// whether that has an option.
 void use_scene_look(RenderSettings& settings, const SceneDescription& scene,
                     const std::function<bool(const std::string&)>& is_given);
+
+/// Throws WrongUsage for a backend of shadows that does not fit their method.
+void check_shadow_backend(const FilmSettings& film);
 
 /// Returns the shadows of the settings.
 ShadowSettings shadow_settings_of(const FilmSettings& film, int threads);
