@@ -55,6 +55,11 @@ class MovingScene {
   /// Returns the points at which light() has it, object space.
   const std::vector<Eigen::Vector3f>& points(int item) const;
 
+  /// Computes the light of all items, if anything has changed since it was computed; light() does so as well.
+  void update();
+  /// Tells what the last computation of light did.
+  const ShadowStatistics& statistics() const { return shadows_->statistics(); }
+
   /// Returns the tree that shadows go by.
   const SceneTree& tree();
   /// Returns how often a tree that is found has changed.
@@ -62,7 +67,6 @@ class MovingScene {
 
  private:
   void place();
-  void update();
   std::vector<NodeSphere> spheres() const;
   std::vector<Eigen::Vector3f> normals_at(std::size_t asset) const;
   ScenePoses tree_poses() const;
