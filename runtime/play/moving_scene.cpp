@@ -160,7 +160,8 @@ void MovingScene::update() {
     std::vector<ShadowObject> objects;
     for (std::size_t k = 0; k < assets_.size(); ++k)
       objects.push_back({&assets_[k]->mesh, points_[k], assets_[k]->bands, normals_at(k)});
-    shadows_.emplace(found_tree_ ? found_tree_->tree() : given_tree_, std::move(objects), settings_.shadows);
+    shadows_.emplace(found_tree_ ? found_tree_->tree() : given_tree_, std::move(objects), settings_.shadows,
+                     settings_.engine);
   }
   shadows_->update(tree_poses(), lights_);
   is_lit_ = true;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -17,7 +18,8 @@ namespace kiln {
 
 struct MovingSceneSettings {
   ShadowSettings shadows = {};
-  int incident_samples = most_incident_samples;  ///< as for place_incident_samples
+  int incident_samples = most_incident_samples;   ///< as for place_incident_samples
+  std::shared_ptr<VisibilityEngine> engine = {};  ///< in place of rays; null: rays
 };
 
 /// A scene at a time: where its nodes are, and the light that each of them receives.

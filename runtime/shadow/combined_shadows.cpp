@@ -28,9 +28,10 @@ bool may_meet(const BoundingBall& receiver, const BoundingBall& occluder, const 
   return std::acos(std::clamp(grown.axis.dot(axis), -1.0, 1.0)) <= half_angle + grown.half_angle;
 }
 
-/// Tests whether an occluder may stand between a receiver and a ball of light: whether its ball meets the convex hull
-/// of theirs. That is the union of balls whose centres and radii go evenly from one to the other; the distance to the
-/// nearest of these is a convex function of the place between them.
+}  // namespace
+
+// Tests whether the occluder's ball meets the convex hull of the other two: the union of balls whose centres and radii
+// go evenly from one to the other; the distance to the nearest of these is a convex function of the place between them.
 bool may_stand_between(const BoundingBall& receiver, const BoundingBall& occluder, const LightSpec& ball) {
   const Eigen::Vector3d along = Eigen::Vector3d(ball.position.data()) - receiver.centre,
                         towards = occluder.centre - receiver.centre;
@@ -46,6 +47,23 @@ bool may_stand_between(const BoundingBall& receiver, const BoundingBall& occlude
   }
   return (receiver.centre + place * along - occluder.centre).norm() <= occluder.radius + reach + place * widens;
 }
+
+bool ConeView::may_cover(const BoundingBall& ball) const {
+  const ViewCone cone = cone_of(ball, position);
+  return cone.half_angle >= pi || (cone.distance - ball.radius < longest &&
+                                   cone.axis.dot(axis) >= std::cos(std::min(pi, cone.half_angle + half_angle)));
+}
+
+bool is_seen_by_axis(const ShadowPoint& point, const Eigen::Vector3d& axis, double half_angle) {
+  const double lowest = std::acos(far_below_horizon) + half_angle;
+  return half_angle == 0 || (point.normal && lowest < pi && point.normal->dot(axis) < std::cos(lowest));
+}
+
+std::size_t visibility_rows(const LightSources& sources) {
+  return sources.cones.size() + sources.balls.size() + 3 * sources.skies.size();
+}
+
+namespace {
 
 bool may_take_light(const BoundingBall& receiver, const BoundingBall& occluder, const LightSources& sources) {
   for (const ConeLight& cone : sources.cones)
@@ -98,27 +116,39 @@ struct LightReach {
   std::vector<float> by_direction = {};
 };
 
+/// What is known of a light at a point: how many of its directions are blocked, and their harmonics' sums.
+struct KnownLight {
+  std::uint32_t count, total;
+  std::span<const float> sums;
+};
+
 /// Takes the share of a cone of light that is blocked.
 void remove_cone(const ShadowStage& stage, std::span<const int> meshes, const ConeLight& light, const LightReach& reach,
-                 const ShadowPoint& point, RemovedLight& removed) {
+                 const ShadowPoint& point, const std::optional<KnownLight>& known, RemovedLight& removed) {
   const auto take = [&](std::span<const double> values) {
     for (std::size_t c = 0; c < 3; ++c) removed.add(c, values, light.window, static_cast<double>(light.spec.color[c]));
   };
-  const auto in_the_way = [&](int node) {
-    const BoundingBall& ball = stage.place_of(node).ball;
-    const ViewCone cone = cone_of(ball, point.position);
-    return cone.half_angle >= pi ||
-           (cone.distance - ball.radius < reach.longest &&
-            cone.axis.dot(light.axis) >= std::cos(std::min(pi, cone.half_angle + light.half_angle)));
-  };
-  // A cone far below the horizon, which the node's own body hides, is decided by its axis alone.
-  const double lowest = std::acos(far_below_horizon) + light.half_angle;
-  const bool far_below = point.normal && lowest < pi && point.normal->dot(light.axis) < std::cos(lowest);
-  if (light.half_angle == 0 || far_below) {
+  const ConeView view{point.position, light.axis, light.half_angle, reach.longest};
+  const auto in_the_way = [&](int node) { return view.may_cover(stage.place_of(node).ball); };
+  if (is_seen_by_axis(point, light.axis, light.half_angle)) {
+    if (known) {
+      if (known->count > 0) take(light.zonal);
+      return;
+    }
     for (const int node : meshes)
       if (in_the_way(node) &&
           stage.mesh_of(node).blocks(stage.pose_of(node), point.position, light.axis, static_cast<float>(reach.axis)))
         return take(light.zonal);
+    return;
+  }
+  const auto take_share = [&](std::vector<double> values, std::uint32_t count, std::uint32_t total) {
+    const double share = cone_bands(1, light.half_angle)[0] / total, blocked = static_cast<double>(count) / total;
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = share * values[i] + blocked * light.closing[i];
+    take(values);
+  };
+  if (known) {
+    if (known->count == known->total) return take(light.zonal);
+    if (known->count > 0) take_share({known->sums.begin(), known->sums.end()}, known->count, known->total);
     return;
   }
   thread_local BlockedDirections state;
@@ -137,10 +167,7 @@ void remove_cone(const ShadowStage& stage, std::span<const int> meshes, const Co
     const std::span<const float> row = own_row.empty() ? light.directions.row(d) : std::span<const float>(own_row);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] += static_cast<double>(row[i]);
   }
-  const double share = cone_bands(1, light.half_angle)[0] / light.directions.count(),
-               blocked = static_cast<double>(count) / light.directions.count();
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = share * values[i] + blocked * light.closing[i];
-  take(values);
+  take_share(std::move(values), count, light.directions.count());
 }
 
 /// Takes what caps block of skies, each less what is blocked already.
@@ -196,24 +223,31 @@ void remove_caps(const ShadowStage& stage, const NodeOccluders& occluders, std::
   }
 }
 
-/// Takes the blocked share of all skies.
+/// Takes the blocked share of all skies; `known` has three rows for each, from `first_row` on.
 void remove_skies(const ShadowStage& stage, const NodeOccluders& occluders, std::span<const SkyLight> skies, int bands,
-                  const ShadowPoint& point, RemovedLight& removed) {
+                  const ShadowPoint& point, const PointVisibility* known, std::size_t first_row,
+                  RemovedLight& removed) {
   thread_local BlockedDirections state;
-  state.reset(stage.sky.count());
-  for (const int node : occluders.sky_meshes) block_by_mesh(stage, node, point.position, stage.sky, {}, state);
   std::vector<std::uint32_t>& taken = state.tested;
   taken.clear();
-  for (std::uint32_t d = 0; d < stage.sky.count(); ++d)
-    if (state.blocked[d] != 0) taken.push_back(d);
-  const double blocked = static_cast<double>(taken.size()) / stage.sky.count();
-  if (!taken.empty())
+  if (known == nullptr) {
+    state.reset(stage.sky.count());
+    for (const int node : occluders.sky_meshes) block_by_mesh(stage, node, point.position, stage.sky, {}, state);
+    taken.clear();  // of the directions that the last mesh was tested in
+    for (std::uint32_t d = 0; d < stage.sky.count(); ++d)
+      if (state.blocked[d] != 0) taken.push_back(d);
+  }
+  const std::uint32_t count = known != nullptr ? known->counts[first_row] : static_cast<std::uint32_t>(taken.size());
+  const double blocked = static_cast<double>(count) / stage.sky.count();
+  std::size_t known_row = first_row;
+  if (count > 0)
     for (const SkyLight& sky : skies) {
-      for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t c = 0; c < 3; ++c, ++known_row) {
         std::vector<double> values(static_cast<std::size_t>(coefficient_count(bands)), 0.0);
-        if (taken.size() == stage.sky.count()) {
+        if (count == stage.sky.count()) {
           values.assign(sky.light.channels[c].begin(), sky.light.channels[c].end());
         } else {
+          if (known != nullptr) values.assign(known->row(known_row).begin(), known->row(known_row).end());
           for (const std::uint32_t d : taken) {
             const auto radiance = static_cast<double>(sky.radiance[c][d]);
             const std::span<const float> row = stage.sky.row(d);
@@ -224,7 +258,7 @@ void remove_skies(const ShadowStage& stage, const NodeOccluders& occluders, std:
         removed.add(c, values, sky.window, 1);
       }
     }
-  if (taken.size() < stage.sky.count()) remove_caps(stage, occluders, skies, bands, point, removed);
+  if (count < stage.sky.count()) remove_caps(stage, occluders, skies, bands, point, removed);
 }
 
 }  // namespace
@@ -267,11 +301,18 @@ NodeOccluders find_occluders(const ShadowStage& stage, int receiver, const Light
 
 std::optional<LightSum> removed_light(const ShadowStage& stage, const NodeOccluders& occluders,
                                       const SceneLights& lights, const LightSources& sources, int bands,
-                                      const ShadowPoint& point) {
+                                      const ShadowPoint& point, const PointVisibility* known) {
   RemovedLight removed(bands);
+  const auto known_light = [&](std::size_t row) -> std::optional<KnownLight> {
+    if (known == nullptr) return std::nullopt;
+    return KnownLight{known->counts[row], static_cast<std::uint32_t>(sources.pattern.share.size()), known->row(row)};
+  };
   if (!occluders.meshes.empty()) {
-    for (const ConeLight& cone : sources.cones) remove_cone(stage, occluders.meshes, cone, {}, point, removed);
+    std::size_t row = 0;
+    for (const ConeLight& cone : sources.cones)
+      remove_cone(stage, occluders.meshes, cone, {}, point, known_light(row++), removed);
     for (const LightSpec& ball : sources.balls) {
+      const std::optional<KnownLight> of_ball = known_light(row++);
       const BoundingBall light{Eigen::Vector3d(ball.position.data()), ball.radius};
       const ViewCone seen = cone_of(light, point.position);
       const auto stands_between = [&](int node) {
@@ -279,7 +320,9 @@ std::optional<LightSum> removed_light(const ShadowStage& stage, const NodeOcclud
       };
       if (seen.half_angle >= pi || std::none_of(occluders.meshes.begin(), occluders.meshes.end(), stands_between))
         continue;  // from inside a ball of light nothing stands in front of it
-      const ConeLight cone = ball_at(ball, bands, lights.window, point.position, sources.pattern);
+      if (of_ball && of_ball->count == 0) continue;
+      const DiscPattern none;  // what is known needs no directions
+      const ConeLight cone = ball_at(ball, bands, lights.window, point.position, of_ball ? none : sources.pattern);
       // Rays end where they reach the ball; the longest touch it.
       LightReach reach{seen.distance - ball.radius,
                        std::sqrt(std::max(0.0, seen.distance * seen.distance - ball.radius * ball.radius)),
@@ -289,14 +332,16 @@ std::optional<LightSum> removed_light(const ShadowStage& stage, const NodeOcclud
         const double inside = ball.radius * ball.radius - (seen.distance * seen.distance - along * along);
         reach.by_direction[d] = static_cast<float>(along - std::sqrt(std::max(0.0, inside)));
       }
-      remove_cone(stage, occluders.meshes, cone, reach, point, removed);
+      remove_cone(stage, occluders.meshes, cone, reach, point, of_ball, removed);
     }
   }
   if (!occluders.sky_meshes.empty() || !occluders.sky_caps.empty()) {
     if (sources.has_probes)
-      remove_skies(stage, occluders, probed_skies(lights, bands, stage.sky, point.position), bands, point, removed);
+      remove_skies(stage, occluders, probed_skies(lights, bands, stage.sky, point.position), bands, point, nullptr, 0,
+                   removed);
     else if (!sources.skies.empty())
-      remove_skies(stage, occluders, sources.skies, bands, point, removed);
+      remove_skies(stage, occluders, sources.skies, bands, point, known, sources.cones.size() + sources.balls.size(),
+                   removed);
   }
   return removed.sum();
 }

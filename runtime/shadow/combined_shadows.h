@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "runtime/shadow/light_sources.h"
 #include "runtime/shadow/placed_nodes.h"
 #include "runtime/shadow/ray_occluder.h"
+#include "runtime/shadow/visibility_engine.h"
 
 namespace kiln {
 
@@ -45,6 +47,23 @@ struct ShadowPoint {
   std::optional<Eigen::Vector3d> normal;  ///< then cones and caps far below its horizon cost few rays, or none
 };
 
+/// Sees a cone of light from a point: what may stand before it, and whether its axis alone stands for it.
+struct ConeView {
+  Eigen::Vector3d position, axis;                            ///< of the point; unit vector towards the light
+  double half_angle = 0;                                     ///< radians
+  double longest = std::numeric_limits<double>::infinity();  ///< distance to the light where it is farthest
+
+  /// Tests whether a ball may cover a part of the light.
+  bool may_cover(const BoundingBall& ball) const;
+};
+
+/// Tests whether a cone of light is decided by its axis alone: a single direction, or one far below the horizon, which
+/// the node's own body hides.
+bool is_seen_by_axis(const ShadowPoint& point, const Eigen::Vector3d& axis, double half_angle);
+
+/// Tests whether an occluder may stand between a receiver and a ball of light.
+bool may_stand_between(const BoundingBall& receiver, const BoundingBall& occluder, const LightSpec& ball);
+
 /// Computes what the occluders take from the light at a point: the projection of L (1 - V), each light under its own
 /// window, where V is 0 in directions that any occluder blocks. Three channels, the scene's space; empty if nothing is
 /// taken.
@@ -58,8 +77,10 @@ struct ShadowPoint {
 /// A cap stands for a node that covers little sky: a disc of the mean area of its silhouette at its centre, with the
 /// zonal coefficients of that closed form. Seven directions of it say what share is not taken already by meshes and
 /// caps before it.
+///
+/// `known` is what a VisibilityEngine found at the point; then no rays are cast but those of caps.
 std::optional<LightSum> removed_light(const ShadowStage& stage, const NodeOccluders& occluders,
                                       const SceneLights& lights, const LightSources& sources, int bands,
-                                      const ShadowPoint& point);
+                                      const ShadowPoint& point, const PointVisibility* known = nullptr);
 
 }  // namespace kiln

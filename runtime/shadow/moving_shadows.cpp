@@ -32,6 +32,8 @@ bool passes_down_the_tree(Method method) {
   return method == Method::thesis || method == Method::product || method == Method::subtraction;
 }
 
+constexpr std::size_t engine_points = 4096;
+
 /// One point of a node.
 struct PointTask {
   int node;
@@ -50,6 +52,7 @@ struct MovingShadows::Implementation {
   SceneTree tree;
   std::vector<ShadowObject> objects;
   ShadowSettings settings;
+  std::shared_ptr<VisibilityEngine> engine;  ///< null: rays
   int most_bands = 1;
 
   // By asset.
@@ -74,7 +77,8 @@ struct MovingShadows::Implementation {
   std::vector<PlacedNode> placed;
   ShadowStatistics statistics;
 
-  Implementation(SceneTree of_tree, std::vector<ShadowObject> of_objects, const ShadowSettings& of_settings);
+  Implementation(SceneTree of_tree, std::vector<ShadowObject> of_objects, const ShadowSettings& of_settings,
+                 std::shared_ptr<VisibilityEngine> of_engine);
 
   const SceneNode& node_of(int node) const { return tree.nodes[static_cast<std::size_t>(node)]; }
   const ShadowObject& object_of(int node) const { return objects[static_cast<std::size_t>(node_of(node).asset)]; }
@@ -89,15 +93,19 @@ struct MovingShadows::Implementation {
   void update_trees(const ShadowStage& stage);
   BlockedSum blocked_above(int node, std::size_t point, int bands) const;
 
+  ShadowPoint point_of(const ShadowStage& stage, const PointTask& task) const;
+  /// Asks the engine what is blocked at some points; empty if rays are cast instead.
+  std::optional<VisibilityTable> seen_by_engine(const ShadowStage& stage, std::span<const PointTask> tasks) const;
   LightCoefficients shadowed(const ShadowStage& stage, const SceneLights& lights, const PointTask& task,
                              const ShRotation& into_object, const LightCoefficients& unshadowed,
-                             const std::optional<LightCoefficients>& incident) const;
+                             const std::optional<LightCoefficients>& incident, const PointVisibility* known) const;
   std::vector<float> visibility(const ShadowStage& stage, int node, const Eigen::Vector3d& position, int bands) const;
 };
 
 MovingShadows::Implementation::Implementation(SceneTree of_tree, std::vector<ShadowObject> of_objects,
-                                              const ShadowSettings& of_settings)
-    : tree(std::move(of_tree)), objects(std::move(of_objects)), settings(of_settings) {
+                                              const ShadowSettings& of_settings,
+                                              std::shared_ptr<VisibilityEngine> of_engine)
+    : tree(std::move(of_tree)), objects(std::move(of_objects)), settings(of_settings), engine(std::move(of_engine)) {
   const std::optional<ThreadLimit> limit = limit_of(settings.threads);
   for (const ShadowObject& object : objects) most_bands = std::max(most_bands, object.bands);
   keys.resize(tree.nodes.size());
@@ -116,6 +124,11 @@ MovingShadows::Implementation::Implementation(SceneTree of_tree, std::vector<Sha
     if (settings.method == Method::fields)
       fields.emplace_back(rays.back(), balls.back(), silhouettes.back(), most_bands);
   }
+  if (settings.method != Method::combined) engine.reset();
+  if (!engine) return;
+  std::vector<const TriangleMesh*> meshes;
+  for (const ShadowObject& object : objects) meshes.push_back(object.mesh);
+  engine->set_meshes(meshes);
 }
 
 void MovingShadows::Implementation::note_lights(const SceneLights& lights) {
@@ -125,6 +138,7 @@ void MovingShadows::Implementation::note_lights(const SceneLights& lights) {
   ++lights_version;
   is_local = lights.is_local();
   if (settings.method == Method::combined) sources = light_sources(lights, most_bands, sky);
+  if (engine && !sources.has_probes) engine->set_lights(sources, sky, most_bands);
 }
 
 std::vector<int> MovingShadows::Implementation::nodes_in_the_way(int node) const {
@@ -249,10 +263,30 @@ std::vector<float> MovingShadows::Implementation::visibility(const ShadowStage& 
   return all;
 }
 
+ShadowPoint MovingShadows::Implementation::point_of(const ShadowStage& stage, const PointTask& task) const {
+  const Placement& pose = stage.pose_of(task.node);
+  const ShadowObject& object = object_of(task.node);
+  ShadowPoint point{pose.to_scene(object.points[task.point].cast<double>()), std::nullopt};
+  if (!object.normals.empty()) point.normal = pose.rotation * object.normals[task.point].cast<double>();
+  return point;
+}
+
+std::optional<VisibilityTable> MovingShadows::Implementation::seen_by_engine(const ShadowStage& stage,
+                                                                             std::span<const PointTask> tasks) const {
+  if (!engine || sources.has_probes) return std::nullopt;  // light past probes differs from point to point
+  std::vector<ShadowPoint> points;
+  for (const PointTask& task : tasks) points.push_back(point_of(stage, task));
+  std::vector<VisibilityTask> asked;
+  for (std::size_t t = 0; t < tasks.size(); ++t)
+    asked.push_back({&points[t], &occluders[static_cast<std::size_t>(tasks[t].node)]});
+  return engine->find(stage, sources, asked);
+}
+
 LightCoefficients MovingShadows::Implementation::shadowed(const ShadowStage& stage, const SceneLights& lights,
                                                           const PointTask& task, const ShRotation& into_object,
                                                           const LightCoefficients& unshadowed,
-                                                          const std::optional<LightCoefficients>& incident) const {
+                                                          const std::optional<LightCoefficients>& incident,
+                                                          const PointVisibility* known) const {
   const int bands = object_of(task.node).bands;
   const Placement& pose = stage.pose_of(task.node);
   const Eigen::Vector3d position = pose.to_scene(object_of(task.node).points[task.point].cast<double>());
@@ -260,11 +294,9 @@ LightCoefficients MovingShadows::Implementation::shadowed(const ShadowStage& sta
     return pose.turns() ? into_object(in_scene) : in_scene;
   };
   if (settings.method == Method::combined) {
-    ShadowPoint point{position, std::nullopt};
-    const std::vector<Eigen::Vector3f>& normals = object_of(task.node).normals;
-    if (!normals.empty()) point.normal = pose.rotation * normals[task.point].cast<double>();
     const NodeOccluders& nodes = occluders[static_cast<std::size_t>(task.node)];
-    const std::optional<LightSum> removed = removed_light(stage, nodes, lights, sources, most_bands, point);
+    const std::optional<LightSum> removed =
+        removed_light(stage, nodes, lights, sources, most_bands, point_of(stage, task), known);
     if (!removed) return unshadowed;
     LightCoefficients taken{bands, {}};
     for (const std::vector<double>& channel : *removed)
@@ -283,8 +315,10 @@ LightCoefficients MovingShadows::Implementation::shadowed(const ShadowStage& sta
   return turned(filtered_light(settings.method, arriving, filter));
 }
 
-MovingShadows::MovingShadows(SceneTree tree, std::vector<ShadowObject> objects, const ShadowSettings& settings)
-    : implementation_(std::make_unique<Implementation>(std::move(tree), std::move(objects), settings)) {}
+MovingShadows::MovingShadows(SceneTree tree, std::vector<ShadowObject> objects, const ShadowSettings& settings,
+                             std::shared_ptr<VisibilityEngine> engine)
+    : implementation_(
+          std::make_unique<Implementation>(std::move(tree), std::move(objects), settings, std::move(engine))) {}
 MovingShadows::~MovingShadows() = default;
 MovingShadows::MovingShadows(MovingShadows&&) noexcept = default;
 MovingShadows& MovingShadows::operator=(MovingShadows&&) noexcept = default;
@@ -318,7 +352,7 @@ void MovingShadows::update(const ScenePoses& poses, const SceneLights& lights) {
     shared.unshadowed = light_asset(lights, object.bands, pose, std::span(object.points).first(1)).samples.front();
     shared.incident = lights.incident(object.bands, Eigen::Vector3d::Zero());
   });
-  parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t t) {
+  const auto compute = [&](std::size_t t, const PointVisibility* known) {
     const PointTask& task = tasks[t];
     const auto k = static_cast<std::size_t>(task.node);
     const NodeLight& shared = of_nodes[k];
@@ -330,8 +364,19 @@ void MovingShadows::update(const ScenePoses& poses, const SceneLights& lights) {
     own.light[k][task.point] =
         own.settings.method == Method::none
             ? unshadowed
-            : own.shadowed(stage, lights, task, *shared.into_object, unshadowed, shared.incident);
-  });
+            : own.shadowed(stage, lights, task, *shared.into_object, unshadowed, shared.incident, known);
+  };
+  // An engine is asked for some thousands of points at a time, which bounds what it says of them.
+  const std::size_t together = own.engine ? engine_points : std::max<std::size_t>(1, tasks.size());
+  for (std::size_t first = 0; first < tasks.size(); first += together) {
+    const std::span<const PointTask> part = std::span(tasks).subspan(first, std::min(together, tasks.size() - first));
+    const std::optional<VisibilityTable> seen = own.seen_by_engine(stage, part);
+    parallel_for(std::size_t{0}, part.size(), [&](std::size_t t) {
+      if (!seen) return compute(first + t, nullptr);
+      const PointVisibility known = seen->at(t);
+      compute(first + t, &known);
+    });
+  }
 }
 
 std::span<const LightCoefficients> MovingShadows::light_of(int node) const {

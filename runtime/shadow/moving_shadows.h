@@ -10,6 +10,7 @@
 #include "runtime/light/scene_lights.h"
 #include "runtime/scene/scene_tree.h"
 #include "runtime/shadow/shadow_settings.h"
+#include "runtime/shadow/visibility_engine.h"
 #include "sh/lights.h"
 
 namespace kiln {
@@ -26,8 +27,10 @@ struct ShadowObject {
 class MovingShadows {
  public:
   /// `objects` are the scene's assets, in the order that the tree's nodes name them; their meshes must live on. Builds
-  /// what the method needs of each: hierarchies for rays, balls that stand for it, fields of visibility.
-  MovingShadows(SceneTree tree, std::vector<ShadowObject> objects, const ShadowSettings& settings);
+  /// what the method needs of each: hierarchies for rays, balls that stand for it, fields of visibility. `engine` finds
+  /// what is blocked for `combined`, in place of rays, unless the lights have probes; no other method asks it.
+  MovingShadows(SceneTree tree, std::vector<ShadowObject> objects, const ShadowSettings& settings,
+                std::shared_ptr<VisibilityEngine> engine = nullptr);
   ~MovingShadows();
   MovingShadows(MovingShadows&&) noexcept;
   MovingShadows& operator=(MovingShadows&&) noexcept;
