@@ -22,7 +22,7 @@ void view_scene_file(CommandLine& command, const std::filesystem::path& file, co
   if (is_sheet(setup.look) || setup.look.space == PictureSpace::texture)
     throw WrongUsage("technique all, side-by-side and space: found one with a scene; expected a picture of all of it");
 
-  const Film film = load_film(file, setup.look.level);
+  Film film = load_film(file, setup.look.level);
   SceneViewerSetup own{file.stem().string(),
                        setup.look,
                        film_settings,
