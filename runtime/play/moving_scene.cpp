@@ -154,7 +154,7 @@ void MovingScene::update() {
   if (is_lit_) return;
   if (found_tree_ && found_tree_->update(spheres())) {
     if (shadows_) ++tree_changes_;
-    shadows_.reset();  // filters are of nodes, which are others now
+    if (shadows_) shadows_->set_tree(found_tree_->tree());
   }
   if (!shadows_) {
     std::vector<ShadowObject> objects;
@@ -199,7 +199,10 @@ const std::vector<Eigen::Vector3f>& MovingScene::points(int item) const {
 const SceneTree& MovingScene::tree() {
   place();
   if (!found_tree_) return given_tree_;
-  if (found_tree_->update(spheres())) shadows_.reset(), is_lit_ = false;
+  if (found_tree_->update(spheres())) {
+    if (shadows_) shadows_->set_tree(found_tree_->tree());
+    is_lit_ = false;
+  }
   return found_tree_->tree();
 }
 

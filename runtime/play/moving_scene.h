@@ -60,6 +60,11 @@ class MovingScene {
   /// Returns what finds shadows in place of rays, or null.
   const VisibilityEngine* shadow_engine() const { return settings_.engine.get(); }
 
+  /// Computes the light of all items, if anything has changed since it was computed; light() does so as well.
+  void update();
+  /// Tells what the last computation of light did.
+  const ShadowStatistics& statistics() const { return shadows_->statistics(); }
+
   /// Returns the tree that shadows go by.
   const SceneTree& tree();
   /// Returns how often a tree that is found has changed.
@@ -67,7 +72,6 @@ class MovingScene {
 
  private:
   void place();
-  void update();
   std::vector<NodeSphere> spheres() const;
   std::vector<Eigen::Vector3f> normals_at(std::size_t asset) const;
   ScenePoses tree_poses() const;

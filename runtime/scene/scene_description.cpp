@@ -20,7 +20,48 @@ double duration_of(const SceneDescription& scene) {
       longest = std::max(longest, keyframes->frames.back().time);
     else if (const auto* orbit = std::get_if<CircularOrbit>(&light.motion))
       longest = std::max(longest, std::abs(orbit->period));
+  for (const SceneCamera& camera : scene.cameras)
+    if (const auto* keyframes = std::get_if<CameraKeyframes>(&camera.motion))
+      longest = std::max(longest, keyframes->frames.back().time);
+    else if (const auto* orbit = std::get_if<CameraOrbit>(&camera.motion))
+      longest = std::max(longest, std::abs(orbit->period));
   return longest;
+}
+
+CameraPlace camera_at(const SceneCamera& camera, double time) {
+  CameraPlace place = camera;
+  if (const auto* orbit = std::get_if<CameraOrbit>(&camera.motion))
+    place.azimuth_degrees = place.azimuth_degrees.value_or(0) + orbit->phase_degrees + 360 * time / orbit->period;
+  const auto* keyframes = std::get_if<CameraKeyframes>(&camera.motion);
+  if (keyframes == nullptr) return place;
+  // Tracks of members, each between the keyframes that say it.
+  struct Moment : CameraPlace {
+    double time = 0;
+  };
+  std::vector<Moment> moments;
+  for (const CameraKeyframe& frame : keyframes->frames) moments.push_back({frame.place, frame.time});
+  const double now = time_within(time, moments.front().time, moments.back().time, keyframes->ends);
+  const auto move = [&]<class Value>(std::optional<Value> CameraPlace::*member) {
+    const auto linear = [](const Value& a, const Value& b, double share) -> Value {
+      return (1 - share) * a + share * b;
+    };
+    if (const auto at = track_at(moments, static_cast<std::optional<Value> Moment::*>(member), now, linear))
+      place.*member = at;
+  };
+  move(&CameraPlace::azimuth_degrees);
+  move(&CameraPlace::elevation_degrees);
+  move(&CameraPlace::field_of_view_degrees);
+  move(&CameraPlace::distance);
+  move(&CameraPlace::zoom);
+  move(&CameraPlace::target);
+  return place;
+}
+
+int find_camera(const SceneDescription& scene, const std::string& name) {
+  if (name.empty()) return 0;
+  for (std::size_t k = 0; k < scene.cameras.size(); ++k)
+    if (scene.cameras[k].name == name) return static_cast<int>(k);
+  return -1;
 }
 
 LightSpec light_at(const SceneLight& light, double time) {

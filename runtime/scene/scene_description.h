@@ -65,10 +65,34 @@ struct SceneLight {
   std::variant<std::monostate, LightKeyframes, CircularOrbit> motion;
 };
 
-/// A camera as a scene states it; what it leaves out is up to the program.
-struct SceneCamera {
+/// What a camera is told, at rest or at one moment; what it leaves out is up to the program.
+struct CameraPlace {
   std::optional<double> azimuth_degrees, elevation_degrees, field_of_view_degrees, distance, zoom;
   std::optional<Eigen::Vector3d> target;
+};
+
+/// Moment of a camera.
+struct CameraKeyframe {
+  double time = 0;  ///< seconds
+  CameraPlace place;
+};
+
+/// Moments of a camera, in the order of time, interpolated linearly.
+struct CameraKeyframes {
+  std::vector<CameraKeyframe> frames;
+  MotionEnds ends = MotionEnds::hold;
+};
+
+/// A way around the camera's target about +Y, at an even speed.
+struct CameraOrbit {
+  double period = 1;         ///< seconds, not 0; below 0: the other way
+  double phase_degrees = 0;  ///< at time 0, added to the azimuth
+};
+
+/// A camera as a scene states it, which may move.
+struct SceneCamera : CameraPlace {
+  std::string name = {};  ///< empty: the scene's only one
+  std::variant<std::monostate, CameraKeyframes, CameraOrbit> motion = {};
 };
 
 /// How the nodes are grouped for shadows.
@@ -87,7 +111,7 @@ struct SceneDescription {
   std::filesystem::path environment;  ///< empty: none
   double environment_rotation_degrees = 0;
   LightWindow window = LightWindow::hann;
-  SceneCamera camera;
+  std::vector<SceneCamera> cameras = {{}};         ///< at least one; the first is the one to begin with
   std::optional<std::array<float, 3>> background;  ///< linear, behind the scene and in its mirror; nothing: none
   TreeChoice tree = TreeChoice::given;
   std::optional<double> duration;  ///< seconds; nothing: that of the longest motion
@@ -95,6 +119,12 @@ struct SceneDescription {
 
 /// Returns the seconds that the scene's film takes; 0 where nothing moves.
 double duration_of(const SceneDescription& scene);
+
+/// Returns a camera at a time.
+CameraPlace camera_at(const SceneCamera& camera, double time);
+
+/// Returns the index of the camera of that name; of the first for an empty one, of none -1.
+int find_camera(const SceneDescription& scene, const std::string& name);
 
 /// Returns a light at a time.
 LightSpec light_at(const SceneLight& light, double time);

@@ -25,7 +25,8 @@ class SceneReader {
   SceneDescription read() {
     const YAML::Node& root = file_.root();
     file_.require(root.IsMap() && root.size() > 0, root, "no scene", "a mapping with 'nodes'");
-    file_.check_keys(root, {"nodes", "lights", "window", "camera", "background", "shaders", "tree", "duration"});
+    file_.check_keys(root,
+                     {"nodes", "lights", "window", "camera", "cameras", "background", "shaders", "tree", "duration"});
     file_.require(root["nodes"].IsDefined(), root, "no 'nodes'",
                   "'nodes', a list with an asset, a mesh or nodes for each");
     if (root["shaders"])
@@ -33,7 +34,12 @@ class SceneReader {
     add_nodes(root["nodes"], -1, false, false);
     add_lights(root["lights"]);
     if (root["window"]) scene_.window = window(root["window"]);
-    if (root["camera"]) read_camera(root["camera"]);
+    if (root["camera"]) scene_.cameras = {values_.camera(root["camera"], false)};
+    if (root["cameras"]) {
+      file_.require(!root["camera"].IsDefined(), root["cameras"], "both 'camera' and 'cameras'",
+                    "one of the two: 'cameras' have names");
+      read_cameras(root["cameras"]);
+    }
     if (root["background"]) scene_.background = values_.color(root["background"]);
     if (root["duration"]) scene_.duration = values_.above_zero(root["duration"]);
     read_tree(root["tree"]);
@@ -184,15 +190,15 @@ class SceneReader {
     return found->second;
   }
 
-  void read_camera(const YAML::Node& node) {
-    file_.check_keys(node, {"azimuth", "elevation", "field-of-view", "target", "distance", "zoom"});
-    SceneCamera& camera = scene_.camera;
-    if (node["azimuth"]) camera.azimuth_degrees = values_.number(node["azimuth"], -360, 360);
-    if (node["elevation"]) camera.elevation_degrees = values_.number(node["elevation"], -90, 90);
-    if (node["field-of-view"]) camera.field_of_view_degrees = values_.number(node["field-of-view"], 1, 120);
-    if (node["target"]) camera.target = values_.place(node["target"]);
-    if (node["distance"]) camera.distance = values_.above_zero(node["distance"]);
-    if (node["zoom"]) camera.zoom = values_.above_zero(node["zoom"]);
+  void read_cameras(const YAML::Node& list) {
+    file_.require(list.IsSequence() && list.size() > 0, list, "no cameras", "a list of cameras, at least one");
+    scene_.cameras.clear();
+    for (const YAML::Node& node : list) {
+      SceneCamera camera = values_.camera(node, true);
+      file_.require(!camera.name.empty() && find_camera(scene_, camera.name) < 0, node,
+                    "the name '" + camera.name + "' for a second camera, or an empty one", "a name for each camera");
+      scene_.cameras.push_back(std::move(camera));
+    }
   }
 
   void read_tree(const YAML::Node& node) {

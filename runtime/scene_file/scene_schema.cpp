@@ -93,6 +93,21 @@ Json lights() {
             light("environment", {{"type", "string"}}, {{"rotation", number(-360, 360)}})}}};
 }
 
+/// Makes the schema of a camera, with a name or without.
+Json camera(bool has_name) {
+  Json place = {{"azimuth", number(-36000, 36000)}, {"elevation", number(-90, 90)},
+                {"field-of-view", number(1, 120)},  {"target", reference("place")},
+                {"distance", number_above_zero()},  {"zoom", number_above_zero()}};
+  const Json around = object_of({{"period", described(number(-most_scene_number, most_scene_number), "Seconds, not 0")},
+                                 {"phase", described(number(-36000, 36000), "Degrees at time 0")}},
+                                {"period"});
+  const Json moved = animation(place, around);
+  place["animate"] = moved;
+  if (!has_name) return object_of(place);
+  place["name"] = described({{"type", {"string", "number", "boolean"}}}, "Which no other camera has");
+  return object_of(place, {"name"});
+}
+
 Json node() {
   const Json rotation =
       object_of({{"axis", reference("axis")}, {"degrees", number(-36000, 36000)}}, {"axis", "degrees"});
@@ -132,17 +147,15 @@ Json scene_schema() {
       {{"nodes", reference("nodes")},
        {"lights", {{"type", "array"}, {"items", lights()}, {"minItems", 1}}},
        {"window", words({"hann", "lanczos", "dering", "none"})},
-       {"camera", object_of({{"azimuth", number(-360, 360)},
-                             {"elevation", number(-90, 90)},
-                             {"field-of-view", number(1, 120)},
-                             {"target", reference("place")},
-                             {"distance", number_above_zero()},
-                             {"zoom", number_above_zero()}})},
+       {"camera", camera(false)},
+       {"cameras",
+        described({{"type", "array"}, {"items", camera(true)}, {"minItems", 1}}, "In place of the only one")},
        {"background", described(reference("color"), "Linear, behind the scene and in its mirror")},
        {"shaders", described({{"type", "string"}}, "Folder of shaders of one's own, NAME.glsl")},
        {"tree", described(words({"given", "auto"}), "Of shadows: the composite nodes, or found by distance over size")},
        {"duration", described(number_above_zero(), "Seconds of the film")}},
       {"nodes"}));
+  schema["not"] = {{"required", {"camera", "cameras"}}};
   schema["$defs"] = {{"nodes", {{"type", "array"}, {"items", node()}, {"minItems", 1}}},
                      {"place", list_of(coordinate, 3)},
                      {"axis", described(list_of(coordinate, 3), "A direction of any length but 0")},

@@ -238,4 +238,52 @@ SceneLight SceneValues::light(const YAML::Node& node) const {
   return light;
 }
 
+CameraPlace SceneValues::camera_place(const YAML::Node& node) const {
+  CameraPlace place;
+  if (node["azimuth"]) place.azimuth_degrees = number(node["azimuth"], -36000, 36000);
+  if (node["elevation"]) place.elevation_degrees = number(node["elevation"], -90, 90);
+  if (node["field-of-view"]) place.field_of_view_degrees = number(node["field-of-view"], 1, 120);
+  if (node["target"]) place.target = this->place(node["target"]);
+  if (node["distance"]) place.distance = above_zero(node["distance"]);
+  if (node["zoom"]) place.zoom = above_zero(node["zoom"]);
+  return place;
+}
+
+void SceneValues::camera_motion(const YAML::Node& animate, SceneCamera& camera) const {
+  if (only_key(animate, {"keyframes", "orbit"}) == "orbit") {
+    file_.check_keys(animate, {"orbit"});
+    const YAML::Node node = animate["orbit"];
+    file_.check_keys(node, {"period", "phase"});
+    file_.require(node["period"].IsDefined(), node, "an orbit without a period", "'period', seconds");
+    CameraOrbit orbit;
+    orbit.period = number(node["period"], -most_scene_number, most_scene_number);
+    file_.require(orbit.period != 0, node["period"], "a period of 0", "seconds, below 0 for the other way");
+    if (node["phase"]) orbit.phase_degrees = number(node["phase"], -36000, 36000);
+    camera.motion = orbit;
+    return;
+  }
+  file_.check_keys(animate, {"keyframes", "ends"});
+  CameraKeyframes keyframes{{}, ends(animate)};
+  double before = -1;
+  for (const YAML::Node& node : frames(animate)) {
+    file_.check_keys(node, {"time", "azimuth", "elevation", "field-of-view", "target", "distance", "zoom"});
+    before = frame_time(node, before);
+    keyframes.frames.push_back({before, camera_place(node)});
+  }
+  camera.motion = keyframes;
+}
+
+SceneCamera SceneValues::camera(const YAML::Node& node, bool has_name) const {
+  std::vector<std::string> keys = {"azimuth", "elevation", "field-of-view", "target", "distance", "zoom", "animate"};
+  if (has_name) keys.emplace_back("name");
+  file_.check_keys(node, keys);
+  SceneCamera camera;
+  static_cast<CameraPlace&>(camera) = camera_place(node);
+  file_.require(!has_name || node["name"].IsDefined(), node, "a camera without a name",
+                "'name', which no other camera has");
+  if (has_name) camera.name = file_.scalar(node["name"], "a name");
+  if (node["animate"]) camera_motion(node["animate"], camera);
+  return camera;
+}
+
 }  // namespace kiln

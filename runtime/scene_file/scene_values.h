@@ -43,6 +43,8 @@ class SceneValues {
   Motion motion(const YAML::Node& animate) const;
   /// Reads one of `lights` that is no environment.
   SceneLight light(const YAML::Node& node) const;
+  /// Reads `camera`, or one of `cameras`, which have names.
+  SceneCamera camera(const YAML::Node& node, bool has_name) const;
 
  private:
   /// Requires one of `choices` among the keys of a map, and returns it.
@@ -53,6 +55,9 @@ class SceneValues {
   double frame_time(const YAML::Node& frame, double before) const;
   /// Returns the list of keyframes.
   YAML::Node frames(const YAML::Node& animate) const;
+  /// Reads what a keyframe or the camera itself says.
+  CameraPlace camera_place(const YAML::Node& node) const;
+  void camera_motion(const YAML::Node& animate, SceneCamera& camera) const;
   void light_motion(const YAML::Node& animate, SceneLight& light) const;
 
   const YamlFile& file_;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "runtime/shadow/blocked_directions.h"
 #include "sh/basis.h"
 #include "sh/directions.h"
 
@@ -26,6 +27,14 @@ bool may_meet(const BoundingBall& receiver, const BoundingBall& occluder, const 
   const ViewCone grown = cone_of({occluder.centre, occluder.radius + receiver.radius}, receiver.centre);
   if (grown.half_angle >= pi) return true;
   return std::acos(std::clamp(grown.axis.dot(axis), -1.0, 1.0)) <= half_angle + grown.half_angle;
+}
+
+/// Tests whether all of a ball is so far below the horizon that the node's own body hides it.
+bool is_far_below(const ShadowPoint& point, const BoundingBall& ball) {
+  if (!point.normal) return false;
+  const ViewCone cone = cone_of(ball, point.position);
+  return std::acos(std::clamp(point.normal->dot(cone.axis), -1.0, 1.0)) >
+         std::acos(far_below_horizon) + cone.half_angle;
 }
 
 }  // namespace
@@ -59,6 +68,21 @@ bool is_seen_by_axis(const ShadowPoint& point, const Eigen::Vector3d& axis, doub
   return half_angle == 0 || (point.normal && lowest < pi && point.normal->dot(axis) < std::cos(lowest));
 }
 
+bool may_see(const ShadowPoint& point, const BoundingBall& ball, const LightSources& sources) {
+  const BoundingBall grown{ball.centre, ball.radius * (1 + 1e-5)};  // more than rounding
+  for (const ConeLight& cone : sources.cones)
+    if (ConeView{point.position, cone.axis, cone.half_angle}.may_cover(grown)) return true;
+  for (const LightSpec& light : sources.balls)
+    if (may_stand_between({point.position, 0}, grown, light)) return true;
+  return sources.has_sky() && !is_far_below(point, grown);
+}
+
+std::size_t layer_words(const ShadowStage& stage, const LightSources& sources) {
+  std::size_t words = sources.skies.empty() ? 0 : BlockedDirections::words(stage.sky);
+  for (const ConeLight& cone : sources.cones) words += BlockedDirections::words(cone.directions);
+  return words;
+}
+
 std::size_t visibility_rows(const LightSources& sources) {
   return sources.cones.size() + sources.balls.size() + 3 * sources.skies.size();
 }
@@ -72,22 +96,24 @@ bool may_take_light(const BoundingBall& receiver, const BoundingBall& occluder, 
                      [&](const LightSpec& ball) { return may_stand_between(receiver, occluder, ball); });
 }
 
-/// Directions that are blocked, and how many.
-struct BlockedDirections {
-  std::vector<std::uint8_t> blocked;
-  std::vector<std::uint32_t> tested;
-
-  void reset(std::uint32_t count) { blocked.assign(count, 0); }
-};
-
-/// Blocks directions of a set by a mesh node.
-void block_by_mesh(const ShadowStage& stage, int node, const Eigen::Vector3d& position, const DirectionSet& set,
-                   std::span<const float> farthest, BlockedDirections& state) {
-  const ViewCone cone = cone_of(stage.place_of(node).ball, position);
-  state.tested.clear();
-  find_in_cone(set, cone.axis.cast<float>(), static_cast<float>(cone.half_angle) + 1e-4f, state.blocked, state.tested);
-  if (!state.tested.empty())
-    stage.mesh_of(node).block(stage.pose_of(node), position, set, state.tested, farthest, state.blocked);
+/// Finds which directions of a set the meshes of a list block that `matter`. The first of them, which stand still, are
+/// in the layer's bits, or come into them.
+template <class Matters>
+void block_by_meshes(const ShadowStage& stage, std::span<const int> meshes, const StillCounts& still,
+                     const ShadowPoint& point, std::span<const float> farthest, std::span<std::uint64_t> bits,
+                     bool is_valid, const Matters& matters, BlockedDirections& state) {
+  std::size_t k = is_valid ? still.kept : 0;
+  const auto block_until = [&](std::size_t end) {
+    for (; k < end; ++k)
+      if (matters(meshes[k]))
+        state.block(stage.mesh_of(meshes[k]), stage.pose_of(meshes[k]), stage.place_of(meshes[k]).ball, point.position,
+                    farthest);
+  };
+  if (!bits.empty()) {
+    block_until(still.all);
+    if (!is_valid || still.all > still.kept) state.store(bits);
+  }
+  block_until(meshes.size());
 }
 
 /// Adds a sum of coefficients times a light's window.
@@ -96,16 +122,25 @@ class RemovedLight {
   explicit RemovedLight(int bands) : coefficients_(static_cast<std::size_t>(coefficient_count(bands))) {}
 
   void add(std::size_t channel, std::span<const double> values, std::span<const double> window, double factor) {
-    if (!sum_) {
-      sum_.emplace();
-      for (std::vector<double>& own : *sum_) own.assign(coefficients_, 0.0);
-    }
+    begin();
     for (std::size_t i = 0; i < coefficients_; ++i)
       (*sum_)[channel][i] += factor * window[static_cast<std::size_t>(band_of(static_cast<int>(i)))] * values[i];
+  }
+  /// Adds what has its windows already.
+  void add(const LightSum& light) {
+    begin();
+    for (std::size_t c = 0; c < 3; ++c)
+      for (std::size_t i = 0; i < coefficients_; ++i) (*sum_)[c][i] += light[c][i];
   }
   std::optional<LightSum>& sum() { return sum_; }
 
  private:
+  void begin() {
+    if (sum_) return;
+    sum_.emplace();
+    for (std::vector<double>& own : *sum_) own.assign(coefficients_, 0.0);
+  }
+
   std::size_t coefficients_;
   std::optional<LightSum> sum_;
 };
@@ -123,8 +158,10 @@ struct KnownLight {
 };
 
 /// Takes the share of a cone of light that is blocked.
-void remove_cone(const ShadowStage& stage, std::span<const int> meshes, const ConeLight& light, const LightReach& reach,
-                 const ShadowPoint& point, const std::optional<KnownLight>& known, RemovedLight& removed) {
+void remove_cone(const ShadowStage& stage, const NodeOccluders& occluders, const ConeLight& light,
+                 const LightReach& reach, const ShadowPoint& point, const std::optional<KnownLight>& known,
+                 const PointLayer& layer, RemovedLight& removed) {
+  const std::span<const int> meshes = occluders.meshes;
   const auto take = [&](std::span<const double> values) {
     for (std::size_t c = 0; c < 3; ++c) removed.add(c, values, light.window, static_cast<double>(light.spec.color[c]));
   };
@@ -152,20 +189,24 @@ void remove_cone(const ShadowStage& stage, std::span<const int> meshes, const Co
     return;
   }
   thread_local BlockedDirections state;
-  state.reset(light.directions.count());
-  for (const int node : meshes)
-    if (in_the_way(node)) block_by_mesh(stage, node, point.position, light.directions, reach.by_direction, state);
-  const auto count = static_cast<std::uint32_t>(std::count(state.blocked.begin(), state.blocked.end(), 1));
+  state.reset(light.directions, std::nullopt, 0, layer.is_valid ? layer.bits : std::span<std::uint64_t>());
+  block_by_meshes(stage, meshes, occluders.still_meshes, point, reach.by_direction, layer.bits, layer.is_valid,
+                  in_the_way, state);
+  const std::uint32_t count = state.finish();
   if (count == 0) return;
   if (count == light.directions.count()) return take(light.zonal);
   std::vector<double> values(light.zonal.size(), 0.0);
-  std::vector<float> own_row(light.directions.basis.empty() ? values.size() : 0);
-  const ShBasis basis(band_of(static_cast<int>(values.size()) - 1) + 1);
-  for (std::uint32_t d = 0; d < light.directions.count(); ++d) {
-    if (state.blocked[d] == 0) continue;
-    if (!own_row.empty()) basis.evaluate<float>(light.directions.direction(d), own_row);
-    const std::span<const float> row = own_row.empty() ? light.directions.row(d) : std::span<const float>(own_row);
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] += static_cast<double>(row[i]);
+  std::vector<float> own(values.size());
+  if (!light.sums.empty()) {
+    light.sums.add_up(state.blocked(), own);
+    values.assign(own.begin(), own.end());
+  } else {
+    const ShBasis basis(band_of(static_cast<int>(values.size()) - 1) + 1);
+    for (std::uint32_t d = 0; d < light.directions.count(); ++d) {
+      if (state.blocked()[d] == 0) continue;
+      basis.evaluate<float>(light.directions.direction(d), own);
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] += static_cast<double>(own[i]);
+    }
   }
   take_share(std::move(values), count, light.directions.count());
 }
@@ -223,42 +264,64 @@ void remove_caps(const ShadowStage& stage, const NodeOccluders& occluders, std::
   }
 }
 
-/// Takes the blocked share of all skies; `known` has three rows for each, from `first_row` on.
+/// Finds what is blocked of skies at a point, and how many directions; in `state`.
+std::uint32_t block_sky(const ShadowStage& stage, const NodeOccluders& occluders, const ShadowPoint& point,
+                        const PointLayer& layer, BlockedDirections& state) {
+  state.reset(stage.sky, point.normal, static_cast<float>(far_below_horizon),
+              layer.is_valid ? layer.bits : std::span<std::uint64_t>());
+  block_by_meshes(
+      stage, occluders.sky_meshes, occluders.still_sky_meshes, point, {}, layer.bits, layer.is_valid,
+      [&](int node) { return !is_far_below(point, stage.place_of(node).ball); }, state);
+  return state.finish();
+}
+
+/// Takes the blocked share of skies that were made for the point.
 void remove_skies(const ShadowStage& stage, const NodeOccluders& occluders, std::span<const SkyLight> skies, int bands,
-                  const ShadowPoint& point, const PointVisibility* known, std::size_t first_row,
-                  RemovedLight& removed) {
+                  const ShadowPoint& point, RemovedLight& removed) {
   thread_local BlockedDirections state;
-  std::vector<std::uint32_t>& taken = state.tested;
-  taken.clear();
-  if (known == nullptr) {
-    state.reset(stage.sky.count());
-    for (const int node : occluders.sky_meshes) block_by_mesh(stage, node, point.position, stage.sky, {}, state);
-    taken.clear();  // of the directions that the last mesh was tested in
-    for (std::uint32_t d = 0; d < stage.sky.count(); ++d)
-      if (state.blocked[d] != 0) taken.push_back(d);
-  }
-  const std::uint32_t count = known != nullptr ? known->counts[first_row] : static_cast<std::uint32_t>(taken.size());
+  const std::uint32_t count = block_sky(stage, occluders, point, {}, state);
   const double blocked = static_cast<double>(count) / stage.sky.count();
-  std::size_t known_row = first_row;
-  if (count > 0)
-    for (const SkyLight& sky : skies) {
-      for (std::size_t c = 0; c < 3; ++c, ++known_row) {
-        std::vector<double> values(static_cast<std::size_t>(coefficient_count(bands)), 0.0);
-        if (count == stage.sky.count()) {
-          values.assign(sky.light.channels[c].begin(), sky.light.channels[c].end());
-        } else {
-          if (known != nullptr) values.assign(known->row(known_row).begin(), known->row(known_row).end());
-          for (const std::uint32_t d : taken) {
-            const auto radiance = static_cast<double>(sky.radiance[c][d]);
-            const std::span<const float> row = stage.sky.row(d);
-            for (std::size_t i = 0; i < values.size(); ++i) values[i] += radiance * static_cast<double>(row[i]);
-          }
-          for (std::size_t i = 0; i < values.size(); ++i) values[i] += blocked * sky.closing[c][i];
+  for (const SkyLight& sky : skies)
+    for (std::size_t c = 0; c < 3 && count > 0; ++c) {
+      std::vector<double> values(sky.light.channels[c].begin(), sky.light.channels[c].end());
+      if (count < stage.sky.count()) {
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = blocked * sky.closing[c][i];
+        for (std::uint32_t d = 0; d < stage.sky.count(); ++d) {
+          if (state.blocked()[d] == 0) continue;
+          const auto radiance = static_cast<double>(sky.radiance[c][d]);
+          const std::span<const float> row = stage.sky.row(d);
+          for (std::size_t i = 0; i < values.size(); ++i) values[i] += radiance * static_cast<double>(row[i]);
         }
-        removed.add(c, values, sky.window, 1);
       }
+      removed.add(c, values, sky.window, 1);
     }
   if (count < stage.sky.count()) remove_caps(stage, occluders, skies, bands, point, removed);
+}
+
+/// Takes the blocked share of the scene's skies.
+void remove_skies(const ShadowStage& stage, const NodeOccluders& occluders, const LightSources& sources, int bands,
+                  const ShadowPoint& point, const PointLayer& layer, RemovedLight& removed) {
+  thread_local BlockedDirections state;
+  const std::uint32_t count = block_sky(stage, occluders, point, layer, state);
+  if (count > 0) removed.add(sources.sky_sums.taken(state.blocked(), count));
+  if (count < stage.sky.count()) remove_caps(stage, occluders, sources.skies, bands, point, removed);
+}
+
+/// Takes what an engine found; it has three rows for each sky, from `row` on.
+void remove_known_skies(const ShadowStage& stage, const NodeOccluders& occluders, const LightSources& sources,
+                        int bands, const ShadowPoint& point, const PointVisibility& known, std::size_t row,
+                        RemovedLight& removed) {
+  const std::uint32_t count = known.counts[row];
+  const double blocked = static_cast<double>(count) / stage.sky.count();
+  for (const SkyLight& sky : sources.skies)
+    for (std::size_t c = 0; c < 3 && count > 0; ++c, ++row) {
+      std::vector<double> values(sky.light.channels[c].begin(), sky.light.channels[c].end());
+      if (count < stage.sky.count())
+        for (std::size_t i = 0; i < values.size(); ++i)
+          values[i] = static_cast<double>(known.row(row)[i]) + blocked * sky.closing[c][i];
+      removed.add(c, values, sky.window, 1);
+    }
+  if (count < stage.sky.count()) remove_caps(stage, occluders, sources.skies, bands, point, removed);
 }
 
 }  // namespace
@@ -301,16 +364,25 @@ NodeOccluders find_occluders(const ShadowStage& stage, int receiver, const Light
 
 std::optional<LightSum> removed_light(const ShadowStage& stage, const NodeOccluders& occluders,
                                       const SceneLights& lights, const LightSources& sources, int bands,
-                                      const ShadowPoint& point, const PointVisibility* known) {
+                                      const ShadowPoint& point, const PointVisibility* known, const PointLayer& layer) {
   RemovedLight removed(bands);
   const auto known_light = [&](std::size_t row) -> std::optional<KnownLight> {
     if (known == nullptr) return std::nullopt;
     return KnownLight{known->counts[row], static_cast<std::uint32_t>(sources.pattern.share.size()), known->row(row)};
   };
+  std::span<std::uint64_t> bits = layer.bits;
+  if (!layer.is_valid) std::fill(bits.begin(), bits.end(), 0);
+  const auto take_bits = [&](std::size_t words) {
+    const std::span<std::uint64_t> taken = bits.first(words);
+    bits = bits.subspan(words);
+    return taken;
+  };
   if (!occluders.meshes.empty()) {
     std::size_t row = 0;
-    for (const ConeLight& cone : sources.cones)
-      remove_cone(stage, occluders.meshes, cone, {}, point, known_light(row++), removed);
+    for (const ConeLight& cone : sources.cones) {
+      const std::size_t words = layer.bits.empty() ? 0 : BlockedDirections::words(cone.directions);
+      remove_cone(stage, occluders, cone, {}, point, known_light(row++), {take_bits(words), layer.is_valid}, removed);
+    }
     for (const LightSpec& ball : sources.balls) {
       const std::optional<KnownLight> of_ball = known_light(row++);
       const BoundingBall light{Eigen::Vector3d(ball.position.data()), ball.radius};
@@ -332,16 +404,20 @@ std::optional<LightSum> removed_light(const ShadowStage& stage, const NodeOcclud
         const double inside = ball.radius * ball.radius - (seen.distance * seen.distance - along * along);
         reach.by_direction[d] = static_cast<float>(along - std::sqrt(std::max(0.0, inside)));
       }
-      remove_cone(stage, occluders.meshes, cone, reach, point, of_ball, removed);
+      remove_cone(stage, occluders, cone, reach, point, of_ball, {}, removed);
     }
   }
   if (!occluders.sky_meshes.empty() || !occluders.sky_caps.empty()) {
     if (sources.has_probes)
-      remove_skies(stage, occluders, probed_skies(lights, bands, stage.sky, point.position), bands, point, nullptr, 0,
-                   removed);
+      remove_skies(stage, occluders, probed_skies(lights, bands, stage.sky, point.position), bands, point, removed);
+    else if (known != nullptr)
+      remove_known_skies(stage, occluders, sources, bands, point, *known, sources.cones.size() + sources.balls.size(),
+                         removed);
     else if (!sources.skies.empty())
-      remove_skies(stage, occluders, sources.skies, bands, point, known, sources.cones.size() + sources.balls.size(),
-                   removed);
+      remove_skies(
+          stage, occluders, sources, bands, point,
+          {layer.bits.empty() ? layer.bits : layer.bits.last(BlockedDirections::words(stage.sky)), layer.is_valid},
+          removed);
   }
   return removed.sum();
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
@@ -29,12 +31,28 @@ struct ShadowStage {
   const Placement& pose_of(int node) const { return poses[static_cast<std::size_t>(node)]; }
 };
 
+/// How many of a list of occluders, its first ones, have stood still relative to the receiver since the last update,
+/// and how many of these, again the first, are in the layers of its points (PointLayer) already.
+struct StillCounts {
+  std::size_t kept = 0, all = 0;
+};
+
 /// Nodes that may take light from a receiver.
 struct NodeOccluders {
   std::vector<int> meshes;      ///< mesh nodes that rays are cast at
   std::vector<int> sky_meshes;  ///< those of them that the sky sees so
   std::vector<int> sky_caps;    ///< nodes, composite ones too, that are caps before the sky, nearest first
+  StillCounts still_meshes, still_sky_meshes;
 };
+
+/// What those occluders block at a point that stand still: directions of each distant cone of light, then of the sky.
+struct PointLayer {
+  std::span<std::uint64_t> bits = {};  ///< layer_words() of them, or none: nothing is kept
+  bool is_valid = false;               ///< whether they hold what the kept occluders block
+};
+
+/// Returns the number of words of a PointLayer.
+std::size_t layer_words(const ShadowStage& stage, const LightSources& sources);
 
 /// Finds the nodes that may stand between the receiver's ball and any of the lights. `cap` is the half-angle (radians)
 /// below which a node is a cap before the sky. Descends the tree: what hangs under a node that cannot be in the way is
@@ -64,6 +82,10 @@ bool is_seen_by_axis(const ShadowPoint& point, const Eigen::Vector3d& axis, doub
 /// Tests whether an occluder may stand between a receiver and a ball of light.
 bool may_stand_between(const BoundingBall& receiver, const BoundingBall& occluder, const LightSpec& ball);
 
+/// Tests whether anything within a ball may take light from a point, or almost may. Where not, the point need not be
+/// looked at again when the ball moves.
+bool may_see(const ShadowPoint& point, const BoundingBall& ball, const LightSources& sources);
+
 /// Computes what the occluders take from the light at a point: the projection of L (1 - V), each light under its own
 /// window, where V is 0 in directions that any occluder blocks. Three channels, the scene's space; empty if nothing is
 /// taken.
@@ -78,9 +100,14 @@ bool may_stand_between(const BoundingBall& receiver, const BoundingBall& occlude
 /// zonal coefficients of that closed form. Seven directions of it say what share is not taken already by meshes and
 /// caps before it.
 ///
-/// `known` is what a VisibilityEngine found at the point; then no rays are cast but those of caps.
+/// Of directions of the sky far below the point's horizon, one stands for its seven neighbours, and meshes that are
+/// wholly there are not looked at.
+///
+/// `known` is what a VisibilityEngine found at the point; then no rays are cast but those of caps. `layer` is read, and
+/// written where other occluders stand still now than it holds.
 std::optional<LightSum> removed_light(const ShadowStage& stage, const NodeOccluders& occluders,
                                       const SceneLights& lights, const LightSources& sources, int bands,
-                                      const ShadowPoint& point, const PointVisibility* known = nullptr);
+                                      const ShadowPoint& point, const PointVisibility* known = nullptr,
+                                      const PointLayer& layer = {});
 
 }  // namespace kiln

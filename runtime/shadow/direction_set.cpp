@@ -13,7 +13,7 @@ namespace kiln {
 
 namespace {
 
-constexpr std::uint32_t block_directions = 32;
+constexpr std::uint32_t block_directions = DirectionSet::block_directions;
 
 DirectionSet make_set(const std::vector<Eigen::Vector3f>& directions, int bands) {
   DirectionSet set;
@@ -26,10 +26,12 @@ DirectionSet make_set(const std::vector<Eigen::Vector3f>& directions, int bands)
     const std::size_t last = std::min(first + block_directions, directions.size());
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     for (std::size_t d = first; d < last; ++d) sum += directions[d];
-    DirectionSet::Block block{sum.norm() > 1e-6f ? sum.normalized().eval() : Eigen::Vector3f::UnitZ(), 0};
+    DirectionSet::Block block{sum.norm() > 1e-6f ? sum.normalized().eval() : Eigen::Vector3f::UnitZ(), 0, 1, 0};
     float cosine = 1;
     for (std::size_t d = first; d < last; ++d) cosine = std::min(cosine, block.axis.dot(directions[d]));
     block.half_angle = std::acos(std::clamp(cosine, -1.f, 1.f)) + 1e-3f;  // and some for rounding
+    block.cosine = std::cos(block.half_angle);
+    block.sine = std::sin(block.half_angle);
     set.blocks.push_back(block);
   }
   if (bands == 0) return set;

@@ -14,10 +14,12 @@ struct DirectionSet {
   int coefficients = 0;
   std::vector<float> basis;  ///< direction * coefficients + i; empty without harmonics
 
-  /// Cones around blocks of 32 directions.
+  static constexpr std::uint32_t block_directions = 32;
+  /// Cones around blocks of so many directions.
   struct Block {
     Eigen::Vector3f axis;
-    float half_angle;  ///< radians
+    float half_angle;    ///< radians
+    float cosine, sine;  ///< of that
   };
   std::vector<Block> blocks;
 

@@ -47,6 +47,7 @@ ConeLight cone_around(const LightSpec& spec, const Eigen::Vector3d& axis, double
     return cone;
   }
   cone.directions = cone_directions(pattern, axis, half_angle, bands);
+  cone.sums = DirectionSums(cone.directions.basis, cone.zonal.size());
   // The mean over directions stands for z_0 / Y_00, the radiance times the solid angle.
   const double share = bands_of_cone[0] / cone.directions.count();
   cone.closing = cone.zonal;
@@ -86,7 +87,51 @@ SkyLight sky_of(LightCoefficients light, std::vector<double> window, int bands, 
   return made;
 }
 
+/// Adds up skies for LightSources; there is one at least.
+SkySums sums_of(std::span<const SkyLight> skies, const DirectionSet& sky) {
+  SkySums all;
+  const auto coefficients = static_cast<std::size_t>(sky.coefficients);
+  for (std::size_t c = 0; c < 3; ++c) {
+    all.whole[c].assign(coefficients, 0.0);
+    all.closing[c].assign(coefficients, 0.0);
+  }
+  all.is_grey = std::all_of(skies.begin(), skies.end(), [](const SkyLight& one) {
+    return one.radiance[0] == one.radiance[1] && one.radiance[0] == one.radiance[2] &&
+           one.light.channels[0] == one.light.channels[1] && one.light.channels[0] == one.light.channels[2];
+  });
+  const std::size_t channels = all.is_grey ? 1 : 3;
+  std::vector<float> rows(sky.count() * channels * coefficients, 0.f);
+  for (const SkyLight& one : skies)
+    for (std::size_t i = 0; i < coefficients; ++i) {
+      const double window = one.window[static_cast<std::size_t>(band_of(static_cast<int>(i)))];
+      for (std::size_t c = 0; c < 3; ++c) {
+        all.whole[c][i] += window * static_cast<double>(one.light.channels[c][i]);
+        all.closing[c][i] += window * one.closing[c][i];
+      }
+      for (std::size_t c = 0; c < channels; ++c)
+        for (std::uint32_t d = 0; d < sky.count(); ++d)
+          rows[(d * channels + c) * coefficients + i] +=
+              static_cast<float>(window * static_cast<double>(one.radiance[c][d]) * static_cast<double>(sky.row(d)[i]));
+    }
+  all.sums = DirectionSums(rows, channels * coefficients);
+  return all;
+}
+
 }  // namespace
+
+LightSum SkySums::taken(std::span<const std::uint8_t> blocked, std::uint32_t count) const {
+  if (count == blocked.size()) return whole;
+  LightSum taken = closing;
+  const double share = static_cast<double>(count) / static_cast<double>(blocked.size());
+  thread_local std::vector<float> sum;
+  sum.resize(sums.width());
+  sums.add_up(blocked, sum);
+  const std::size_t coefficients = closing[0].size();
+  for (std::size_t c = 0; c < 3; ++c)
+    for (std::size_t i = 0; i < coefficients; ++i)
+      taken[c][i] = share * closing[c][i] + static_cast<double>(sum[(is_grey ? 0 : c * coefficients) + i]);
+  return taken;
+}
 
 LightSources light_sources(const SceneLights& lights, int bands, const DirectionSet& sky) {
   LightSources sources;
@@ -110,6 +155,7 @@ LightSources light_sources(const SceneLights& lights, int bands, const Direction
   if (lights.environment)
     sources.skies.push_back(
         sky_of(*lights.environment, window_weights(with_bands(*lights.environment, bands), lights.window), bands, sky));
+  if (!sources.skies.empty()) sources.sky_sums = sums_of(sources.skies, sky);
   return sources;
 }
 

@@ -7,6 +7,7 @@
 
 #include "runtime/light/scene_lights.h"
 #include "runtime/shadow/direction_set.h"
+#include "runtime/shadow/direction_sums.h"
 #include "sh/light_spec.h"
 #include "sh/lights.h"
 
@@ -26,6 +27,7 @@ struct ConeLight {
   std::vector<double> zonal;                        ///< coefficients z_l Y_lm(axis) for the colour 1, no window
   std::vector<double> window;                       ///< by band
   DirectionSet directions;                          ///< empty for a single direction
+  DirectionSums sums;                               ///< of their harmonics; empty if they have none
   std::vector<double> closing;                      ///< closed form less the sum over `directions`, for the colour 1
 };
 
@@ -37,12 +39,23 @@ struct SkyLight {
   LightSum closing;                            ///< `light` less the sum over all directions
 };
 
+/// All skies together, each under its window: what directions take of them.
+struct SkySums {
+  DirectionSums sums;       ///< harmonics times radiance, of each channel one after the other, or of all alike
+  bool is_grey = false;     ///< whether all channels are alike
+  LightSum whole, closing;  ///< all that arrives; what the sum over all directions lacks of it
+
+  /// Returns what the blocked directions (1, not 0; `count` of them) take.
+  LightSum taken(std::span<const std::uint8_t> blocked, std::uint32_t count) const;
+};
+
 /// The lights of a scene as directions. Those that a place changes (balls, and all of them with probes) are made at
 /// each point, the others once.
 struct LightSources {
   std::vector<ConeLight> cones;  ///< distant ones
   std::vector<LightSpec> balls;
   std::vector<SkyLight> skies;  ///< hemispheres, ambient light and environments
+  SkySums sky_sums;             ///< of them
   DiscPattern pattern;          ///< of cones
   bool has_probes = false;      ///< then `cones`, `balls` and `skies` are empty
 

@@ -7,12 +7,14 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "base/parallel.h"
 #include "runtime/shadow/combined_shadows.h"
 #include "runtime/shadow/kept_state.h"
 #include "runtime/shadow/light_sources.h"
+#include "runtime/shadow/receiver_state.h"
 #include "runtime/shadow/shadow_field.h"
 #include "runtime/shadow/silhouette.h"
 #include "runtime/shadow/sphere_set.h"
@@ -70,7 +72,8 @@ struct MovingShadows::Implementation {
   bool is_local = false;
 
   // By node.
-  std::vector<StateKey> keys;
+  std::vector<StateKey> keys;            ///< of methods but `combined`
+  std::vector<ReceiverState> receivers;  ///< of `combined`
   std::vector<std::vector<LightCoefficients>> light;
   std::vector<NodeOccluders> occluders;
   std::vector<TreeState> tree_states;
@@ -86,10 +89,12 @@ struct MovingShadows::Implementation {
     return settings.method == Method::product ? std::max(bands, settings.product_bands) : bands;
   }
 
+  void set_tree(SceneTree new_tree);
   void note_lights(const SceneLights& lights);
   std::vector<int> nodes_in_the_way(int node) const;
   /// Returns the points whose light is to be computed, and notes for what they are.
   std::vector<PointTask> find_tasks(const ShadowStage& stage);
+  void find_tasks_of(const ShadowStage& stage, int node, std::vector<PointTask>& tasks);
   void update_trees(const ShadowStage& stage);
   BlockedSum blocked_above(int node, std::size_t point, int bands) const;
 
@@ -98,7 +103,7 @@ struct MovingShadows::Implementation {
   std::optional<VisibilityTable> seen_by_engine(const ShadowStage& stage, std::span<const PointTask> tasks) const;
   LightCoefficients shadowed(const ShadowStage& stage, const SceneLights& lights, const PointTask& task,
                              const ShRotation& into_object, const LightCoefficients& unshadowed,
-                             const std::optional<LightCoefficients>& incident, const PointVisibility* known) const;
+                             const std::optional<LightCoefficients>& incident, const PointVisibility* known);
   std::vector<float> visibility(const ShadowStage& stage, int node, const Eigen::Vector3d& position, int bands) const;
 };
 
@@ -109,6 +114,7 @@ MovingShadows::Implementation::Implementation(SceneTree of_tree, std::vector<Sha
   const std::optional<ThreadLimit> limit = limit_of(settings.threads);
   for (const ShadowObject& object : objects) most_bands = std::max(most_bands, object.bands);
   keys.resize(tree.nodes.size());
+  receivers.resize(tree.nodes.size());
   light.resize(tree.nodes.size());
   occluders.resize(tree.nodes.size());
   tree_states.resize(tree.nodes.size());
@@ -141,17 +147,31 @@ void MovingShadows::Implementation::note_lights(const SceneLights& lights) {
   if (engine && !sources.has_probes) engine->set_lights(sources, sky, most_bands);
 }
 
-std::vector<int> MovingShadows::Implementation::nodes_in_the_way(int node) const {
-  const auto own = static_cast<std::size_t>(node);
-  if (settings.method == Method::combined) {
-    std::vector<int> nodes = occluders[own].meshes;
-    nodes.insert(nodes.end(), occluders[own].sky_meshes.begin(), occluders[own].sky_meshes.end());
-    for (const int cap : occluders[own].sky_caps)
-      for (const int mesh : meshes_under(tree, cap)) nodes.push_back(mesh);
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    return nodes;
+void MovingShadows::Implementation::set_tree(SceneTree new_tree) {
+  const SceneTree old = std::exchange(tree, std::move(new_tree));
+  const std::vector<int> now = same_nodes(old, tree);
+  // Moves what belongs to a node to where the node is now.
+  const auto carry = [&](auto& of_nodes) {
+    std::remove_reference_t<decltype(of_nodes)> carried(tree.nodes.size());
+    for (std::size_t k = 0; k < now.size(); ++k)
+      if (now[k] >= 0) carried[static_cast<std::size_t>(now[k])] = std::move(of_nodes[k]);
+    of_nodes = std::move(carried);
+  };
+  carry(keys);
+  carry(light);
+  carry(receivers);
+  carry(tree_states);
+  occluders.assign(tree.nodes.size(), {});
+  for (ReceiverState& receiver : receivers) receiver.rename(now);
+  for (StateKey& key : keys) {
+    key.rename(now);
+    if (passes_down_the_tree(settings.method)) key = {};  // filters come down another way
   }
+  for (TreeState& state : tree_states)
+    for (StateKey& key : state.key) key.rename(now);
+}
+
+std::vector<int> MovingShadows::Implementation::nodes_in_the_way(int node) const {
   std::vector<int> nodes;
   for (int other = 0; other < tree.count(); ++other)
     if (settings.method != Method::none && node_of(other).asset >= 0 && may_shadow(tree, other, node))
@@ -159,29 +179,53 @@ std::vector<int> MovingShadows::Implementation::nodes_in_the_way(int node) const
   return nodes;
 }
 
-std::vector<PointTask> MovingShadows::Implementation::find_tasks(const ShadowStage& stage) {
+void MovingShadows::Implementation::find_tasks_of(const ShadowStage& stage, int node, std::vector<PointTask>& tasks) {
   constexpr double degree = 0.017453292519943295;
+  const auto k = static_cast<std::size_t>(node);
+  const std::size_t points = object_of(node).points.size();
+  const double unit = settings.method == Method::none ? 1 : std::max(placed[k].ball.radius, 1e-30);
+  const auto add_all = [&](std::size_t pairs) {
+    statistics.pairs += pairs;
+    light[k].resize(points);
+    for (std::size_t p = 0; p < points; ++p) tasks.push_back({node, p});
+  };
+  if (settings.method != Method::combined) {
+    const std::vector<int> in_the_way = nodes_in_the_way(node);
+    StateKey key = key_of(node, in_the_way, stage.poses, unit, is_local, lights_version);
+    if (key.is_same(keys[k]) && light[k].size() == points) return;
+    keys[k] = std::move(key);
+    add_all(in_the_way.size());
+    return;
+  }
+  occluders[k] = find_occluders(stage, node, sources, settings.cap_degrees * degree);
+  const ReceiverState::Change change =
+      receivers[k].note(stage, node, key_of(node, {}, stage.poses, unit, is_local, lights_version), unit, occluders[k]);
+  if (!engine && !sources.has_probes) receivers[k].keep_layers(points, layer_words(stage, sources));
+  const std::size_t pairs = occluders[k].meshes.size() + occluders[k].sky_meshes.size() + occluders[k].sky_caps.size();
+  if (change.is_all || light[k].size() != points) return add_all(pairs);
+  if (change.balls.empty()) return;
+  std::vector<std::uint8_t> may(points);
+  parallel_for(std::size_t{0}, points, std::size_t{64}, [&](std::size_t p) {
+    const ShadowPoint point = point_of(stage, {node, p});
+    may[p] = std::any_of(change.balls.begin(), change.balls.end(),
+                         [&](const BoundingBall& ball) { return may_see(point, ball, sources); });
+  });
+  statistics.pairs += pairs;
+  for (std::size_t p = 0; p < points; ++p)
+    if (may[p] != 0) tasks.push_back({node, p});
+}
+
+std::vector<PointTask> MovingShadows::Implementation::find_tasks(const ShadowStage& stage) {
   statistics = {};
   std::vector<PointTask> tasks;
+  std::size_t points = 0;
   for (int node = 0; node < tree.count(); ++node) {
     if (node_of(node).asset < 0) continue;
-    const auto k = static_cast<std::size_t>(node);
-    if (settings.method == Method::combined)
-      occluders[k] = find_occluders(stage, node, sources, settings.cap_degrees * degree);
-    const std::vector<int> in_the_way = nodes_in_the_way(node);
-    const double unit = settings.method == Method::none ? 1 : std::max(placed[k].ball.radius, 1e-30);
-    StateKey key = key_of(node, in_the_way, stage.poses, unit, is_local, lights_version);
-    const std::size_t points = object_of(node).points.size();
-    if (key.is_same(keys[k]) && light[k].size() == points) {
-      statistics.kept += points;
-      continue;
-    }
-    keys[k] = std::move(key);
-    light[k].resize(points);
-    statistics.pairs += in_the_way.size();
-    for (std::size_t p = 0; p < points; ++p) tasks.push_back({node, p});
+    points += object_of(node).points.size();
+    find_tasks_of(stage, node, tasks);
   }
   statistics.computed = tasks.size();
+  statistics.kept = points - tasks.size();
   return tasks;
 }
 
@@ -286,7 +330,7 @@ LightCoefficients MovingShadows::Implementation::shadowed(const ShadowStage& sta
                                                           const PointTask& task, const ShRotation& into_object,
                                                           const LightCoefficients& unshadowed,
                                                           const std::optional<LightCoefficients>& incident,
-                                                          const PointVisibility* known) const {
+                                                          const PointVisibility* known) {
   const int bands = object_of(task.node).bands;
   const Placement& pose = stage.pose_of(task.node);
   const Eigen::Vector3d position = pose.to_scene(object_of(task.node).points[task.point].cast<double>());
@@ -296,7 +340,8 @@ LightCoefficients MovingShadows::Implementation::shadowed(const ShadowStage& sta
   if (settings.method == Method::combined) {
     const NodeOccluders& nodes = occluders[static_cast<std::size_t>(task.node)];
     const std::optional<LightSum> removed =
-        removed_light(stage, nodes, lights, sources, most_bands, point_of(stage, task), known);
+        removed_light(stage, nodes, lights, sources, most_bands, point_of(stage, task), known,
+                      receivers[static_cast<std::size_t>(task.node)].layer(task.point, nodes));
     if (!removed) return unshadowed;
     LightCoefficients taken{bands, {}};
     for (const std::vector<double>& channel : *removed)
@@ -322,6 +367,8 @@ MovingShadows::MovingShadows(SceneTree tree, std::vector<ShadowObject> objects, 
 MovingShadows::~MovingShadows() = default;
 MovingShadows::MovingShadows(MovingShadows&&) noexcept = default;
 MovingShadows& MovingShadows::operator=(MovingShadows&&) noexcept = default;
+
+void MovingShadows::set_tree(SceneTree tree) { implementation_->set_tree(std::move(tree)); }
 
 void MovingShadows::update(const ScenePoses& poses, const SceneLights& lights) {
   Implementation& own = *implementation_;

@@ -35,10 +35,15 @@ class MovingShadows {
   MovingShadows(MovingShadows&&) noexcept;
   MovingShadows& operator=(MovingShadows&&) noexcept;
 
-  /// Computes the light at all points of all mesh nodes. What has not changed is kept: of `combined`, `exponentiation`
-  /// and `fields` a node's light, as long as the lights, its own place in them, and the places relative to it of all
-  /// nodes that may take light from it are the same to rounding; of the filters of trees (`thesis`, `product`,
-  /// `subtraction`) what siblings block. No bit depends on the number of threads.
+  /// Takes another tree of the same mesh nodes, or nearly: those of the same name and asset. What was computed of them
+  /// is kept where it still holds; a composite node is the same as one that held the same nodes.
+  void set_tree(SceneTree tree);
+
+  /// Computes the light at all points of all mesh nodes. What has not changed is kept: of `exponentiation` and `fields`
+  /// a node's light, as long as the lights, its own place in them, and the places relative to it of all nodes that may
+  /// take light from it are the same to rounding; of `combined` also that of each point before whose lights nothing
+  /// moves, and at the others the directions that are blocked by what stands still; of the filters of trees (`thesis`,
+  /// `product`, `subtraction`) what siblings block. No bit depends on the number of threads, or on what was kept.
   void update(const ScenePoses& poses, const SceneLights& lights);
 
   /// Returns the light at the points of a mesh node, in its own space, three channels, as light_asset does where no

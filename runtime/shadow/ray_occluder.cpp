@@ -50,6 +50,7 @@ struct RayPacket {
 struct RayOccluder::Implementation {
   RTCScene scene = nullptr;
   float nearest = 0;  ///< object units
+  OccluderOutline outline;
 
   Implementation() = default;
   Implementation(const Implementation&) = delete;
@@ -83,6 +84,7 @@ RayOccluder::RayOccluder(const TriangleMesh& mesh) : implementation_(std::make_u
     rtcAttachGeometry(implementation_->scene, geometry);
     rtcReleaseGeometry(geometry);
   }
+  implementation_->outline = outline_of(mesh);
   // Builds the tree with one thread, so that it does not depend on their number.
   on_one_thread([&] { rtcCommitScene(implementation_->scene); });
   if (rtcGetDeviceError(device) != RTC_ERROR_NONE) throw std::runtime_error("Embree cannot build a scene of shadows");
@@ -91,6 +93,8 @@ RayOccluder::RayOccluder(const TriangleMesh& mesh) : implementation_(std::make_u
 RayOccluder::~RayOccluder() = default;
 RayOccluder::RayOccluder(RayOccluder&&) noexcept = default;
 RayOccluder& RayOccluder::operator=(RayOccluder&&) noexcept = default;
+
+const OccluderOutline& RayOccluder::outline() const { return implementation_->outline; }
 
 void RayOccluder::block(const Placement& placement, const Eigen::Vector3d& origin, const DirectionSet& set,
                         std::span<const std::uint32_t> which, std::span<const float> farthest,

@@ -9,6 +9,7 @@
 #include "mesh/placement.h"
 #include "mesh/triangle_mesh.h"
 #include "runtime/shadow/direction_set.h"
+#include "runtime/shadow/occluder_outline.h"
 
 namespace kiln {
 
@@ -26,6 +27,9 @@ class RayOccluder {
   ~RayOccluder();
   RayOccluder(RayOccluder&&) noexcept;
   RayOccluder& operator=(RayOccluder&&) noexcept;
+
+  /// Returns what spares rays: boxes around the mesh, and flat parts of it.
+  const OccluderOutline& outline() const;
 
   /// Casts rays from `origin` along the directions `which` of a set, up to the distance `farthest` (by index in the
   /// set; empty: to infinity), and sets blocked[d] of each that meets the mesh as placed. All in the scene's space.

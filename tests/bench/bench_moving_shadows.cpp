@@ -4,13 +4,19 @@
 // independent rays, and jumps between frames. Prints Markdown.
 //
 //   bench_moving_shadows [--mesh /usr/share/glmark2/models/bunny.obj] [--seconds 0.25] [--frames 24] [--only speed]
+//                        [--stand B]
+//   bench_moving_shadows --scene samples/strike.yaml     [--frames 24]   # goes through its film, light at all vertices
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 
 #include "../unit/shapes.h"
+#include "asset/prt_asset.h"
 #include "base/command_line.h"
+#include "cost.h"
+#include "runtime/play/moving_scene.h"
+#include "runtime/scene_file/scene_file.h"
 #include "shadow_stands.h"
 
 namespace {
@@ -18,7 +24,7 @@ namespace {
 using namespace kiln;
 
 struct Arguments {
-  std::string mesh = "/usr/share/glmark2/models/bunny.obj", only = "all";
+  std::string mesh = "/usr/share/glmark2/models/bunny.obj", only = "all", stand, scene;
   double seconds = 0.25;
   int frames = 24;
 };
@@ -267,7 +273,40 @@ void print_growth(const StandBodies& bodies, const Arguments& arguments) {
   }
 }
 
+/// Goes through a scene file's film in even steps, light at all vertices, and prints what its shadows cost.
+void print_scene(const Arguments& arguments) {
+  SceneDescription description = load_scene(arguments.scene);
+  std::vector<PrtAsset> assets;
+  for (const std::filesystem::path& folder : description.assets) assets.push_back(load_prt_asset(folder));
+  std::vector<const PrtAsset*> pointers;
+  for (const PrtAsset& asset : assets) pointers.push_back(&asset);
+  const double end = duration_of(description);
+  std::printf(
+      "| threads | frames | seconds a frame | CPU seconds a frame | worst frame | filters a frame, computed | kept "
+      "|\n");
+  std::printf("| --- | --- | --- | --- | --- | --- | --- |\n");
+  for (const int threads : {1, 2}) {
+    MovingScene scene(description, pointers, {{.threads = threads}, samples_at_vertices});
+    scene.update();
+    const int frames = arguments.frames;
+    Cost all{0, 0};
+    double worst = 0;
+    std::size_t computed = 0, kept = 0;
+    for (int frame = 1; frame <= frames; ++frame) {
+      scene.set_time(end * frame / frames);
+      const Cost cost = cost_of([&] { scene.update(); });
+      all = all + cost;
+      worst = std::max(worst, cost.wall);
+      computed += scene.statistics().computed;
+      kept += scene.statistics().kept;
+    }
+    std::printf("| %d | %d | %.4f | %.4f | %.4f | %.0f | %.0f |\n", threads, frames, all.wall / frames,
+                all.cpu / frames, worst, static_cast<double>(computed) / frames, static_cast<double>(kept) / frames);
+  }
+}
+
 void run(const Arguments& arguments) {
+  if (!arguments.scene.empty()) return print_scene(arguments);
   TriangleMesh ground = shapes::plane(16);
   const StandBodies bodies{stand_object(shapes::icosphere(3), true),
                            stand_object(load_body(arguments.mesh, 2000), false), stand_object(ground, true)};
@@ -275,8 +314,10 @@ void run(const Arguments& arguments) {
       "Ball: %zu vertices; bunny: %zu; ground: %zu. Six samples of incident light a node, but one for each vertex\n"
       "of C's bunny and D's ground.\n",
       bodies.ball.mesh.positions.size(), bodies.bunny.mesh.positions.size(), bodies.ground.mesh.positions.size());
-  const std::vector<ShadowStand> stands = {stand_a(bodies), stand_b(bodies), stand_c(bodies, true),
-                                           stand_c(bodies, false), stand_d(bodies, 30)};
+  std::vector<ShadowStand> stands = {stand_a(bodies), stand_b(bodies), stand_c(bodies, true), stand_c(bodies, false),
+                                     stand_d(bodies, 30)};
+  if (!arguments.stand.empty())
+    std::erase_if(stands, [&](const ShadowStand& stand) { return stand.name != arguments.stand; });
   if (arguments.only != "speed")
     for (const ShadowStand& stand : stands)
       print_errors(stand, stand.receivers.size() > 10 ? std::min(arguments.frames, 8) : arguments.frames);
@@ -296,6 +337,9 @@ int main(int argc, char** argv) {
   app.add_option("--seconds", arguments.seconds, "Seconds of each speed")->check(CLI::Range(0.01, 60.0));
   app.add_option("--frames", arguments.frames, "Frames of a motion, for errors")->check(CLI::Range(2, 1000));
   app.add_option("--only", arguments.only, "What is measured")->check(CLI::IsMember({"all", "errors", "speed"}));
+  app.add_option("--stand", arguments.stand, "Only this scene")
+      ->check(CLI::IsMember({"A", "B", "C", "C, 6 samples", "D, 30"}));
+  app.add_option("--scene", arguments.scene, "A scene.yaml, played in place of all else")->check(CLI::ExistingFile);
   CLI11_PARSE(app, argc, argv);
   run(arguments);
 }

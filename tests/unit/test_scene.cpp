@@ -234,9 +234,43 @@ camera: {azimuth: 30, elevation: 20}
   EXPECT_EQ(to_text(light_at(scene.lights[1], 0)), to_text(parse_light_spec("sphere:0,2,1,0.5,1,2,3")));
   EXPECT_EQ(to_text(light_at(scene.lights[2], 1)), to_text(parse_light_spec("360,15,2,2,2")));
   EXPECT_EQ(to_text(light_at(scene.lights[4], 1)), to_text(parse_light_spec("ambient:0.25")));
-  EXPECT_EQ(*scene.camera.azimuth_degrees, 30);
+  EXPECT_EQ(*scene.cameras.front().azimuth_degrees, 30);
   EXPECT_EQ(folder.read("nodes: [{name: x, asset: a}, {name: y, asset: a}]\n").tree, TreeChoice::found);
   EXPECT_EQ(folder.read("nodes: [{name: x, asset: a}]\ntree: given\nduration: 7.5\n").duration, 7.5);
+}
+
+TEST(SceneFile, CamerasMove) {
+  const SceneFolder folder;
+  const SceneDescription scene = folder.read(R"(
+nodes: [{name: x, asset: a}]
+cameras:
+  - name: dolly
+    azimuth: 10
+    animate:
+      keyframes:
+        - {time: 1, azimuth: 350, elevation: 20, target: [0, 0, 0]}
+        - {time: 2, distance: 4}
+        - {time: 3, azimuth: 370, elevation: 40, target: [2, 4, 6]}
+  - {name: round, azimuth: 30, distance: 2, animate: {orbit: {period: -4, phase: 5}}}
+  - {name: still, zoom: 2}
+)");
+  ASSERT_EQ(scene.cameras.size(), 3u);
+  const CameraPlace before = camera_at(scene.cameras[0], 0), between = camera_at(scene.cameras[0], 1.5),
+                    after = camera_at(scene.cameras[0], 9);
+  EXPECT_EQ(*before.azimuth_degrees, 350);
+  EXPECT_EQ(*between.azimuth_degrees, 355);
+  EXPECT_EQ(*between.elevation_degrees, 25);
+  EXPECT_EQ(*between.target, Vector3d(0.5, 1, 1.5));
+  EXPECT_EQ(*between.distance, 4);
+  EXPECT_FALSE(between.zoom);
+  EXPECT_EQ(*after.azimuth_degrees, 370);
+  EXPECT_EQ(*camera_at(scene.cameras[1], 1).azimuth_degrees, 30 + 5 - 90);
+  EXPECT_EQ(*camera_at(scene.cameras[1], 1).distance, 2);
+  EXPECT_EQ(*camera_at(scene.cameras[2], 1).zoom, 2);
+  EXPECT_EQ(find_camera(scene, "still"), 2);
+  EXPECT_EQ(find_camera(scene, ""), 0);
+  EXPECT_EQ(find_camera(scene, "none"), -1);
+  EXPECT_EQ(duration_of(scene), 4);
 }
 
 TEST(SceneFile, HasWhatShadersAreTold) {
@@ -436,6 +470,12 @@ TEST(MovingScene, AFoundTreeFollowsWhatMoves) {
   scene.light(0);
   EXPECT_EQ(scene.tree_changes(), 1);
   EXPECT_EQ(scene.light(1).samples.size(), 8u);
+  // The node beside is where it was, and sees the passing one now; the others' light is what a new scene would have.
+  MovingScene fresh(description, {&asset}, {});
+  fresh.set_time(1);
+  for (int item = 0; item < 3; ++item)
+    for (std::size_t p = 0; p < 8; ++p)
+      EXPECT_EQ(scene.light(item).samples[p].channels, fresh.light(item).samples[p].channels);
 }
 
 TEST(MovingScene, WhatPassesTakesLightAndWhatIsStaticDoesNot) {

@@ -58,7 +58,7 @@ OptionSet render_options(RenderSettings& settings) {
       .text("camera", settings.camera,
             "Where the camera stands: AZIMUTH,ELEVATION in degrees (0,0 is +Z, which is the front whatever --up was; "
             "90,0 "
-            "is +X)")
+            "is +X); of a scene also the name of one of its cameras")
       .number("field-of-view", settings.field_of_view_degrees, 1, 120, "Of the camera, vertical, degrees");
   add_framing_options(options, settings.framing);
   options

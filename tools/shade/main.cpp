@@ -23,7 +23,7 @@ int main(int argc, char** argv) {
     require_picture_name(file);
 
     // Step 2: load.
-    const ShadeScene scene = load_shade_scene(scene_file);
+    ShadeScene scene = load_shade_scene(scene_file);
     use_scene_look(settings.picture, scene.film.description, [&](const auto& name) { return command.given(name); });
     command.also_read(scene.read_files());
     OutputSet outputs(folder_of(file));

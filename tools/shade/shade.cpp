@@ -71,7 +71,8 @@ Json shade_to_files(OutputSet& outputs, const std::string& name, const ShadeScen
       moving.set_time(time);
       renderer.set_placements(placements_now(scene, moving));
       renderer.set_lights(moving.lights());
-      const Camera camera = shade_camera(moving, camera_settings, picture.width, picture.height);
+      const Camera camera = shade_camera(moving, camera_settings_at(camera_settings, scene.film.description, time),
+                                         picture.width, picture.height);
       Image<float> radiance = shaded_picture(renderer, camera, picture.width, picture.height, time);
       if (metrics.is_null()) metrics = shade_metrics(renderer, camera, radiance, time, context);
       return radiance;

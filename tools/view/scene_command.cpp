@@ -24,7 +24,7 @@ void view_scene_file(CommandLine& command, const std::filesystem::path& file, co
 
   check_shadow_backend(film_settings);
 
-  const Film film = load_film(file, setup.look.level);
+  Film film = load_film(file, setup.look.level);
   SceneViewerSetup own{file.stem().string(),
                        setup.look,
                        film_settings,

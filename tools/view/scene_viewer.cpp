@@ -46,7 +46,7 @@ SceneViewer::SceneViewer(const SceneViewerSetup& setup, const Film& film)
       samples_(film_samples_of(setup.look, setup.film, film.description)),
       assets_(scene_, setup.look, samples_),
       duration_(duration_of(film.description)) {
-  home_.orbit = home_orbit(film_camera(scene_, setup.look));
+  home_.orbit = home_orbit(camera_settings_at(film_camera(scene_, setup.look), film.description, setup.film.time));
   home_.time = setup.film.time;
   home_.exposure_stops = setup.look.exposure_stops;
   state_ = home_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <variant>
 
 #include "base/errors.h"
 #include "base/json.h"
@@ -154,9 +155,17 @@ CameraSettings film_camera(MovingScene& scene, const RenderSettings& settings) {
     add_boxes(scene, boxes, shape);
   }
   scene.set_time(now);
-  const Camera fitted = make_camera(shape, camera, settings.width, settings.height);
-  if (!camera.target) camera.target = fitted.target;
-  camera.distance = (fitted.position.cast<double>() - *camera.target).norm();
+  // As far away as the farthest of the ways from which it looks.
+  const bool moves = !std::holds_alternative<std::monostate>(scene.description().cameras.front().motion);
+  double distance = 0;
+  for (int k = 0; k < (moves ? looks_at_film : 1); ++k) {
+    CameraSettings look =
+        moves ? camera_settings_at(camera, scene.description(), duration * k / (looks_at_film - 1)) : camera;
+    const Camera fitted = make_camera(shape, look, settings.width, settings.height);
+    if (!look.target) look.target = camera.target = fitted.target;
+    distance = std::max(distance, (fitted.position.cast<double>() - *look.target).norm());
+  }
+  if (!(camera.distance > 0)) camera.distance = distance;
   return camera;
 }
 
@@ -198,7 +207,8 @@ Json film_to_files(OutputSet& outputs, const std::string& name, const Film& film
   Json metrics;
   const auto draw_at = [&](double time) {
     scene.set_time(time);
-    view.camera = make_camera(shape_now(scene), camera, settings.width, settings.height);
+    view.camera = make_camera(shape_now(scene), camera_settings_at(camera, film.description, time), settings.width,
+                              settings.height);
     const std::vector<SceneAsset> drawn = assets.now(view.look);
     Image<float> radiance = render_scene(drawn, scene.lights(), view);
     if (metrics.is_null()) {

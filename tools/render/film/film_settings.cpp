@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 #include <string_view>
 #include <utility>
+#include <variant>
 
 #include "base/errors.h"
 
@@ -50,19 +51,48 @@ std::vector<double> film_times(const FilmSettings& film, int frames, const Scene
   return times;
 }
 
-void use_scene_look(RenderSettings& settings, const SceneDescription& scene,
+void use_scene_look(RenderSettings& settings, SceneDescription& scene,
                     const std::function<bool(const std::string&)>& is_given) {
-  const SceneCamera& camera = scene.camera;
+  bool has_angles = is_given("camera");
+  if (const int named = find_camera(scene, has_angles ? settings.camera : ""); named >= 0) {
+    std::swap(scene.cameras.front(), scene.cameras[static_cast<std::size_t>(named)]);
+    const RenderSettings fresh;
+    if (has_angles) settings.camera = fresh.camera;
+    has_angles = false;
+  } else if (settings.camera.find(',') == std::string::npos) {
+    std::vector<std::string> names;
+    for (const SceneCamera& camera : scene.cameras)
+      if (!camera.name.empty()) names.push_back(camera.name);
+    if (!names.empty())
+      throw WrongUsage(fmt::format("camera: found '{}'; expected AZIMUTH,ELEVATION, or one of the scene's cameras: {}",
+                                   settings.camera, fmt::join(names, ", ")));
+  }
+  // What the command line says, the camera does not, at any time.
+  SceneCamera& camera = scene.cameras.front();
+  const auto leave_out = [&](CameraPlace& place) {
+    if (has_angles) place.azimuth_degrees.reset(), place.elevation_degrees.reset();
+    if (is_given("field-of-view")) place.field_of_view_degrees.reset();
+    if (is_given("zoom")) place.zoom.reset();
+    if (is_given("target")) place.target.reset();
+    if (is_given("distance")) place.distance.reset();
+  };
+  leave_out(camera);
+  if (auto* keyframes = std::get_if<CameraKeyframes>(&camera.motion))
+    for (CameraKeyframe& frame : keyframes->frames) leave_out(frame.place);
+  if (has_angles && std::holds_alternative<CameraOrbit>(camera.motion)) camera.motion = std::monostate();
+  if (!camera.azimuth_degrees && std::holds_alternative<CameraOrbit>(camera.motion))
+    camera.azimuth_degrees = camera_settings_of(settings).azimuth_degrees;
+
+  // The settings say where it begins.
   const CameraSettings own = camera_settings_of(settings);
-  if (!is_given("camera"))
+  if (!has_angles)
     settings.camera = fmt::format("{},{}", camera.azimuth_degrees.value_or(own.azimuth_degrees),
                                   camera.elevation_degrees.value_or(own.elevation_degrees));
-  if (!is_given("field-of-view"))
-    settings.field_of_view_degrees = camera.field_of_view_degrees.value_or(settings.field_of_view_degrees);
-  if (!is_given("zoom")) settings.framing.zoom = camera.zoom.value_or(settings.framing.zoom);
-  if (!is_given("target") && camera.target)
+  settings.field_of_view_degrees = camera.field_of_view_degrees.value_or(settings.field_of_view_degrees);
+  settings.framing.zoom = camera.zoom.value_or(settings.framing.zoom);
+  if (camera.target)
     settings.framing.target = fmt::format("{},{},{}", camera.target->x(), camera.target->y(), camera.target->z());
-  if (!is_given("distance") && camera.distance) settings.framing.distance = fmt::format("{}", *camera.distance);
+  if (camera.distance) settings.framing.distance = fmt::format("{}", *camera.distance);
   if (!is_given("background") && scene.background)
     settings.background = fmt::format("{}", fmt::join(*scene.background, ","));
 }
@@ -71,6 +101,18 @@ void check_shadow_backend(const FilmSettings& film) {
   if (film.shadow_backend != ShadowBackend::rays && film.shadows != ShadowMethod::combined)
     throw WrongUsage(fmt::format("shadow-backend: found gpu with --shadows {}; expected combined, or backend rays",
                                  shadow_method_names[static_cast<std::size_t>(film.shadows)]));
+}
+
+CameraSettings camera_settings_at(const CameraSettings& settings, const SceneDescription& scene, double time) {
+  const CameraPlace place = camera_at(scene.cameras.front(), time);
+  CameraSettings now = settings;
+  now.azimuth_degrees = place.azimuth_degrees.value_or(now.azimuth_degrees);
+  now.elevation_degrees = place.elevation_degrees.value_or(now.elevation_degrees);
+  now.field_of_view_degrees = place.field_of_view_degrees.value_or(now.field_of_view_degrees);
+  now.zoom = place.zoom.value_or(now.zoom);
+  now.distance = place.distance.value_or(now.distance);
+  if (place.target) now.target = place.target;
+  return now;
 }
 
 ShadowSettings shadow_settings_of(const FilmSettings& film, int threads) {

@@ -35,12 +35,16 @@ bool is_scene_file(const std::filesystem::path& input);
 std::vector<double> film_times(const FilmSettings& film, int frames, const SceneDescription& scene);
 
 /// Takes from a scene its camera and its background as far as the command line leaves them to it; `is_given` tells
-/// whether that has an option.
-void use_scene_look(RenderSettings& settings, const SceneDescription& scene,
+/// whether that has an option. Of several cameras it takes the first, or the one that --camera names; that is the first
+/// afterwards, without what the command line says. Throws WrongUsage for a name that none has.
+void use_scene_look(RenderSettings& settings, SceneDescription& scene,
                     const std::function<bool(const std::string&)>& is_given);
 
 /// Throws WrongUsage for a backend of shadows that does not fit their method.
 void check_shadow_backend(const FilmSettings& film);
+
+/// Returns the settings of a camera at a time: those given, and what the scene's first camera says then.
+CameraSettings camera_settings_at(const CameraSettings& settings, const SceneDescription& scene, double time);
 
 /// Returns the shadows of the settings.
 ShadowSettings shadow_settings_of(const FilmSettings& film, int threads);
