@@ -162,7 +162,7 @@ void MovingScene::update() {
       objects.push_back({&assets_[k]->mesh, points_[k], assets_[k]->bands, normals_at(k)});
     shadows_.emplace(found_tree_ ? found_tree_->tree() : given_tree_, std::move(objects), settings_.shadows);
   }
-  shadows_->update(tree_poses(), lights_);
+  shadows_->update(tree_poses(), transferred_lights());
   is_lit_ = true;
 }
 
@@ -181,6 +181,12 @@ const Placement& MovingScene::pose(int item) {
 const SceneLights& MovingScene::lights() {
   place();
   return lights_;
+}
+
+SceneLights MovingScene::transferred_lights() const {
+  SceneLights lights = lights_;
+  if (settings_.without_direct) std::erase_if(lights.specs, [](const LightSpec& spec) { return is_direct(spec); });
+  return lights;
 }
 
 AssetLight MovingScene::light(int item) {

@@ -13,10 +13,6 @@ namespace {
 // Width beside a square that panels on both sides need; at 96 dots per inch.
 constexpr double room_for_both_panels = 440;
 
-std::string method_name(ShadowMethod method) {
-  return std::string(shadow_method_names[static_cast<std::size_t>(method)]);
-}
-
 std::string samples_text(int samples) {
   if (samples == samples_at_vertices) return "every vertex";
   return fmt::format("{} point{} an asset", samples, samples == 1 ? "" : "s");
@@ -24,18 +20,15 @@ std::string samples_text(int samples) {
 
 }  // namespace
 
-SceneViewer::SceneViewer(const SceneViewerSetup& setup, const Film& film)
-    : ViewerWindow({setup.name, setup.look.width, setup.look.height, setup.look.supersample, setup.screenshots,
-                    setup.say, setup.threads}),
+SceneViewer::SceneViewer(const SceneViewerSetup& setup)
+    : ViewerWindow({setup.name, setup.look.width, setup.look.height, setup.screenshots, setup.say, setup.threads}),
       setup_(setup),
-      scene_(
-          film.description, film.asset_pointers(),
-          {shadow_settings_of(setup.film, setup.threads), film_samples_of(setup.look, setup.film, film.description)}),
-      samples_(film_samples_of(setup.look, setup.film, film.description)),
-      assets_(scene_, setup.look, samples_),
-      duration_(duration_of(film.description)) {
+      drawing_(setup.make_drawing()),
+      scene_(drawing_->moving()),
+      duration_(duration_of(scene_.description())) {
+  if (!drawing_->watched().empty()) watch(drawing_->watched());
   home_.orbit = home_orbit(film_camera(scene_, setup.look));
-  home_.time = setup.film.time;
+  home_.time = setup.time;
   home_.exposure_stops = setup.look.exposure_stops;
   state_ = home_;
   window_.listen({[this](char key) { press_key(key); },
@@ -97,15 +90,13 @@ Camera SceneViewer::camera() {
 }
 
 void SceneViewer::draw_picture(const Extent& size) {
-  fit_canvas(size);
+  fit_canvas(size, drawing_->supersample());
   clock_.begin();
   scene_.set_time(state_.time);
   light_clock_.begin();
-  const std::vector<SceneAsset> drawn = assets_.now(look_of(setup_.look));
+  drawing_->light();
   light_clock_.end();
-  const Camera from = camera();
-  draw_scene(drawn, from.clip_from_object().cast<double>(), from.position.cast<double>(), canvas_->picture(),
-             setup_.look.shading == Shading::deferred ? &canvas_->appearance() : nullptr);
+  drawing_->draw(camera(), *canvas_);
   Resolve how;
   how.picture = picture_of(setup_.look);
   how.picture.exposure_stops = state_.exposure_stops;
@@ -121,10 +112,10 @@ std::vector<PlacedPanel> SceneViewer::panels() {
   const bool is_narrow = window.width - window.height < room_for_both_panels * window_.content_scale();
   if (state_.readout && !(state_.help && is_narrow)) {
     const auto nodes = std::count_if(scene_.description().items.begin(), scene_.description().items.end(),
-                                     [](const SceneItem& item) { return item.asset >= 0; });
-    panels.push_back({scene_readout(state_, {setup_.name, duration_, static_cast<int>(nodes),
-                                             method_name(setup_.film.shadows), samples_text(samples_),
-                                             clock_.steady_milliseconds(), light_clock_.steady_milliseconds()}),
+                                     [](const SceneItem& item) { return !item.is_composite(); });
+    panels.push_back({scene_readout(state_, {setup_.name, duration_, static_cast<int>(nodes), drawing_->shadows(),
+                                             samples_text(drawing_->incident_samples()), clock_.steady_milliseconds(),
+                                             light_clock_.steady_milliseconds()}),
                       Corner::upper_left});
   }
   if (state_.help) panels.push_back({scene_help_panel(), Corner::upper_right});

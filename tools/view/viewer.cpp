@@ -63,8 +63,8 @@ ViewState first_state(const ViewScene& scene, const LightSettings& lights, const
 }
 
 Viewer::Viewer(const ViewerSetup& setup, ViewScene scene, int software_threads)
-    : ViewerWindow({setup.folders.name, setup.look.width, setup.look.height, setup.look.supersample, setup.screenshots,
-                    setup.say, software_threads}),
+    : ViewerWindow(
+          {setup.folders.name, setup.look.width, setup.look.height, setup.screenshots, setup.say, software_threads}),
       setup_(setup),
       home_(first_state(scene, setup.lights, setup.look)),
       state_(home_),
@@ -129,7 +129,7 @@ void Viewer::draw_picture(const Extent& size) {
 }
 
 void Viewer::draw_state(const Extent& size) {
-  fit_canvas(size);
+  fit_canvas(size, setup_.look.supersample);
   if (!same_kind(state_, drawn_)) clock_.restart();
   drawn_ = state_;
   clock_.begin();

@@ -153,12 +153,11 @@ void ViewerWindow::wait_for_reload() {
   }
 }
 
-bool ViewerWindow::fit_canvas(const Extent& size) {
-  if (canvas_ && canvas_->width() == size.width && canvas_->height() == size.height) return false;
+void ViewerWindow::fit_canvas(const Extent& size, int supersample) {
+  if (canvas_ && canvas_->width() == size.width && canvas_->height() == size.height) return;
   canvas_.reset();  // first, so that both need not exist at once
-  canvas_ = std::make_unique<Canvas>(size.width, size.height, setup_.supersample);
+  canvas_ = std::make_unique<Canvas>(size.width, size.height, supersample);
   clock_.restart();
-  return true;
 }
 
 void ViewerWindow::draw() {

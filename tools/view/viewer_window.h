@@ -22,7 +22,6 @@ namespace kiln {
 struct ViewerWindowSetup {
   std::string name;                             ///< in its title, and of screenshots
   int width = 0, height = 0;                    ///< screen units
-  int supersample = 1;                          ///< of its canvas
   std::string screenshots = ".";                ///< folder for screenshots
   std::function<void(const std::string&)> say;  ///< called with lines for the terminal
   int threads = 0;                              ///< of a software renderer; 0: all
@@ -64,8 +63,8 @@ class ViewerWindow {
   void note(const std::string& message);
   void draw();
   void take_screenshot();
-  /// Makes a canvas for the window; returns whether it is another than before.
-  bool fit_canvas(const Extent& size);
+  /// Makes a canvas for the window, with so many samples of a pixel along each axis, unless there is one.
+  void fit_canvas(const Extent& size, int supersample);
 
   Window window_;
   Screen screen_;
