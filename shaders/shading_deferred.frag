@@ -3,6 +3,9 @@
 layout(binding = 3) uniform usampler2D surface_words;
 layout(binding = 4) uniform sampler2D surface_varyings;
 layout(binding = 5) uniform sampler2D surface_depth;
+#ifdef SHADING_POINTS
+layout(binding = 9) uniform usampler2D surface_triangles;
+#endif
 
 layout(location = 0) out vec4 radiance_and_coverage;
 
@@ -24,5 +27,9 @@ void main() {
 #ifdef SHADING_VARYINGS
   kiln_varyings = texelFetch(surface_varyings, sample_place, 0);
 #endif
+#ifdef SHADING_POINTS
+  kiln_triangle = int(texelFetch(surface_triangles, sample_place, 0).x);
+#endif
+  apply_normal_map(surface);
   radiance_and_coverage = shaded(surface, shader) * eye_and_weight.w;
 }

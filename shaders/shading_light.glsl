@@ -1,11 +1,23 @@
 // SPDX-License-Identifier: MIT
 // The light: the work that all shaders share. Lights with a direction have shadow maps [Williams 1978], filtered by
 // comparison [Reeves 1987]; the rest arrives by precomputed transfer where the node's asset has planes, else as
-// irradiance in nine harmonics [Ramamoorthi 2001].
+// irradiance in nine harmonics [Ramamoorthi 2001]. Nodes with planes may take all diffuse light by these; maps then
+// shadow their highlights alone, so that nothing is darkened twice.
 // SHADING_PRT: defined if a node has planes.
 #ifdef SHADING_PRT
 #define PRT_STACKED
+#ifdef SHADING_POINTS
+#define PRT_PLACES
+#ifdef SHADING_AT_VERTICES
+#define PRT_SAMPLES 3
+#else
+#define PRT_SAMPLES SHADING_POINTS
+#endif
+#endif
 #include "common_prt.glsl"
+#ifdef SHADING_POINTS
+#include "shading_points.glsl"
+#endif
 #endif
 
 struct DirectLight {
@@ -42,7 +54,7 @@ float visibility(int light, Surface surface) {
   mat4 to_map = shadow_from_scene[light];
   float depth = (to_map * vec4(surface.position, 1.0)).w;
   if (depth <= 0.0) return 1.0;  // behind the light's map
-  vec3 moved = surface.position + 2.0 * direct_lights[light].radiance.a * depth * surface.normal;
+  vec3 moved = surface.position + 2.0 * direct_lights[light].radiance.a * depth * surface.mesh_normal;
   vec4 place = to_map * vec4(moved, 1.0);
   place.xyz /= place.w;
   place.z = min(place.z, 1.0);  // behind all that casts shadows
@@ -63,7 +75,11 @@ vec3 rest_of_light(Surface surface, vec3 normal) {
     prt_first_light = planes.z;
     vec4 place = node_vector(kiln_node, 8);
     float contributions[PRT_SAMPLES];
+#ifdef SHADING_POINTS
+    find_contributions(surface, contributions);
+#else
     contributions[0] = 1.0;
+#endif
     return prt_exit_radiance(clamp(place.xy * surface.uv, place.zw, place.xy - place.zw), contributions);
   }
 #endif
@@ -76,7 +92,9 @@ Light light_at(Surface surface, Appearance appearance) {
   light.specular = vec3(0.0);
   light.reflection = vec3(0.0);
   light.visibility = 1.0;
+  bool by_transfer = node_vector(kiln_node, 7).w > 0.0;
   for (int k = 0; k < light_count.x; ++k) {
+    if (by_transfer && k > 0 && appearance.shininess <= 0.0) continue;
     vec3 towards = direct_lights[k].place.xyz, radiance = direct_lights[k].radiance.rgb;
     float radius = direct_lights[k].place.w;
     if (radius > 0.0) {
@@ -89,7 +107,7 @@ Light light_at(Surface surface, Appearance appearance) {
     if (k == 0) light.visibility = arriving;
     float cosine = dot(appearance.normal, towards);
     if (cosine <= 0.0) continue;
-    light.diffuse += cosine * arriving * radiance;
+    if (!by_transfer) light.diffuse += cosine * arriving * radiance;
     if (appearance.shininess > 0.0)
       light.specular += pow(max(0.0, dot(reflect(-towards, appearance.normal), surface.to_eye)), appearance.shininess) *
                         arriving * radiance;

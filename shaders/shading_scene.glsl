@@ -6,7 +6,8 @@
 struct Surface {
   vec3 position;
   vec3 object;      // the same place in the object's space
-  vec3 normal;      // unit, interpolated over the mesh
+  vec3 normal;      // unit: the mesh's, or that of the map which ships with a baked asset
+  vec3 mesh_normal; // unit, interpolated over the mesh
   vec3 to_eye;      // unit
   vec2 uv;
   float footprint;  // width of a pixel in units of uv
@@ -30,14 +31,17 @@ struct Light {
   float visibility; // of the first light, 0 in its shadow to 1
 };
 
-// Nodes, nine vectors each: three rows of the matrix from the object's space to the scene's, three of its inverse; the
-// material (x: first of its values; y: number of its shader); planes (x: first layer; y: layers, 0: none; z: first texel
-// of its light); where these are in their layers (xy: scale of uvs; zw: half a texel). Neighbouring samples show several
-// nodes, so a texture is faster than a buffer whose index is the same for all.
+// Nodes, fourteen vectors each: three rows of the matrix from the object's space to the scene's, three of its inverse;
+// the material (x: first of its values; y: number of its shader); planes (x: first layer; y: layers, 0: none; z: first
+// texel of its light; w: 1 if lights with a direction arrive by them); where these are in their layers (xy: scale of
+// uvs; zw: half a texel); points of light (shading_points.glsl: x: first triangle; y: first vertex; z: number); albedo
+// (rgb; w: layer), its place (xy: scale; z: levels; w: texels of the longer side), normal map and opacity (x, y: their
+// layers; zw: scale of the former), scale of the latter (shading_maps.glsl). Neighbouring samples show several nodes, so
+// a texture is faster than a buffer whose index is the same for all.
 layout(binding = 1) uniform samplerBuffer node_vectors;
 
 vec4 node_vector(int node, int which) {
-  return texelFetch(node_vectors, 9 * node + which);
+  return texelFetch(node_vectors, 14 * node + which);
 }
 
 layout(std140, binding = 0) uniform View {
@@ -67,6 +71,7 @@ layout(binding = 8) uniform samplerBuffer material_values;
 int kiln_material;    // first value of the material at hand
 vec4 kiln_varyings;   // varying parameters of the sample at hand
 int kiln_node;        // the node at hand
+int kiln_triangle;    // its triangle at hand, where its light was computed at several points
 
 vec3 from_object(vec4 place, int node) {
   return vec3(dot(node_vector(node, 0), place), dot(node_vector(node, 1), place), dot(node_vector(node, 2), place));
@@ -85,6 +90,7 @@ vec3 to_object(vec3 direction) {
 
 // Completes a surface of which all but these is known.
 void see(inout Surface surface) {
+  surface.mesh_normal = surface.normal;
   surface.object = into_object(vec4(surface.position, 1.0), kiln_node);
   vec3 to_eye = eye_and_weight.xyz - surface.position;
   float distance_to_eye = length(to_eye);
@@ -97,3 +103,5 @@ vec4 mip_mapped(sampler2D picture, vec2 uv, float footprint) {
   ivec2 size = textureSize(picture, 0);
   return textureLod(picture, uv, max(0.0, log2(footprint * float(max(size.x, size.y)))));
 }
+
+#include "shading_maps.glsl"

@@ -4,8 +4,15 @@ layout(location = 0) uniform int drawn_node;
 layout(location = 0) in vec3 position_object;
 #ifdef SHADING_DEPTH
 layout(location = 1) uniform mat4 clip_of_light;
+#ifdef SHADING_OPACITY
+layout(location = 1) in vec2 uv;
+out vec2 surface_uv;
+#endif
 
 void main() {
+#ifdef SHADING_OPACITY
+  surface_uv = uv;
+#endif
   gl_Position = clip_of_light * vec4(from_object(vec4(position_object, 1.0), drawn_node), 1.0);
 }
 #else

@@ -50,7 +50,7 @@ AssetRenderer::AssetRenderer(const PrtAsset& asset, int incident_samples)
 }
 
 std::array<float, 3> AssetRenderer::albedo(const SurfaceLook& look) const {
-  constexpr float grey = 0.8f;
+  constexpr float grey = unknown_albedo;
   const bool own = look.own_albedo && asset_.albedo.known;
   std::array<float, 3> albedo = look.albedo.value_or(own ? std::array{1.f, 1.f, 1.f} : std::array{grey, grey, grey});
   for (std::size_t c = 0; own && c < 3; ++c) albedo[c] *= asset_.albedo.constant[static_cast<Eigen::Index>(c)];

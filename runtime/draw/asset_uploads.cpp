@@ -120,16 +120,21 @@ UploadedTexture upload_cluster_ids(const PrtAsset& asset) {
   return ids;
 }
 
-UploadedTexture upload_normal_map(const PrtAsset& asset) {
+Image<std::uint16_t> object_normals(const PrtAsset& asset) {
   const std::filesystem::path file = asset.ranges_file.parent_path() / asset.normals_file;
   Image<std::uint16_t> encoded = read_png_as16(file);
   if (encoded.channels() != 3)
     throw BadInput(file.string(), "has " + std::to_string(encoded.channels()) + " channels", "an RGB normal map",
                    "bake the asset again with kiln-bake");
-  require_at_most(GL_MAX_TEXTURE_SIZE, std::max(encoded.width(), encoded.height()), "textures with a side");
   if (asset.normal_space == NormalSpace::tangent)
     encoded = quantise_normals(decode_normals(encoded, asset.normal_space, asset.mesh,
                                               rasterise_uvs(asset.mesh, encoded.width(), encoded.height())));
+  return encoded;
+}
+
+UploadedTexture upload_normal_map(const PrtAsset& asset) {
+  const Image<std::uint16_t> encoded = object_normals(asset);
+  require_at_most(GL_MAX_TEXTURE_SIZE, std::max(encoded.width(), encoded.height()), "textures with a side");
   UploadedTexture map{make_texture(GL_TEXTURE_2D),
                       8 * encoded.values().size() / 3};  // drivers pad RGB to four channels
   glTextureStorage2D(map.texture.name(), 1, GL_RGB16, encoded.width(), encoded.height());

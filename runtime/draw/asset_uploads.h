@@ -38,12 +38,18 @@ void set_linear_sampling(const GlTexture& texture);
 /// Uploads the cluster of every texel, clamped at the edges like the planes; no texture if there is only one cluster.
 UploadedTexture upload_cluster_ids(const PrtAsset& asset);
 
+/// Reads the asset's normal map as object-space n * 0.5 + 0.5, 16 bits, whatever space it is in. Throws BadInput.
+Image<std::uint16_t> object_normals(const PrtAsset& asset);
+
 /// Uploads the asset's normal map as object-space n * 0.5 + 0.5, 16 bits. Throws BadInput.
 UploadedTexture upload_normal_map(const PrtAsset& asset);
 
 /// Returns how many levels the asset's albedo has room for: each halves the texels, down to those of the planes, for
 /// which gutters are wide enough.
 int albedo_levels(const PrtAsset& asset);
+
+/// Albedo of an asset that does not know its own, before whatever a picture's settings say.
+inline constexpr float unknown_albedo = 0.8f;
 
 /// Uploads an albedo that the texture unit decodes from sRGB, with bilinear lookup between texels and linear between
 /// levels; no texture if the picture is empty.

@@ -163,7 +163,7 @@ void MovingScene::update() {
     shadows_.emplace(found_tree_ ? found_tree_->tree() : given_tree_, std::move(objects), settings_.shadows,
                      settings_.engine);
   }
-  shadows_->update(tree_poses(), lights_);
+  shadows_->update(tree_poses(), transferred_lights());
   is_lit_ = true;
 }
 
@@ -182,6 +182,12 @@ const Placement& MovingScene::pose(int item) {
 const SceneLights& MovingScene::lights() {
   place();
   return lights_;
+}
+
+SceneLights MovingScene::transferred_lights() const {
+  SceneLights lights = lights_;
+  if (settings_.without_direct) std::erase_if(lights.specs, [](const LightSpec& spec) { return is_direct(spec); });
+  return lights;
 }
 
 AssetLight MovingScene::light(int item) {

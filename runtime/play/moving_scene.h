@@ -20,6 +20,8 @@ struct MovingSceneSettings {
   ShadowSettings shadows = {};
   int incident_samples = most_incident_samples;   ///< as for place_incident_samples
   std::shared_ptr<VisibilityEngine> engine = {};  ///< in place of rays; null: rays
+  /// Whether light() leaves out lights with a direction (is_direct), for renderers that draw shadow maps of these.
+  bool without_direct = false;
 };
 
 /// A scene at a time: where its nodes are, and the light that each of them receives.
@@ -75,6 +77,7 @@ class MovingScene {
   std::vector<NodeSphere> spheres() const;
   std::vector<Eigen::Vector3f> normals_at(std::size_t asset) const;
   ScenePoses tree_poses() const;
+  SceneLights transferred_lights() const;
   int node_of(int item) const;
 
   SceneDescription scene_;

@@ -8,6 +8,7 @@
 #include "gpu/program.h"
 #include "image/image_file.h"
 #include "runtime/decode/plane_weights.h"
+#include "runtime/shading/light_points.h"
 
 namespace kiln {
 
@@ -144,7 +145,7 @@ UploadedPlanes upload_all_planes(const std::vector<ShadedMesh>& meshes) {
   bool deep = false;
   for (const ShadedMesh& mesh : meshes) {
     UploadedPlanes::Place place;
-    if (mesh.asset != nullptr) {
+    if (mesh.has_transfer()) {
       const PrtAsset& asset = *mesh.asset;
       if (!has_shadable_planes(asset))
         throw WrongUsage(asset.ranges_file.string() +
@@ -164,7 +165,7 @@ UploadedPlanes upload_all_planes(const std::vector<ShadedMesh>& meshes) {
   uploaded.planes = make_texture(GL_TEXTURE_2D_ARRAY);
   glTextureStorage3D(uploaded.planes.name(), 1, deep ? GL_RGBA16 : GL_RGBA8, width, height, layers);
   for (std::size_t k = 0; k < meshes.size(); ++k) {
-    if (meshes[k].asset == nullptr) continue;
+    if (!meshes[k].has_transfer()) continue;
     const PrtAsset& asset = *meshes[k].asset;
     UploadedPlanes::Place& place = uploaded.places[k];
     upload_planes_into(asset, uploaded.planes, place.first_layer);
@@ -177,20 +178,34 @@ UploadedPlanes upload_all_planes(const std::vector<ShadedMesh>& meshes) {
   return uploaded;
 }
 
-UploadedNodeLight upload_node_light(const ShadedScene& scene) {
-  SceneLights rest = scene.lights;
-  std::erase_if(rest.specs, [](const LightSpec& spec) { return is_direct(spec); });
+std::vector<NodeLight> unshadowed_light(const ShadedScene& scene, int incident_samples, DirectLightBy direct) {
+  SceneLights lights = scene.lights;
+  if (direct == DirectLightBy::maps) std::erase_if(lights.specs, [](const LightSpec& spec) { return is_direct(spec); });
+  std::vector<std::vector<Eigen::Vector3f>> points;
+  for (const ShadedMesh& mesh : scene.meshes)
+    points.push_back(mesh.has_transfer() ? light_points(mesh, incident_samples) : std::vector<Eigen::Vector3f>());
+  std::vector<NodeLight> light;
+  for (const ShadedNode& node : scene.nodes) {
+    const auto mesh = static_cast<std::size_t>(node.mesh);
+    light.emplace_back();
+    if (!scene.meshes[mesh].has_transfer()) continue;
+    light.back() = light_asset(lights, scene.meshes[mesh].asset->bands, node.placement, points[mesh]).samples;
+  }
+  return light;
+}
+
+UploadedNodeLight upload_node_light(const ShadedScene& scene, const std::vector<NodeLight>& light) {
   UploadedNodeLight uploaded;
   std::vector<PlaneWeights> weights;
   int texels = 0;
-  for (const ShadedNode& node : scene.nodes) {
+  for (std::size_t k = 0; k < scene.nodes.size(); ++k) {
     uploaded.first_texel.push_back(texels);
-    const PrtAsset* asset = scene.meshes[static_cast<std::size_t>(node.mesh)].asset;
-    if (asset == nullptr) continue;
-    const Eigen::Vector3f middle = bounding_box(asset->mesh).centre();
-    const AssetLight light = light_asset(rest, asset->bands, node.placement, std::span(&middle, 1));
-    weights.push_back(cluster_weights(*asset, light.samples.front(), {1, 1, 1}).front());
-    texels += static_cast<int>(weight_texels(weights.back()));
+    const ShadedMesh& mesh = scene.meshes[static_cast<std::size_t>(scene.nodes[k].mesh)];
+    if (!mesh.has_transfer()) continue;
+    for (const LightCoefficients& sample : light[k]) {
+      weights.push_back(cluster_weights(*mesh.asset, sample, {1, 1, 1}).front());
+      texels += static_cast<int>(weight_texels(weights.back()));
+    }
   }
   if (!weights.empty()) uploaded.texture = upload_weights(weights).texture;
   return uploaded;

@@ -9,6 +9,7 @@
 #include "runtime/draw/asset_uploads.h"
 #include "runtime/shading/shaded_scene.h"
 #include "runtime/shading/shader_glsl.h"
+#include "runtime/shading/shading_settings.h"
 
 namespace kiln {
 
@@ -50,11 +51,18 @@ struct UploadedPlanes {
 /// Uploads planes. Throws WrongUsage for an asset without planes or with several clusters, MachineLacks.
 UploadedPlanes upload_all_planes(const std::vector<ShadedMesh>& meshes);
 
-/// Light of all nodes with planes, after those with a direction are left out: a texture as of upload_light.
+/// Light vectors of a node, one for each of its points; empty for a node without transfer.
+using NodeLight = std::vector<LightCoefficients>;
+
+/// Computes the light that arrives at each node with transfer, as if it stood alone; `direct`: whether that of lights
+/// with a direction is among it.
+std::vector<NodeLight> unshadowed_light(const ShadedScene& scene, int incident_samples, DirectLightBy direct);
+
+/// Light of all nodes with planes: a texture as of upload_light.
 struct UploadedNodeLight {
   GlTexture texture;
   std::vector<int> first_texel;  ///< of each node
 };
-UploadedNodeLight upload_node_light(const ShadedScene& scene);
+UploadedNodeLight upload_node_light(const ShadedScene& scene, const std::vector<NodeLight>& light);
 
 }  // namespace kiln

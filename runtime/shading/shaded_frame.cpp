@@ -35,7 +35,7 @@ constexpr GLfloat nothing[4] = {0, 0, 0, 0}, farthest = 0;  // depths are revers
 
 }  // namespace
 
-ShadedFrame::ShadedFrame(int width, int height, bool with_varyings, int lists, int levels)
+ShadedFrame::ShadedFrame(int width, int height, const Extras& extras, int lists, int levels)
     : width_(width),
       height_(height),
       lists_(lists),
@@ -47,12 +47,16 @@ ShadedFrame::ShadedFrame(int width, int height, bool with_varyings, int lists, i
       forward_(framebuffer(sampled_, &depth_)),
       picture_frame_(framebuffer(picture_, nullptr)),
       picture_with_depth_(framebuffer(picture_, &depth_)) {
-  if (with_varyings) {
-    varyings_ = target(GL_RGBA16F, width, height);
-    glNamedFramebufferTexture(raster_.name(), GL_COLOR_ATTACHMENT1, varyings_.name(), 0);
-    const GLenum both[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
-    glNamedFramebufferDrawBuffers(raster_.name(), 2, both);
-  }
+  GLenum written[] = {GL_COLOR_ATTACHMENT0, GL_NONE, GL_NONE};
+  const auto add = [&](GLuint place, GLenum format) {
+    GlTexture made = target(format, width, height);
+    written[place] = GL_COLOR_ATTACHMENT0 + place;
+    glNamedFramebufferTexture(raster_.name(), written[place], made.name(), 0);
+    return made;
+  };
+  if (extras.varyings) varyings_ = add(1, GL_RGBA16F);
+  if (extras.triangles) triangles_ = add(2, GL_R32UI);
+  glNamedFramebufferDrawBuffers(raster_.name(), 3, written);
   const auto tiles = static_cast<GLsizeiptr>(columns()) * rows();
   constexpr auto word = static_cast<GLsizeiptr>(sizeof(GLuint));
   masks_ = make_zero_buffer(tiles * word);
@@ -69,6 +73,7 @@ void ShadedFrame::begin_raster() const {
   const GLuint no_words[4] = {0, 0, 0, 0};
   glClearNamedFramebufferuiv(raster_.name(), GL_COLOR, 0, no_words);
   if (varyings_.name() != 0) glClearNamedFramebufferfv(raster_.name(), GL_COLOR, 1, nothing);
+  if (triangles_.name() != 0) glClearNamedFramebufferuiv(raster_.name(), GL_COLOR, 2, no_words);
   glClearNamedFramebufferfv(raster_.name(), GL_DEPTH, 0, &farthest);
   glBindFramebuffer(GL_FRAMEBUFFER, raster_.name());
 }

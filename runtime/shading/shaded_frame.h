@@ -12,8 +12,13 @@ inline constexpr int shading_tile_side = 16;
 /// tiles, and the picture that samples add up to.
 class ShadedFrame {
  public:
+  /// What rasterisation writes besides the words.
+  struct Extras {
+    bool varyings = false;
+    bool triangles = false;  ///< for nodes whose light was computed at several points
+  };
   /// `lists` is the number of lists of tiles; `levels` those of the picture's mip map.
-  ShadedFrame(int width, int height, bool with_varyings, int lists, int levels = 1);
+  ShadedFrame(int width, int height, const Extras& extras, int lists, int levels = 1);
 
   int width() const { return width_; }
   int height() const { return height_; }
@@ -23,8 +28,9 @@ class ShadedFrame {
 
   /// Linear radiance times coverage, and coverage, float32.
   const GlTexture& picture() const { return picture_; }
-  const GlTexture& words() const { return words_; }        ///< shading_words.glsl
-  const GlTexture& varyings() const { return varyings_; }  ///< no texture if no shader has some
+  const GlTexture& words() const { return words_; }          ///< shading_words.glsl
+  const GlTexture& varyings() const { return varyings_; }    ///< no texture if no shader has some
+  const GlTexture& triangles() const { return triangles_; }  ///< numbers of triangles; no texture where none asks
   const GlTexture& depth() const { return depth_; }
   const GlTexture& sampled() const { return sampled_; }  ///< one sample of forward shading
   const GlBuffer& masks() const { return masks_; }
@@ -32,7 +38,7 @@ class ShadedFrame {
   const GlBuffer& listed() const { return listed_; }
 
   /// Bytes of appearance parameters of a sample, and of its depth.
-  int appearance_bytes() const { return varyings_.name() != 0 ? 24 : 16; }
+  int appearance_bytes() const { return 16 + (varyings_.name() != 0 ? 8 : 0) + (triangles_.name() != 0 ? 4 : 0); }
   static constexpr int depth_bytes = 4;
 
   /// Clears the picture.
@@ -48,7 +54,7 @@ class ShadedFrame {
 
  private:
   int width_, height_, lists_;
-  GlTexture words_, varyings_, depth_, sampled_, picture_;
+  GlTexture words_, varyings_, triangles_, depth_, sampled_, picture_;
   GlFramebuffer raster_, forward_, picture_frame_, picture_with_depth_;
   GlBuffer masks_, commands_, no_commands_, listed_;
 };

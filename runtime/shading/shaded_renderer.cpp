@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
 
 #include "base/errors.h"
@@ -17,7 +18,9 @@ namespace {
 
 // Bindings of shaders/shading_* and common_prt.glsl.
 constexpr GLuint planes_unit = 0, nodes_unit = 1, node_light_unit = 2, words_unit = 3, varyings_unit = 4,
-                 depth_unit = 5, shadow_unit = 6, reflection_unit = 7, values_unit = 8;
+                 depth_unit = 5, shadow_unit = 6, reflection_unit = 7, values_unit = 8, triangles_unit = 9,
+                 triangle_vertices_unit = 10, vertex_vectors_unit = 11, albedo_unit = 12, normals_unit = 13,
+                 opacity_unit = 14;
 constexpr GLuint view_block = 0, lights_block = 1;
 constexpr GLuint masks_binding = 1, commands_binding = 2, lists_binding = 3;
 constexpr GLuint values_binding = 1, counts_binding = 2;  // of the pass of uniform parameters
@@ -26,9 +29,10 @@ constexpr GLuint color_attribute = 5;
 /// Vectors of a node in shading_scene.glsl. Whole numbers are floats, which hold them up to 2^24.
 struct NodeBlock {
   Eigen::Matrix<float, 3, 4, Eigen::RowMajor> scene_from_object, object_from_scene;
-  Eigen::Vector4f material, planes, planes_place;
+  Eigen::Vector4f material, planes, planes_place, points, albedo, albedo_place, maps, opacity_place;
 };
-static_assert(sizeof(NodeBlock) == 9 * 16);
+constexpr int node_vector_count = 14;
+static_assert(sizeof(NodeBlock) == node_vector_count * 16);
 
 /// Block `Lights` of shading_light.glsl.
 struct LightsBlock {
@@ -74,13 +78,18 @@ std::vector<SurfaceShader> used_shaders(const ShadedScene& scene, const std::vec
   return used.empty() ? shaders : used;
 }
 
-ShadingFeatures features_of(const ShadedScene& scene, const std::vector<SurfaceShader>& shaders, int steps) {
+ShadingFeatures features_of(const ShadedScene& scene, const std::vector<SurfaceShader>& shaders, const AssetMaps& maps,
+                            const ShadingSettings& settings) {
   ShadingFeatures features;
-  features.planes = std::any_of(scene.meshes.begin(), scene.meshes.end(),
-                                [](const ShadedMesh& mesh) { return mesh.asset != nullptr; });
+  features.planes =
+      std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const ShadedMesh& mesh) { return mesh.has_transfer(); });
+  if (features.planes) features.points = settings.incident_samples;
+  features.albedo = maps.albedo.texture.name() != 0;
+  features.normals = maps.normals.texture.name() != 0;
+  features.opacity = maps.opacity.texture.name() != 0;
   features.varyings = std::any_of(shaders.begin(), shaders.end(),
                                   [](const SurfaceShader& shader) { return shader.varying_components() > 0; });
-  features.steps = steps;
+  features.steps = settings.steps;
   return features;
 }
 
@@ -121,6 +130,8 @@ ShadedRenderer::ShadedRenderer(ShadedScene scene, const std::vector<SurfaceShade
       settings_(settings),
       shapes_(upload_shapes(scene_.meshes)),
       planes_(upload_all_planes(scene_.meshes)),
+      points_(upload_light_points(scene_.meshes, settings.incident_samples)),
+      maps_(upload_asset_maps(scene_.meshes)),
       view_(make_refilled_buffer(sizeof(View))),
       lights_(make_refilled_buffer(sizeof(LightsBlock))),
       shadows_(settings.shadow_size, std::max(1, direct_light_count(scene_))),
@@ -137,7 +148,7 @@ ShadedRenderer::ShadedRenderer(ShadedScene scene, const std::vector<SurfaceShade
 
 void ShadedRenderer::set_shaders(const std::vector<SurfaceShader>& shaders) {
   std::vector<SurfaceShader> used = used_shaders(scene_, shaders);
-  const ShadingFeatures features = features_of(scene_, used, settings_.steps);
+  const ShadingFeatures features = features_of(scene_, used, maps_, settings_);
   auto programs = std::make_unique<ShaderPrograms>(std::move(used), features);
   UploadedMaterials materials = upload_materials(scene_.materials, programs->glsl());
   std::vector<GlTexture> pictures = upload_pictures(programs->glsl());
@@ -149,17 +160,27 @@ void ShadedRenderer::set_shaders(const std::vector<SurfaceShader>& shaders) {
   reflection_.reset();
   if (scene_.mirror) {
     const int size = settings_.reflection_size;
-    reflection_.emplace(size, size, features.varyings, static_cast<int>(programs_->sets().size()),
+    reflection_.emplace(size, size, extras(), static_cast<int>(programs_->sets().size()),
                         std::bit_width(static_cast<unsigned>(size)));
   }
-  upload_nodes();
-  upload_lights();
+  is_uploaded_ = false;
 }
 
 void ShadedRenderer::set_placements(std::span<const Placement> placements) {
   for (std::size_t k = 0; k < scene_.nodes.size(); ++k) scene_.nodes[k].placement = placements[k];
-  upload_nodes();
-  upload_lights();
+  is_uploaded_ = false;
+}
+
+void ShadedRenderer::set_node_light(std::vector<NodeLight> light) {
+  if (!light.empty() && light.size() != scene_.nodes.size())
+    throw std::invalid_argument("ShadedRenderer: the light must be that of each node");
+  for (std::size_t k = 0; k < light.size(); ++k) {
+    const auto mesh = static_cast<std::size_t>(scene_.nodes[k].mesh);
+    if (scene_.meshes[mesh].has_transfer() && light[k].size() != static_cast<std::size_t>(points_.places[mesh].points))
+      throw std::invalid_argument("ShadedRenderer: the light must have one vector for each of a node's points");
+  }
+  given_light_ = std::move(light);
+  is_uploaded_ = false;
 }
 
 void ShadedRenderer::set_lights(const SceneLights& lights) {
@@ -169,31 +190,51 @@ void ShadedRenderer::set_lights(const SceneLights& lights) {
   if (std::max(1, count) != std::max(1, direct_light_count(scene_)))
     shadows_ = ShadowTable(settings_.shadow_size, std::max(1, count));
   scene_ = std::move(other);
+  is_uploaded_ = false;
+}
+
+void ShadedRenderer::upload_moment() {
+  if (is_uploaded_) return;
   upload_nodes();
   upload_lights();
+  is_uploaded_ = true;
 }
 
 void ShadedRenderer::upload_nodes() {
-  node_light_ = upload_node_light(scene_);
+  node_light_ = upload_node_light(scene_, given_light_.empty()
+                                              ? unshadowed_light(scene_, settings_.incident_samples, settings_.direct)
+                                              : given_light_);
   std::vector<NodeBlock> blocks;
   for (std::size_t k = 0; k < scene_.nodes.size(); ++k) {
     const ShadedNode& node = scene_.nodes[k];
     const Eigen::Matrix4d matrix = node.placement.matrix();
-    const UploadedPlanes::Place& place = planes_.places[static_cast<std::size_t>(node.mesh)];
+    const auto mesh = static_cast<std::size_t>(node.mesh);
+    const UploadedPlanes::Place& place = planes_.places[mesh];
+    const LightPoints::Place& points = points_.places[mesh];
+    const bool direct = place.layers > 0 && settings_.direct == DirectLightBy::transfer;
     const auto material = static_cast<std::size_t>(node.material);
     NodeBlock block;
     block.scene_from_object = matrix.topRows<3>().cast<float>();
     block.object_from_scene = matrix.inverse().topRows<3>().cast<float>();
     block.material = Eigen::Vector4i(materials_.first[material], materials_.shaders[material], 0, 0).cast<float>();
-    block.planes = Eigen::Vector4i(place.first_layer, place.layers, node_light_.first_texel[k], 0).cast<float>();
+    block.planes =
+        Eigen::Vector4i(place.first_layer, place.layers, node_light_.first_texel[k], direct ? 1 : 0).cast<float>();
     block.planes_place = place.place;
+    block.points = Eigen::Vector4i(points.first_triangle, points.first_vertex, points.points, 0).cast<float>();
+    block.albedo << maps_.colors[mesh], static_cast<float>(maps_.albedo.layers[mesh]);
+    block.albedo_place << maps_.albedo.parts[mesh], static_cast<float>(maps_.albedo_levels[mesh]),
+        static_cast<float>(maps_.albedo_texels[mesh]);
+    block.maps << static_cast<float>(maps_.normals.layers[mesh]), static_cast<float>(maps_.opacity.layers[mesh]),
+        maps_.normals.parts[mesh];
+    block.opacity_place << maps_.opacity.parts[mesh], 0, 0;
     blocks.push_back(block);
   }
   constexpr std::size_t most_nodes = 65536;  // in the 16 bits of shading_words.glsl
   if (blocks.size() > most_nodes)
     throw WrongUsage("scene: found " + std::to_string(blocks.size()) + " nodes; expected at most " +
                      std::to_string(most_nodes));
-  require_at_most(GL_MAX_TEXTURE_BUFFER_SIZE, static_cast<int>(9 * blocks.size()), "buffer textures with texels");
+  require_at_most(GL_MAX_TEXTURE_BUFFER_SIZE, node_vector_count * static_cast<int>(blocks.size()),
+                  "buffer textures with texels");
   nodes_ = make_buffer(std::span<const NodeBlock>(blocks));
   glTextureBuffer(node_vectors_.name(), GL_RGBA32F, nodes_.name());
 }
@@ -222,11 +263,15 @@ void ShadedRenderer::upload_lights() {
   refill_buffer(lights_, std::span<const LightsBlock>(&block, 1));
 }
 
-ShadedFrame ShadedRenderer::make_frame(int width, int height) const {
+ShadedFrame::Extras ShadedRenderer::extras() const {
   const auto& shaders = programs_->glsl().shaders();
   const bool varyings = std::any_of(shaders.begin(), shaders.end(),
                                     [](const SurfaceShader& shader) { return shader.varying_components() > 0; });
-  return {width, height, varyings, static_cast<int>(programs_->sets().size())};
+  return {varyings, points_.triangles.name() != 0};
+}
+
+ShadedFrame ShadedRenderer::make_frame(int width, int height) const {
+  return {width, height, extras(), static_cast<int>(programs_->sets().size())};
 }
 
 unsigned ShadedRenderer::uniform_evaluations() const {
@@ -248,6 +293,11 @@ void ShadedRenderer::bind_tables(const GlTexture& reflection) const {
   glBindTextureUnit(node_light_unit, node_light_.texture.name());
   glBindTextureUnit(shadow_unit, shadows_.texture().name());
   glBindTextureUnit(reflection_unit, reflection.name());
+  glBindTextureUnit(triangle_vertices_unit, points_.triangle_vertices.name());
+  glBindTextureUnit(vertex_vectors_unit, points_.vertex_vectors.name());
+  glBindTextureUnit(albedo_unit, maps_.albedo.texture.name());
+  glBindTextureUnit(normals_unit, maps_.normals.texture.name());
+  glBindTextureUnit(opacity_unit, maps_.opacity.texture.name());
   for (std::size_t k = 0; k < pictures_.size(); ++k)
     glBindTextureUnit(first_picture_unit + static_cast<GLuint>(k), pictures_[k].name());
 }
@@ -331,6 +381,7 @@ void ShadedRenderer::shade_tiles(const ShadedFrame& frame, bool adds, PartTimes*
   begin_part(times, "shading");
   frame.begin_picture(adds);
   glBindTextureUnit(varyings_unit, frame.varyings().name());
+  glBindTextureUnit(triangles_unit, frame.triangles().name());
   glBindTextureUnit(depth_unit, frame.depth().name());
   glBindBuffer(GL_DRAW_INDIRECT_BUFFER, frame.commands().name());
   glBindVertexArray(no_vertices_.name());
@@ -400,6 +451,7 @@ void ShadedRenderer::draw_reflection(const Camera& camera, double seconds, int f
 
 void ShadedRenderer::draw(const Camera& camera, const ShadedFrame& frame, double seconds, int frame_number,
                           PartTimes* times) {
+  upload_moment();
   glDisable(GL_CULL_FACE);
   glDisable(GL_BLEND);
   glDisable(GL_STENCIL_TEST);
@@ -444,15 +496,19 @@ void ShadedRenderer::draw(const Camera& camera, const ShadedFrame& frame, double
   check_gl("drawing shaded surfaces");
 }
 
-Image<float> shaded_picture(ShadedRenderer& renderer, const Camera& camera, int width, int height, double seconds) {
-  const ShadedFrame frame = renderer.make_frame(width, height);
-  renderer.draw(camera, frame, seconds);
-  Image<float> picture(width, height, 4);
+Image<float> read_back(const ShadedFrame& frame) {
+  Image<float> picture(frame.width(), frame.height(), 4);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glGetTextureImage(frame.picture().name(), 0, GL_RGBA, GL_FLOAT,
                     static_cast<GLsizei>(picture.values().size() * sizeof(float)), picture.values().data());
   check_gl("reading the shaded picture");
   return picture;
+}
+
+Image<float> shaded_picture(ShadedRenderer& renderer, const Camera& camera, int width, int height, double seconds) {
+  const ShadedFrame frame = renderer.make_frame(width, height);
+  renderer.draw(camera, frame, seconds);
+  return read_back(frame);
 }
 
 }  // namespace kiln

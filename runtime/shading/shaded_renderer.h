@@ -9,7 +9,9 @@
 #include "gpu/gl_objects.h"
 #include "image/image.h"
 #include "mesh/camera.h"
+#include "runtime/shading/asset_maps.h"
 #include "runtime/shading/frame_tables.h"
+#include "runtime/shading/light_points.h"
 #include "runtime/shading/part_times.h"
 #include "runtime/shading/scene_uploads.h"
 #include "runtime/shading/shaded_frame.h"
@@ -33,6 +35,10 @@ class ShadedRenderer {
   /// Moves nodes: places of all, in their order.
   void set_placements(std::span<const Placement> placements);
   void set_lights(const SceneLights& lights);
+  /// Takes the light of all nodes at their points, with whatever shadows it has, in place of that of the scene's lights
+  /// as if each stood alone; until it is set again, empty for the latter. `direct` of the settings says whether lights
+  /// with a direction are among it. Throws std::invalid_argument for other numbers of nodes or points.
+  void set_node_light(std::vector<NodeLight> light);
   void set_way(ShadingWay way) { settings_.way = way; }
 
   const ShadedScene& scene() const { return scene_; }
@@ -56,6 +62,9 @@ class ShadedRenderer {
 
  private:
   struct View;
+  ShadedFrame::Extras extras() const;
+  /// Uploads nodes and lights, if they have changed.
+  void upload_moment();
   void upload_nodes();
   void upload_lights();
   void compute_uniforms();
@@ -73,6 +82,10 @@ class ShadedRenderer {
   std::vector<UploadedShape> shapes_;
   std::vector<BoundingBox> boxes_;
   UploadedPlanes planes_;
+  LightPoints points_;
+  AssetMaps maps_;
+  std::vector<NodeLight> given_light_;
+  bool is_uploaded_ = false;
   UploadedNodeLight node_light_;
   std::unique_ptr<ShaderPrograms> programs_;
   UploadedMaterials materials_;
@@ -86,7 +99,10 @@ class ShadedRenderer {
   GlVertexArray no_vertices_;
 };
 
-/// Draws a picture and reads it back: linear exit radiance RGB times coverage, and coverage, rows from the bottom.
+/// Reads the picture of a frame: linear exit radiance RGB times coverage, and coverage, rows from the bottom.
+Image<float> read_back(const ShadedFrame& frame);
+
+/// Draws a picture and reads it back.
 Image<float> shaded_picture(ShadedRenderer& renderer, const Camera& camera, int width, int height, double seconds = 0);
 
 }  // namespace kiln

@@ -16,16 +16,19 @@
 
 namespace kiln {
 
-/// A mesh that nodes stand for. What is pointed at must outlive the scene.
-struct ShadedMesh {
-  const TriangleMesh* mesh = nullptr;  ///< with normals; uvs and colours if shaders look at them
-  const PrtAsset* asset = nullptr;     ///< its planes, plain or of one cluster; null: no precomputed transfer
-};
-
 /// Tests whether an asset's transfer is in planes, plain or of one cluster, which shaders of one's own share.
 inline bool has_shadable_planes(const PrtAsset& asset) {
   return !asset.is_per_vertex() && !asset.planes.empty() && (!asset.clusters || asset.clusters->count == 1);
 }
+
+/// A mesh that nodes stand for. What is pointed at must outlive the scene.
+struct ShadedMesh {
+  const TriangleMesh* mesh = nullptr;  ///< with normals; uvs and colours if shaders look at them
+  const PrtAsset* asset = nullptr;     ///< its maps, and its planes, which must be plain or of one cluster; null: none
+  bool uses_planes = true;             ///< false: the asset's planes are left alone, and light is irradiance
+
+  bool has_transfer() const { return asset != nullptr && uses_planes; }
+};
 
 /// A shader with values of its constants; those that are not named have the shader's defaults.
 struct ShadedMaterial {
@@ -53,7 +56,8 @@ struct ShadedScene {
   std::vector<ShadedMaterial> materials;
   std::vector<ShadedNode> nodes;
   /// Lights with a direction (is_direct), at most four, have shadow maps and highlights; all others arrive by
-  /// precomputed transfer where there is some, else as irradiance.
+  /// precomputed transfer where there is some, else as irradiance. ShadingSettings::direct may give nodes with transfer
+  /// all their light by it.
   SceneLights lights = {};
   std::optional<MirrorPlane> mirror = {};
   std::array<float, 3> background = {0, 0, 0};  ///< what the mirror shows where nothing is

@@ -7,6 +7,7 @@
 
 #include "base/errors.h"
 #include "gpu/program.h"
+#include "runtime/light/incident_samples.h"
 
 namespace kiln {
 
@@ -65,6 +66,11 @@ std::string ShaderGlsl::head(bool computes_uniforms) const {
   std::string text = "#version 450 core\n";
   if (features_.planes) text += "#define SHADING_PRT\n";
   if (features_.varyings) text += "#define SHADING_VARYINGS\n";
+  if (features_.points != 1) text += "#define SHADING_POINTS " + std::to_string(features_.points) + "\n";
+  if (features_.points == samples_at_vertices) text += "#define SHADING_AT_VERTICES\n";
+  if (features_.albedo) text += "#define SHADING_ALBEDO\n";
+  if (features_.normals) text += "#define SHADING_NORMALS\n";
+  if (features_.opacity) text += "#define SHADING_OPACITY\n";
   if (computes_uniforms) text += "#define SHADING_UNIFORMS\n";
   text += "#define SHADING_STEPS " + std::to_string(features_.steps) + "\n";
   return text + expanded_shader("shading_scene.glsl");
@@ -150,6 +156,8 @@ std::string ShaderGlsl::depth_vertex() const {
   text.insert(text.find('\n') + 1, "#define SHADING_DEPTH\n");
   return text + expanded_shader("shading_surface.vert");
 }
+
+std::string ShaderGlsl::depth_fragment() const { return head() + expanded_shader("shading_depth.frag"); }
 
 std::string ShaderGlsl::raster_fragment(int shader) const {
   return head() + expanded_shader("shading_fragment.glsl") + body_of(shader) + varyings_of(shader) +

@@ -14,11 +14,13 @@ namespace kiln {
 struct ShadingFeatures {
   bool planes = false;    ///< whether a node has precomputed transfer
   bool varyings = false;  ///< whether a shader has varying parameters
+  int points = 1;         ///< at which the light of nodes with transfer is computed, as for place_incident_samples
+  bool albedo = false, normals = false, opacity = false;  ///< whether an asset ships with a picture of them
   int steps = 3;  ///< for measuring: 3 all, 2 without the part after the light, 1 nor the light, 0 nor the first
 };
 
 /// First texture unit of the pictures of shaders; those of shader k follow those of k - 1.
-inline constexpr int first_picture_unit = 9;
+inline constexpr int first_picture_unit = 15;
 
 /// Puts programs for a scene's shaders together, as texts; without GL. Names of shader k get a prefix of their own, so
 /// that shaders which share a program cannot meet. Lines keep their number and file by #line.
@@ -39,6 +41,7 @@ class ShaderGlsl {
   /// Texts of shaders, complete with #version.
   std::string surface_vertex() const;
   std::string depth_vertex() const;
+  std::string depth_fragment() const;
   std::string raster_fragment(int shader) const;
   std::string forward_fragment(int shader) const;
   /// Shades samples of the shaders whose bits are set, with the light once for all.

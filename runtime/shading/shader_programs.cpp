@@ -93,8 +93,7 @@ GlProgram ShaderPrograms::made(Pass pass, std::uint32_t which) const {
   const std::string tiles = "#version 450 core\n" + expanded_shader("shading_tiles.vert");
   switch (pass) {
     case Pass::depth:
-      return compiled({{GL_VERTEX_SHADER, glsl_.depth_vertex()},
-                       {GL_FRAGMENT_SHADER, "#version 450 core\n" + expanded_shader("shading_depth.frag")}});
+      return compiled({{GL_VERTEX_SHADER, glsl_.depth_vertex()}, {GL_FRAGMENT_SHADER, glsl_.depth_fragment()}});
     case Pass::raster:
       return compiled(
           {{GL_VERTEX_SHADER, glsl_.surface_vertex()}, {GL_FRAGMENT_SHADER, glsl_.raster_fragment(shader)}});

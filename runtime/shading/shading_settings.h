@@ -10,13 +10,22 @@ enum class ShadingWay {
   factored,  ///< the same, but what shaders share is done once for all samples of a tile ([Lastra 1995], figure 7)
 };
 
+/// How lights with a direction light nodes that have precomputed transfer.
+enum class DirectLightBy {
+  maps,      ///< as other surfaces: cosine times the light's shadow map
+  transfer,  ///< as all other light, with the shadows that the light vectors have; maps shadow highlights alone
+};
+
 /// Settings of a shaded picture.
 struct ShadingSettings {
   ShadingWay way = ShadingWay::factored;
   int samples = 5;            ///< a pixel, each drawn by itself, as on PixelFlow
   int shadow_size = 1024;     ///< texels a side of a shadow map
   int reflection_size = 512;  ///< texels a side of the reflection map
-  int steps = 3;              ///< ShadingFeatures::steps
+  DirectLightBy direct = DirectLightBy::maps;
+  /// Points around each node with transfer at which its light is computed, as for place_incident_samples.
+  int incident_samples = 1;
+  int steps = 3;  ///< ShadingFeatures::steps
 };
 
 }  // namespace kiln

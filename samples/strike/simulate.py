@@ -306,7 +306,7 @@ HEAD = """# A ball rolls into ten pins. Every body shadows the others and the al
 #
 #     build/release/bin/kiln-render samples/strike.yaml --incident-samples vertices --time 0.35 --frames 6 --fps 6 --strip \\
 #         --width 260 --height 200 -o strike.png
-#     build/release/bin/kiln-view samples/strike.yaml --incident-samples vertices
+#     build/release/bin/kiln-view samples/strike.yaml --by transfer --incident-samples vertices
 #
 # or by shaders, whose pictures samples/bowling/make.py makes:
 #

@@ -179,7 +179,7 @@ class Bench {
   /// Times the parts of a frame of the scene.
   void frame() const {
     const ShadeSettings settings = settings_of_scene();
-    MovingScene moving = scene_.moving();
+    MovingScene moving = scene_.moving({.incident_samples = 1});
     const Camera camera = shade_camera(moving, film_camera(moving, settings.picture), width, height);
     std::vector<Times> ways;
     std::map<std::string, int> parts;

@@ -121,6 +121,82 @@ differ s6.png s5.png 3 # what is static stays, and the camera turns
 if display "$programs/kiln-view" scene.yaml --light 1,2 2>said; then fail "lights beside a scene are taken"; fi
 grep -q "beside a scene" said || fail "of lights beside a scene it says: $(cat said)"
 
+echo "== a scene by its shaders, which change"
+# Each change is one rename, so that the viewer sees all of it or nothing.
+mkdir looks
+cat >looks/plain.glsl <<'EOF'
+parameter vec3 paint = vec3(0.5);
+uniform float pulse = 0.5 + 0.5 * time;
+void before_light(Surface surface, inout Appearance appearance) {
+  appearance.shininess = 20.0;
+}
+vec3 after_light(Surface surface, Appearance appearance, Light light) {
+  return pulse * paint * light.diffuse + 0.3 * light.specular;
+}
+EOF
+cat >square.obj <<'EOF'
+v -2 -0.6 2
+v 2 -0.6 2
+v 2 -0.6 -2
+v -2 -0.6 -2
+vt 0 0
+vt 1 0
+vt 1 1
+vt 0 1
+vn 0 1 0
+f 1/1/1 2/2/1 3/3/1
+f 1/1/1 3/3/1 4/4/1
+EOF
+sed 's/^nodes:/shaders: looks\nbackground: 0.1\nnodes:\n  - {name: floor, mesh: square.obj, shader: plain, casts-shadow: false}/; s/hare\/prt,/hare\/prt, shader: plain, set: {paint: [0.9, 0.5, 0.2]},/; s/elevation: 0/elevation: 20/' scene.yaml >shaded.yaml
+cat >script <<'EOF'
+screenshot h0.png
+key up
+screenshot h1.png
+key space
+frames 3
+key space
+screenshot h2.png
+move 126 100 30 0
+screenshot h3.png
+reload
+screenshot h4.png
+window kept_scene.png
+reload
+key r up
+screenshot h5.png
+move 210 150 30 -20
+screenshot h6.png
+EOF
+shaded=(shaded.yaml --width 320 --height 240 --direct transfer --incident-samples 4)
+display "$programs/kiln-view" "${shaded[@]}" --script script --json >result 2>said &
+viewer=$!
+wait_for() { until [ -e "$1" ]; do kill -0 $viewer 2>/dev/null || fail "the viewer ended before $1: $(cat said)"; sleep 0.2; done; }
+wait_for h3.png
+sed 's/paint \* light/oops * light/' looks/plain.glsl >broken.glsl
+cp looks/plain.glsl good.glsl
+mv broken.glsl looks/plain.glsl
+wait_for kept_scene.png
+sed 's/paint \* light/0.5 * paint * light/' good.glsl >darker.glsl
+mv darker.glsl looks/plain.glsl
+wait $viewer || fail "the script of a scene by shaders ended with status $?: $(cat said)"
+grep -q "not read again: looks/plain.glsl:7: .*oops" said || fail "of the broken shader it says: $(cat said)"
+shade() { "$programs/kiln-shade" "${shaded[@]}" --gl-device software --quiet "$@"; }
+shade -o r_h5.png --time 0.5 --way forward
+cp good.glsl looks/plain.glsl
+shade -o r_h0.png
+shade -o r_h1.png --time 0.5
+shade -o r_h2.png --time 0.6
+for k in 0 1 2 5; do same h$k.png r_h$k.png 1; done
+differ h1.png h0.png 3
+differ h3.png h2.png 3 # what is static stays, and the camera turns
+same h4.png h3.png 0   # the last good shader stays
+differ h5.png h1.png 3
+differ h6.png h5.png 3 # a mesh is dragged as well
+if display "$programs/kiln-view" "${shaded[@]}" --by transfer 2>said; then fail "a mesh is drawn by transfer"; fi
+grep -q "node 'floor' with a mesh" said || fail "of a mesh by transfer it says: $(cat said)"
+if display "$programs/kiln-view" "${shaded[@]}" --albedo 0.5 2>said; then fail "an albedo is taken beside shaders"; fi
+grep -q "expected --by transfer" said || fail "of an albedo beside shaders it says: $(cat said)"
+
 echo "== a file that is read when it is needed"
 cp -r hare torn
 head -c 100 hare/prt/normal.png >torn/prt/normal.png
@@ -140,8 +216,6 @@ screenshot second.png
 EOF
 display "$programs/kiln-view" hare --width 240 --height 180 --script script 2>said &
 viewer=$!
-# Each change is one rename, so that the viewer sees all of it or nothing.
-wait_for() { until [ -e "$1" ]; do kill -0 $viewer 2>/dev/null || fail "the viewer ended before $1: $(cat said)"; sleep 0.2; done; }
 wait_for first.png
 cp hare/prt/ranges.json good.json
 echo '{' >broken.json
@@ -159,7 +233,6 @@ differ message.png broken.png 255 # one has panels and a backdrop: RGB, not RGBA
 grep -q "not read again: .*ranges.json" said || fail "of the broken file it says: $(cat said)"
 
 echo "== a shader of one's own that changes"
-mkdir looks
 shader() { # shader COLOUR: what the file holds
   printf 'void before_light(Surface surface, inout Appearance appearance) {\n  appearance.base_color = %s;\n}\n' "$1"
   printf 'vec3 after_light(Surface surface, Appearance appearance, Light light) {\n  return appearance.base_color;\n}\n'

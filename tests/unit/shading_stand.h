@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,14 @@ inline constexpr const char* plain_after =
     "vec3 after_light(Surface surface, Appearance appearance, Light light) {\n"
     "  return appearance.base_color * light.diffuse + 0.4 * light.specular;\n"
     "}\n";
+
+/// Returns the largest difference of two pictures in steps of 8 bits.
+inline double largest_difference(const Image<float>& a, const Image<float>& b) {
+  double largest = 0;
+  for (std::size_t k = 0; k < a.values().size(); ++k)
+    largest = std::max<double>(largest, std::abs(a.values()[k] - b.values()[k]));
+  return 255 * largest;
+}
 
 /// A shader of one colour.
 inline std::string plain(const std::string& color) {

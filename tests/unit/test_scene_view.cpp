@@ -95,6 +95,7 @@ TEST(SceneView, ScriptsHaveItsWords) {
   EXPECT_EQ(read[2].x, -5);
   EXPECT_EQ(read[2].y, 7);
   EXPECT_THROW(steps("reload\n", scene_script_words()), BadInput);
+  EXPECT_EQ(steps("reload\n", scene_script_words(true)).size(), 1u);
   EXPECT_THROW(steps("key f\n", scene_script_words()), BadInput);
   EXPECT_THROW(steps("move 1 2 3\n", scene_script_words()), BadInput);
   EXPECT_THROW(steps("move 10 20 -5 7\n", asset_script_words()), BadInput);

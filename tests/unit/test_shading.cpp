@@ -2,29 +2,18 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "base/errors.h"
 #include "image/image_file.h"
-#include "prt_folders.h"
 #include "runtime/shading/sample_pattern.h"
 #include "scratch.h"
-#include "sh/directions.h"
 #include "shading_stand.h"
 
 namespace kiln {
 namespace test_shading {
 
 using namespace shading_stand;
-
-/// Returns the largest difference of two pictures in steps of 8 bits.
-double largest_difference(const Image<float>& a, const Image<float>& b) {
-  double largest = 0;
-  for (std::size_t k = 0; k < a.values().size(); ++k)
-    largest = std::max<double>(largest, std::abs(a.values()[k] - b.values()[k]));
-  return 255 * largest;
-}
 
 TEST(Shading, ThreeWaysGiveOnePicture) {
   const EglContext context("software");
@@ -334,61 +323,6 @@ TEST(Shading, PicturesAreMipMapped) {
       ++covered;
     }
   EXPECT_GT(covered, 300);
-}
-
-TEST(Shading, TransferIsTheLightOfNodesThatHaveIt) {
-  const EglContext context("software");
-  const Scratch scratch;
-  const TriangleMesh fine = shapes::cube_sphere(24, 0.5f);
-  test::write_asset(scratch.folder(), fine, test::unoccluded_stack(fine, 96, 64, 3, 16));
-  const PrtAsset asset = load_prt_asset(scratch.folder());
-  // Two of the asset, one turned, beside a mesh without planes, which gets the same light as irradiance.
-  ShadedScene scene;
-  scene.meshes = {{&asset.mesh, &asset}, {&fine, nullptr}};
-  scene.materials = {{"light", {}}};
-  for (int k = 0; k < 3; ++k) {
-    ShadedNode node{k == 2 ? 1 : 0, 0, {}};
-    node.placement.translation = Eigen::Vector3d(1.4 * k - 1.4, 0, 0);
-    node.placement.rotation = Eigen::AngleAxisd(1.1 * k, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
-    scene.nodes.push_back(node);
-  }
-  scene.lights.specs = {parse_light_spec("hemisphere:70,40,0.9,0.8,0.7,0.1,0.2,0.3")};
-  const std::string text =
-      "void before_light(Surface surface, inout Appearance appearance) {}\n"
-      "vec3 after_light(Surface surface, Appearance appearance, Light light) { return light.diffuse; }\n";
-  std::vector<Eigen::Vector3f> shape;
-  for (const ShadedNode& node : scene.nodes)
-    for (const Eigen::Vector3f& place : fine.positions)
-      shape.push_back(node.placement.to_scene(place.cast<double>()).cast<float>());
-  const Camera camera = make_camera(shape, {}, 240, 80);
-  const Eigen::Vector3f front = direction_from_angles(70, 40);
-  for (const ShadingWay way : {ShadingWay::factored, ShadingWay::forward}) {
-    ShadingSettings settings;
-    settings.way = way;
-    settings.samples = 1;
-    ShadedRenderer renderer(scene, {parse_shader(text, "light.glsl")}, settings);
-    const Image<float> picture = shaded_picture(renderer, camera, 240, 80);
-    int seen[3] = {0, 0, 0};
-    for (int j = 0; j < 80; ++j)
-      for (int i = 0; i < 240; ++i)
-        for (int k = 0; k < 3; ++k) {
-          const Eigen::Vector3f ray = camera.pixel_direction(i, j, 240, 80),
-                                to = scene.nodes[static_cast<std::size_t>(k)].placement.translation.cast<float>() -
-                                     camera.position;
-          const float along = to.dot(ray.normalized()), squared = to.squaredNorm() - along * along;
-          if (squared > 0.8f * 0.25f) continue;
-          const Eigen::Vector3f normal = ((along - std::sqrt(0.25f - squared)) * ray.normalized() - to).normalized();
-          // A hemisphere has two bands (hemisphere_light): the mean, and half the difference times the cosine, of which
-          // a white surface keeps 2/3.
-          for (int c = 0; c < 3; ++c) {
-            const float high = 0.9f - 0.1f * static_cast<float>(c), low = 0.1f + 0.1f * static_cast<float>(c);
-            const float expected = 0.5f * (high + low) + (high - low) * normal.dot(front) / 3;
-            ASSERT_NEAR(picture.at(i, j, c), expected, 0.01) << k << ": " << i << ", " << j;
-          }
-          ++seen[k];
-        }
-    for (const int count : seen) EXPECT_GT(count, 500);
-  }
 }
 
 TEST(Shading, MovedNodesAndLightsAreAsIfMadeThere) {

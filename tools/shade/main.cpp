@@ -18,13 +18,17 @@ int main(int argc, char** argv) {
     command.input("SCENE", scene_file, "A scene.yaml whose nodes have shaders, see docs/shaders.md");
     command.output(file, "The picture: .png, or .exr for linear float radiance as it is");
     command.options("Picture", shade_options(settings));
-    command.options("Scene", shade_film_options(settings));
+    command.options("Shading", shading_options(settings.shading));
+    command.options("Scene", film_options(settings.film));
     command.parse(argc, argv);
     require_picture_name(file);
 
     // Step 2: load.
     ShadeScene scene = load_shade_scene(scene_file);
     use_scene_look(settings.picture, scene.film.description, [&](const auto& name) { return command.given(name); });
+    if (const std::string note = note_of_albedo(scene); !note.empty()) command.say(note);
+    settle_light(settings, scene.film.description, command.given("shadows"));
+    check_shadow_backend(settings.film);
     command.also_read(scene.read_files());
     OutputSet outputs(folder_of(file));
 

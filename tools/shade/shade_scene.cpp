@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <set>
 
 #include "base/errors.h"
 #include "import/uv_mesh.h"
@@ -38,21 +39,25 @@ ShaderValue value_of(const SceneParameter& given, const SurfaceShader& shader) {
   return value;
 }
 
-/// Returns the number of a node's material; nodes with the same one share it.
-int material_of(const SceneItem& item, ShadeScene& read) {
+/// Returns what a node's surface is made of, of these shaders.
+ShadedMaterial material_of(const SceneItem& item, const SceneDescription& scene,
+                           const std::vector<SurfaceShader>& shaders) {
   ShadedMaterial material{item.surface.shader};
-  const auto shader = std::find_if(read.shaders.begin(), read.shaders.end(),
+  const auto shader = std::find_if(shaders.begin(), shaders.end(),
                                    [&](const SurfaceShader& known) { return known.name == material.shader; });
-  if (shader == read.shaders.end())
+  if (shader == shaders.end())
     throw BadInput(item.where,
                    "node '" + item.name + "' " +
                        (material.shader.empty() ? "without a shader" : "with the shader '" + material.shader + "'"),
-                   material.shader.empty()
-                       ? "'shader', the name of one of " + (read.film.description.shaders / "*.glsl").string()
-                       : "a file " + (read.film.description.shaders / (material.shader + ".glsl")).string(),
+                   material.shader.empty() ? "'shader', the name of one of " + (scene.shaders / "*.glsl").string()
+                                           : "a file " + (scene.shaders / (material.shader + ".glsl")).string(),
                    "name another shader, or write it");
   for (const SceneParameter& given : item.surface.parameters) material.values[given.name] = value_of(given, *shader);
-  std::vector<ShadedMaterial>& materials = read.scene.materials;
+  return material;
+}
+
+/// Returns the number of a material; nodes with the same one share it.
+int number_of(ShadedMaterial material, std::vector<ShadedMaterial>& materials) {
   const auto same = std::find_if(materials.begin(), materials.end(), [&](const ShadedMaterial& other) {
     return other.shader == material.shader && other.values == material.values;
   });
@@ -68,7 +73,7 @@ void add_nodes(ShadeScene& read) {
     if (item.is_composite()) continue;
     ShadedNode node;
     node.mesh = item.asset >= 0 ? item.asset : static_cast<int>(description.assets.size()) + item.mesh;
-    node.material = material_of(item, read);
+    node.material = number_of(material_of(item, description, read.shaders), read.scene.materials);
     node.casts_shadow = item.surface.casts_shadow;
     if (item.surface.is_mirror) read.scene.mirror = MirrorPlane{static_cast<int>(read.scene.nodes.size())};
     read.scene.nodes.push_back(node);
@@ -91,10 +96,26 @@ void load_meshes(ShadeScene& read) {
 
 }  // namespace
 
-MovingScene ShadeScene::moving() const {
+MovingScene ShadeScene::moving(const MovingSceneSettings& settings) const {
   std::vector<const TriangleMesh*> pointers;
   for (const TriangleMesh& mesh : meshes) pointers.push_back(&mesh);
-  return {film.description, film.asset_pointers(), {{}, 1}, pointers};
+  return {film.description, film.asset_pointers(), settings, pointers};
+}
+
+std::vector<SurfaceShader> ShadeScene::shaders_again() const {
+  std::vector<SurfaceShader> read = read_shaders(film.description.shaders);
+  for (const int item : items)
+    material_of(film.description.items[static_cast<std::size_t>(item)], film.description, read);
+  return read;
+}
+
+std::vector<fs::path> ShadeScene::shader_folders() const {
+  std::set<fs::path> folders = {film.description.shaders};
+  for (const SurfaceShader& shader : shaders)
+    for (const ShaderParameter& parameter : shader.parameters)
+      if (parameter.kind == ShaderParameter::Kind::texture)
+        folders.insert((shader.file.parent_path() / parameter.picture).lexically_normal().parent_path());
+  return {folders.begin(), folders.end()};
 }
 
 std::vector<fs::path> ShadeScene::read_files() const {
@@ -113,12 +134,23 @@ ShadeScene load_shade_scene(const fs::path& file) {
   read.shaders = read_shaders(read.film.description.shaders);
   add_nodes(read);
   load_meshes(read);
-  MovingScene moving = read.moving();
+  MovingScene moving = read.moving({.incident_samples = 1});
   const std::vector<Placement> placements = placements_now(read, moving);
   for (std::size_t k = 0; k < placements.size(); ++k) read.scene.nodes[k].placement = placements[k];
   read.scene.lights = moving.lights();
   read.scene.background = read.film.description.background.value_or(read.scene.background);
   return read;
+}
+
+std::string note_of_albedo(const ShadeScene& scene) {
+  for (const int number : scene.items) {
+    const SceneItem& item = scene.film.description.items[static_cast<std::size_t>(number)];
+    if (item.asset >= 0 && scene.film.assets[static_cast<std::size_t>(item.asset)].albedo.within_transfer)
+      return item.where + ": the transfer of node '" + item.name +
+             "' includes its albedo, so that light.diffuse is coloured; a shader that multiplies it by a colour has "
+             "both";
+  }
+  return "";
 }
 
 std::vector<Placement> placements_now(const ShadeScene& scene, MovingScene& moving) {

@@ -4,6 +4,7 @@
 #include "base/options.h"
 #include "render/film/film_settings.h"
 #include "render/render_settings.h"
+#include "runtime/scene/scene_description.h"
 #include "runtime/shading/shading_settings.h"
 
 namespace kiln {
@@ -20,8 +21,14 @@ struct ShadeSettings {
   }
 };
 
-/// Options of the picture and, apart, of the scene's time.
+/// Options of the picture. Those of the scene's time and shadows are film_options.
 OptionSet shade_options(ShadeSettings& settings);
-OptionSet shade_film_options(ShadeSettings& settings);
+
+/// Options of the shading alone, which a window has as well.
+OptionSet shading_options(ShadingSettings& settings);
+
+/// Settles what depends on others: without `shadows_given`, nodes shadow each other's light by transfer only where all
+/// light arrives by it; and how many points of a node have light of their own.
+void settle_light(ShadeSettings& settings, const SceneDescription& scene, bool shadows_given);
 
 }  // namespace kiln

@@ -4,6 +4,7 @@
 #include "base/json.h"
 #include "base/stopwatch.h"
 #include "lights/light_command.h"
+#include "shade/shade_settings.h"
 #include "view/scene_command.h"
 #include "view/state/scene_state.h"
 #include "view/viewer.h"
@@ -29,11 +30,12 @@ int main(int argc, char** argv) {
     // Leaves out options that the window decides: its GL device and its frames.
     command.options("Picture", render_options(setup.look).without({"frames", "gl-device"}));
     command.options("Window", viewer_options(setup));
-    FilmSettings film;
-    command.options("Scene", film_options(film).without({"fps", "strip"}));
+    SceneCommandSettings scene_settings;
+    command.options("Scene", scene_options(scene_settings));
+    command.options("Scene by shaders", shading_options(scene_settings.shading));
     command.footer("Keys:\n" + key_help_text() + "\nKeys of a scene:\n" + scene_key_help_text());
     command.parse(argc, argv);
-    if (is_scene_file(folder)) return view_scene_file(command, folder, script, setup, film);
+    if (is_scene_file(folder)) return view_scene_file(command, folder, script, setup, scene_settings);
 
     // Step 2: load, before a window is opened, so that bad input is reported without a display, too.
     setup.say = [&](const std::string& line) { command.say(line); };

@@ -4,31 +4,14 @@
 #include <algorithm>
 #include <fmt/format.h>
 
-#include "base/errors.h"
-#include "base/files.h"
-#include "base/interruption.h"
 #include "base/json.h"
-#include "base/outputs.h"
-#include "image/image_file.h"
-#include "view/state/readout.h"
 
 namespace kiln {
 
-namespace fs = std::filesystem;
-
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-constexpr double pause_seconds = 0.1;  // while nothing happens
 
 // Width beside a square that panels on both sides need; at 96 dots per inch.
 constexpr double room_for_both_panels = 440;
-
-std::string method_name(const FilmSettings& film) {
-  const std::string name(shadow_method_names[static_cast<std::size_t>(film.shadows)]);
-  return film.shadow_backend == ShadowBackend::gpu ? name + ", by maps" : name;
-}
 
 std::string samples_text(int samples) {
   if (samples == samples_at_vertices) return "every vertex";
@@ -37,88 +20,39 @@ std::string samples_text(int samples) {
 
 }  // namespace
 
-SceneViewer::SceneViewer(const SceneViewerSetup& setup, const Film& film)
-    : setup_(setup),
-      window_("kiln-view: " + setup.name, setup.look.width, setup.look.height, setup.threads),
-      scene_(film.description, film.asset_pointers(),
-             {shadow_settings_of(setup.film, setup.threads), film_samples_of(setup.look, setup.film, film.description),
-              shadow_engine_of(setup.film)}),
-      samples_(film_samples_of(setup.look, setup.film, film.description)),
-      assets_(scene_, setup.look, samples_),
-      duration_(duration_of(film.description)) {
-  home_.orbit = home_orbit(camera_settings_at(film_camera(scene_, setup.look), film.description, setup.film.time));
-  home_.time = setup.film.time;
+SceneViewer::SceneViewer(const SceneViewerSetup& setup)
+    : ViewerWindow({setup.name, setup.look.width, setup.look.height, setup.screenshots, setup.say, setup.threads}),
+      setup_(setup),
+      drawing_(setup.make_drawing()),
+      scene_(drawing_->moving()),
+      duration_(duration_of(scene_.description())) {
+  if (!drawing_->watched().empty()) watch(drawing_->watched());
+  home_.orbit = home_orbit(camera_settings_at(film_camera(scene_, setup.look), scene_.description(), setup.time));
+  home_.time = setup.time;
   home_.exposure_stops = setup.look.exposure_stops;
   state_ = home_;
   window_.listen({[this](char key) { press_key(key); },
                   [this](Drag what, double right, double down) { drag(what, right, down); },
-                  [this](double steps) {
-                    zoom_orbit(state_.orbit, steps);
-                    has_to_draw_ = true;
-                  },
-                  [this] { has_to_draw_ = true; }, [this](double right, double down) { hold(right, down); }});
+                  [this](double steps) { turn_wheel(steps); }, [this] { has_to_draw_ = true; },
+                  [this](double right, double down) { hold(right, down); }});
 }
 
-void SceneViewer::run() {
-  drawn_at_ = Clock::now();
-  while (!window_.is_closing() && !is_closing_) {
-    throw_if_interrupted();
-    window_.wait(has_to_draw_ || state_.plays ? 0 : pause_seconds);
-    const auto now = Clock::now();
-    if (state_.plays) {
-      state_.time = looped(state_.time + std::chrono::duration<double>(now - drawn_at_).count(), duration_);
-      has_to_draw_ = true;
-    }
-    drawn_at_ = now;
-    if (has_to_draw_) draw();
-  }
+void SceneViewer::advance(double seconds) {
+  if (!state_.plays) return;
+  state_.time = looped(state_.time + seconds, duration_);
+  has_to_draw_ = true;
 }
 
-void SceneViewer::run(const std::vector<ScriptStep>& script) {
-  is_scripted_ = true;
-  draw();
-  for (const ScriptStep& step : script) {
-    throw_if_interrupted();
-    window_.wait(0);
-    if (window_.is_closing() || is_closing_) return;
-    do_step(step);
-  }
+void SceneViewer::turn_wheel(double steps) {
+  zoom_orbit(state_.orbit, steps);
+  has_to_draw_ = true;
 }
 
-void SceneViewer::do_step(const ScriptStep& step) {
-  using Kind = ScriptStep::Kind;
-  switch (step.kind) {
-    case Kind::key:
-      press_key(step.key);
-      break;
-    case Kind::drag:
-      state_.held = -1;
-      drag(step.what, step.x, step.y);
-      break;
-    case Kind::move:
-      hold(step.from_x, step.from_y);
-      drag(Drag::orbit, step.x, step.y);
-      break;
-    case Kind::wheel:
-      zoom_orbit(state_.orbit, step.x);
-      break;
-    case Kind::resize:
-      window_.resize_and_wait(static_cast<int>(step.x), static_cast<int>(step.y));
-      break;
-    case Kind::frames:
-      for (int k = 0; k < static_cast<int>(step.x); ++k) {
-        if (state_.plays) state_.time = looped(state_.time + scene_frame_seconds, duration_);
-        draw();
-      }
-      return;
-    case Kind::screenshot:
-    case Kind::window:
-      write_picture_file(step.file, step.kind == Kind::window);
-      return;
-    case Kind::reload:
-      break;  // no word of a scene's scripts
-  }
-  if (!is_closing_) draw();
+void SceneViewer::drag_step(const ScriptStep& step) {
+  const bool moves = step.kind == ScriptStep::Kind::move;
+  state_.held = -1;
+  if (moves) hold(step.from_x, step.from_y);
+  drag(moves ? Drag::orbit : step.what, step.x, step.y);
 }
 
 void SceneViewer::press_key(char key) {
@@ -150,60 +84,25 @@ void SceneViewer::drag(Drag what, double right, double down) {
   has_to_draw_ = true;
 }
 
-void SceneViewer::take_screenshot() {
-  fs::path file;
-  int number = 1;
-  do file = fs::path(setup_.screenshots) / fmt::format("{}_{:03}.png", setup_.name, number++);
-  while (fs::exists(file));
-  try {
-    write_picture_file(file, false);
-    message_ = "wrote " + fs::absolute(file).lexically_normal().string();
-  } catch (const BadInput& error) {
-    if (is_scripted_) throw;
-    message_ = error.what();
-  }
-  setup_.say(message_);
-}
-
-void SceneViewer::write_picture_file(const fs::path& file, bool with_panels) {
-  if (has_to_draw_) draw();
-  OutputSet outputs(folder_of(file));
-  if (with_panels) screen_.show(panels(), window_.content_scale());
-  write_png(outputs.add(file.filename().string()), with_panels ? screen_.window() : screen_.picture());
-  outputs.commit();
-  screenshots_.push_back(file.string());
-}
-
 Camera SceneViewer::camera() {
   const Extent size = window_.framebuffer();
   return camera_of(state_.orbit, shape_now(scene_), size.width, size.height);
 }
 
-void SceneViewer::draw() {
-  const Extent size = window_.framebuffer();
-  has_to_draw_ = false;
-  if (size.width == 0 || size.height == 0) return;
-  if (!canvas_ || canvas_->width() != size.width || canvas_->height() != size.height) {
-    canvas_.reset();  // first, so that both need not exist at once
-    canvas_ = std::make_unique<Canvas>(size.width, size.height, setup_.look.supersample);
-    clock_.restart();
-  }
+void SceneViewer::draw_picture(const Extent& size) {
+  fit_canvas(size, drawing_->supersample());
   clock_.begin();
   scene_.set_time(state_.time);
   light_clock_.begin();
-  const std::vector<SceneAsset> drawn = assets_.now(look_of(setup_.look));
+  drawing_->light();
   light_clock_.end();
-  const Camera from = camera();
-  draw_scene(drawn, from.clip_from_object().cast<double>(), from.position.cast<double>(), canvas_->picture(),
-             setup_.look.shading == Shading::deferred ? &canvas_->appearance() : nullptr);
+  drawing_->draw(camera(), *canvas_);
   Resolve how;
   how.picture = picture_of(setup_.look);
   how.picture.exposure_stops = state_.exposure_stops;
   screen_.resolve(*canvas_, how);
   glFinish();
   clock_.end();
-  screen_.show(panels(), window_.content_scale());
-  window_.swap(!is_scripted_);
 }
 
 std::vector<PlacedPanel> SceneViewer::panels() {
@@ -213,14 +112,13 @@ std::vector<PlacedPanel> SceneViewer::panels() {
   const bool is_narrow = window.width - window.height < room_for_both_panels * window_.content_scale();
   if (state_.readout && !(state_.help && is_narrow)) {
     const auto nodes = std::count_if(scene_.description().items.begin(), scene_.description().items.end(),
-                                     [](const SceneItem& item) { return item.asset >= 0; });
-    panels.push_back({scene_readout(state_, {setup_.name, duration_, static_cast<int>(nodes), method_name(setup_.film),
-                                             samples_text(samples_), clock_.steady_milliseconds(),
+                                     [](const SceneItem& item) { return !item.is_composite(); });
+    panels.push_back({scene_readout(state_, {setup_.name, duration_, static_cast<int>(nodes), drawing_->shadows(),
+                                             samples_text(drawing_->incident_samples()), clock_.steady_milliseconds(),
                                              light_clock_.steady_milliseconds()}),
                       Corner::upper_left});
   }
   if (state_.help) panels.push_back({scene_help_panel(), Corner::upper_right});
-  if (!message_.empty()) panels.push_back({message_panel("", message_), Corner::lower_left});
   return panels;
 }
 
@@ -233,7 +131,7 @@ Json SceneViewer::metrics() const {
           {"frames", clock_.frames()},
           {"frame_milliseconds", clock_.mean_milliseconds()},
           {"light_milliseconds", light_clock_.mean_milliseconds()},
-          {"shadows", shadow_record(setup_.film, scene_.shadow_engine())},
+          {"shadows", drawing_->shadow_record()},
           {"screenshots", screenshots_}};
 }
 

@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <chrono>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "render/film/film.h"
-#include "view/draw/canvas.h"
-#include "view/draw/screen.h"
-#include "view/frame_clock.h"
+#include "render/render_settings.h"
+#include "view/draw/scene_drawing.h"
 #include "view/state/scene_state.h"
-#include "view/state/script.h"
-#include "view/window/window.h"
+#include "view/viewer_window.h"
 
 namespace kiln {
 
@@ -22,53 +17,42 @@ namespace kiln {
 struct SceneViewerSetup {
   std::string name;  ///< title of the window, and of screenshots
   RenderSettings look;
-  FilmSettings film;
-  std::string screenshots = ".";                ///< folder for screenshots
-  std::function<void(const std::string&)> say;  ///< called with lines for the terminal
-  int threads = 0;                              ///< 0: all
+  double time = 0;                                              ///< seconds
+  std::string screenshots = ".";                                ///< folder for screenshots
+  std::function<void(const std::string&)> say;                  ///< called with lines for the terminal
+  int threads = 0;                                              ///< 0: all
+  std::function<std::unique_ptr<SceneDrawing>()> make_drawing;  ///< called once there is a GL context
 };
 
-/// A window in which a scene plays.
-class SceneViewer {
+/// A window in which a scene plays; in scripts by a thirtieth of a second for each frame that they draw.
+class SceneViewer : public ViewerWindow {
  public:
-  /// Opens the window; `film` must live on. Throws MachineLacks if that is impossible, and as FilmAssets does.
-  SceneViewer(const SceneViewerSetup& setup, const Film& film);
-
-  /// Runs until the person closes the window.
-  void run();
-
-  /// Runs a script step by step, then closes. A scene that plays goes on by a thirtieth of a second for each frame that
-  /// a script draws.
-  void run(const std::vector<ScriptStep>& script);
+  /// Opens the window. Throws MachineLacks if that is impossible, and as make_drawing does.
+  explicit SceneViewer(const SceneViewerSetup& setup);
 
   /// Reports what was drawn by what, and how fast.
   Json metrics() const;
 
  private:
-  void press_key(char key);
+  void press_key(char key) override;
+  void turn_wheel(double steps) override;
+  void drag_step(const ScriptStep& step) override;
+  void draw_picture(const Extent& size) override;
+  std::vector<PlacedPanel> panels() override;
+  void advance(double seconds) override;
+  bool is_playing() const override { return state_.plays; }
+  void reload() override { drawing_->reload(); }
+  const char* kept_heading() const override { return "Not read again; these are the shaders as they were"; }
   void hold(double right, double down);
   void drag(Drag what, double right, double down);
-  void do_step(const ScriptStep& step);
-  void take_screenshot();
-  void write_picture_file(const std::filesystem::path& file, bool with_panels);
-  void draw();
-  std::vector<PlacedPanel> panels();
   Camera camera();
 
   SceneViewerSetup setup_;
-  Window window_;
-  MovingScene scene_;
-  int samples_;
-  FilmAssets assets_;
-  Screen screen_;
+  std::unique_ptr<SceneDrawing> drawing_;
+  MovingScene& scene_;
   SceneState home_, state_;
   double duration_;
-  std::unique_ptr<Canvas> canvas_;
-  FrameClock clock_, light_clock_;
-  bool has_to_draw_ = true, is_closing_ = false, is_scripted_ = false;
-  std::string message_;
-  std::chrono::steady_clock::time_point drawn_at_;
-  std::vector<std::string> screenshots_;
+  FrameClock light_clock_;
 };
 
 }  // namespace kiln

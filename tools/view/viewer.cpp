@@ -9,11 +9,8 @@
 #include "base/errors.h"
 #include "base/extent.h"
 #include "base/files.h"
-#include "base/interruption.h"
 #include "base/json.h"
-#include "base/outputs.h"
 #include "gpu/program.h"
-#include "image/image_file.h"
 #include "view/state/readout.h"
 
 namespace kiln {
@@ -22,12 +19,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-constexpr auto message_time = std::chrono::seconds(6);
-constexpr auto watch_interval = std::chrono::milliseconds(300);
-constexpr double idle_seconds = 0.1;
-constexpr auto reload_patience = std::chrono::seconds(300);
 constexpr int frames_to_measure = 8;
 // Width left for panels on both sides of an asset, which is about as wide as the window is high; at 96 dots per inch.
 constexpr double room_for_panel_pixels = 440;
@@ -72,81 +63,30 @@ ViewState first_state(const ViewScene& scene, const LightSettings& lights, const
 }
 
 Viewer::Viewer(const ViewerSetup& setup, ViewScene scene, int software_threads)
-    : setup_(setup),
-      window_("kiln-view: " + setup.folders.name, setup.look.width, setup.look.height, software_threads),
+    : ViewerWindow(
+          {setup.folders.name, setup.look.width, setup.look.height, setup.screenshots, setup.say, software_threads}),
+      setup_(setup),
       home_(first_state(scene, setup.lights, setup.look)),
       state_(home_),
-      asset_(std::make_unique<AssetView>(std::move(scene), setup.look, state_)),
-      watch_(watched(setup)) {
+      asset_(std::make_unique<AssetView>(std::move(scene), setup.look, state_)) {
+  watch(watched(setup));
   if (!setup.shader.empty()) asset_->set_shader(setup.shader);
   window_.listen({[this](char key) { press_key(key); },
-                  [this](Drag what, double right, double down) {
-                    const Extent size = window_.framebuffer();
-                    drag(state_, what, right, down, asset_->shape(), std::max(1, size.width), std::max(1, size.height));
-                    has_to_draw_ = true;
-                  },
-                  [this](double steps) {
-                    zoom_orbit(state_.orbit, steps);
-                    has_to_draw_ = true;
-                  },
-                  [this] { has_to_draw_ = true; }});
+                  [this](Drag what, double right, double down) { drag_by(what, right, down); },
+                  [this](double steps) { turn_wheel(steps); }, [this] { has_to_draw_ = true; }});
 }
 
-void Viewer::run() {
-  while (!window_.is_closing() && !is_closing_) {
-    throw_if_interrupted();
-    window_.wait(has_to_draw_ ? 0 : idle_seconds);
-    reload_if_changed();
-    if (!message_.empty() && Clock::now() > message_until_) {
-      message_.clear();
-      has_to_draw_ = true;
-    }
-    if (has_to_draw_) draw();
-  }
+void Viewer::drag_by(Drag what, double right, double down) {
+  const Extent size = window_.framebuffer();
+  drag(state_, what, right, down, asset_->shape(), std::max(1, size.width), std::max(1, size.height));
+  has_to_draw_ = true;
 }
 
-void Viewer::run(const std::vector<ScriptStep>& script) {
-  is_scripted_ = true;
-  draw();
-  for (const ScriptStep& step : script) {
-    throw_if_interrupted();
-    window_.wait(0);
-    if (window_.is_closing() || is_closing_) return;
-    do_step(step);
-  }
-}
+void Viewer::drag_step(const ScriptStep& step) { drag_by(step.what, step.x, step.y); }
 
-void Viewer::do_step(const ScriptStep& step) {
-  using Kind = ScriptStep::Kind;
-  switch (step.kind) {
-    case Kind::key:
-      press_key(step.key);
-      break;
-    case Kind::drag: {
-      const Extent size = window_.framebuffer();
-      drag(state_, step.what, step.x, step.y, asset_->shape(), size.width, size.height);
-      break;
-    }
-    case Kind::wheel:
-      zoom_orbit(state_.orbit, step.x);
-      break;
-    case Kind::resize:
-      window_.resize_and_wait(static_cast<int>(step.x), static_cast<int>(step.y));
-      break;
-    case Kind::frames:
-      for (int k = 1; k < static_cast<int>(step.x); ++k) draw();
-      break;
-    case Kind::screenshot:
-    case Kind::window:
-      write_picture_file(step.file, step.kind == Kind::window);
-      return;
-    case Kind::move:
-      break;  // no word of an asset's scripts
-    case Kind::reload:
-      wait_for_reload();
-      break;
-  }
-  if (!is_closing_) draw();
+void Viewer::turn_wheel(double steps) {
+  zoom_orbit(state_.orbit, steps);
+  has_to_draw_ = true;
 }
 
 void Viewer::press_key(char key) {
@@ -158,106 +98,42 @@ void Viewer::press_key(char key) {
   if (result.wish == Wish::screenshot) take_screenshot();
 }
 
-void Viewer::note(const std::string& message) {
-  message_ = message;
-  message_until_ = Clock::now() + message_time;
-  has_to_draw_ = true;
-}
-
-void Viewer::take_screenshot() {
-  fs::path file;
-  int number = 1;
-  do file = fs::path(setup_.screenshots) / fmt::format("{}_{:03}.png", setup_.folders.name, number++);
-  while (fs::exists(file));
-  try {
-    write_picture_file(file, false);
-    note("wrote " + fs::absolute(file).lexically_normal().string());
-  } catch (const BadInput& error) {
-    if (is_scripted_) throw;
-    note(error.what());
-  }
-  setup_.say(message_);
-}
-
-void Viewer::write_picture_file(const fs::path& file, bool with_panels) {
-  if (has_to_draw_) draw();
-  OutputSet outputs(folder_of(file));
-  if (with_panels) screen_.show(panels(), window_.content_scale());
-  write_png(outputs.add(file.filename().string()), with_panels ? screen_.window() : screen_.picture());
-  outputs.commit();
-  screenshots_.push_back(file.string());
-}
-
-bool Viewer::reload_if_changed() {
-  if (Clock::now() - looked_at_files_ < watch_interval) return false;
-  looked_at_files_ = Clock::now();
-  if (!watch_.changed()) return false;
-  try {
-    ViewScene scene = load_view_scene(setup_.folders, setup_.lights);
-    const bool had_all_bands = state_.bands == asset_->limits().bands;
-    auto asset = std::make_unique<AssetView>(std::move(scene), setup_.look, state_);
-    if (!setup_.shader.empty()) asset->set_shader(setup_.shader);
-    asset_ = std::move(asset);
-    home_.bands = asset_->limits().bands;
-    if (had_all_bands) state_.bands = home_.bands;
-    limit(state_, asset_->limits());
-    limit(home_, asset_->limits());
-    fault_.clear();
-    note("read again, as the files changed");
-  } catch (const BadInput& error) {
-    fault_ = error.what();
-  } catch (const MachineLacks& error) {
-    fault_ = error.what();
-  }
-  setup_.say(fault_.empty() ? message_ : "not read again: " + fault_);
-  clock_.restart();
-  has_to_draw_ = true;
-  return true;
-}
-
-void Viewer::wait_for_reload() {
-  const auto begun = Clock::now();
-  while (!reload_if_changed()) {
-    throw_if_interrupted();
-    if (Clock::now() - begun > reload_patience)
-      throw BadInput(setup_.folders.name, "did not change while the script waited", "changed files",
-                     "leave out reload, or change them");
-    window_.wait(idle_seconds);
-  }
+void Viewer::reload() {
+  ViewScene scene = load_view_scene(setup_.folders, setup_.lights);
+  const bool had_all_bands = state_.bands == asset_->limits().bands;
+  auto asset = std::make_unique<AssetView>(std::move(scene), setup_.look, state_);
+  if (!setup_.shader.empty()) asset->set_shader(setup_.shader);
+  asset_ = std::move(asset);
+  home_.bands = asset_->limits().bands;
+  if (had_all_bands) state_.bands = home_.bands;
+  limit(state_, asset_->limits());
+  limit(home_, asset_->limits());
 }
 
 Camera Viewer::camera(int width, int height) const { return camera_of(state_.orbit, asset_->shape(), width, height); }
 
-void Viewer::draw() {
-  const Extent size = window_.framebuffer();
-  has_to_draw_ = false;
-  if (size.width == 0 || size.height == 0) return;
+void Viewer::draw_picture(const Extent& size) {
   try {
-    draw_state(size.width, size.height);
+    draw_state(size);
   } catch (const BadInput& error) {  // a file that is read only when needed is damaged
     if (state_.technique == home_.technique && state_.show == Show::picture && !state_.mesh) throw;
     state_.technique = home_.technique;
     state_.show = Show::picture;
     state_.mesh = false;
     note(error.what());
-    draw_state(size.width, size.height);
+    draw_state(size);
+    has_to_draw_ = false;
   }
-  screen_.show(panels(), window_.content_scale());
-  window_.swap(!is_scripted_);
   // Draws a few more frames, so that there is a time to show.
   if (!is_scripted_ && clock_.measured() < frames_to_measure) has_to_draw_ = true;
 }
 
-void Viewer::draw_state(int width, int height) {
-  if (!canvas_ || canvas_->width() != width || canvas_->height() != height) {
-    canvas_.reset();  // first, so that both need not exist at once
-    canvas_ = std::make_unique<Canvas>(width, height, setup_.look.supersample);
-    clock_.restart();
-  }
+void Viewer::draw_state(const Extent& size) {
+  fit_canvas(size, setup_.look.supersample);
   if (!same_kind(state_, drawn_)) clock_.restart();
   drawn_ = state_;
   clock_.begin();
-  asset_->draw(state_, camera(width, height), *canvas_);
+  asset_->draw(state_, camera(size.width, size.height), *canvas_);
   Resolve how;
   how.show = state_.show;
   how.edges = state_.mesh;
@@ -295,10 +171,6 @@ std::vector<PlacedPanel> Viewer::panels() {
     panels.push_back({std::move(panel), Corner::upper_left});
   }
   if (state_.help) panels.push_back({help_panel(), Corner::upper_right});
-  if (!fault_.empty())
-    panels.push_back({message_panel("Not read again; this is the asset as it was", fault_), Corner::lower_left});
-  else if (!message_.empty())
-    panels.push_back({message_panel("", message_), Corner::lower_left});
   return panels;
 }
 

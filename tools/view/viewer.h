@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "base/options.h"
 #include "lights/light_settings.h"
 #include "render/render_settings.h"
 #include "view/draw/asset_view.h"
-#include "view/draw/screen.h"
-#include "view/files/file_watch.h"
-#include "view/frame_clock.h"
 #include "view/state/keys.h"
-#include "view/state/script.h"
-#include "view/window/window.h"
+#include "view/viewer_window.h"
 
 namespace kiln {
 
@@ -39,48 +33,29 @@ OptionSet viewer_options(ViewerSetup& setup);
 ViewState first_state(const ViewScene& scene, const LightSettings& lights, const RenderSettings& look);
 
 /// A window with an asset in it.
-class Viewer {
+class Viewer : public ViewerWindow {
  public:
   /// Opens the window. Throws MachineLacks if that is impossible.
   Viewer(const ViewerSetup& setup, ViewScene scene, int software_threads);
-
-  /// Runs until the person closes the window.
-  void run();
-
-  /// Runs a script step by step, then closes. Throws BadInput if a picture cannot be written.
-  void run(const std::vector<ScriptStep>& script);
 
   /// Reports what was drawn by what, and how fast.
   Json metrics() const;
 
  private:
-  void press_key(char key);
-  void take_screenshot();
-  void write_picture_file(const std::filesystem::path& file, bool with_panels);
-  void do_step(const ScriptStep& step);
-  bool reload_if_changed();
-  void wait_for_reload();
-  void draw();
-  void draw_state(int width, int height);
-  void note(const std::string& message);
-  std::vector<PlacedPanel> panels();
+  void press_key(char key) override;
+  void turn_wheel(double steps) override;
+  void drag_step(const ScriptStep& step) override;
+  void draw_picture(const Extent& size) override;
+  std::vector<PlacedPanel> panels() override;
+  void reload() override;
+  const char* kept_heading() const override { return "Not read again; this is the asset as it was"; }
+  void drag_by(Drag what, double right, double down);
+  void draw_state(const Extent& size);
   Camera camera(int width, int height) const;
 
   ViewerSetup setup_;
-  Window window_;
-  Screen screen_;
   ViewState home_, state_, drawn_;
   std::unique_ptr<AssetView> asset_;
-  std::unique_ptr<Canvas> canvas_;
-  FileWatch watch_;
-  FrameClock clock_;
-  bool has_to_draw_ = true;
-  bool is_closing_ = false;
-  bool is_scripted_ = false;
-  std::string message_;  // on the screen until message_until_
-  std::string fault_;    // of the last reload, until one succeeds
-  std::chrono::steady_clock::time_point message_until_, looked_at_files_;
-  std::vector<std::string> screenshots_;
 };
 
 }  // namespace kiln

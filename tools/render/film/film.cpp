@@ -85,7 +85,8 @@ std::string note_of_shaders(const SceneDescription& scene) {
   };
   const auto first = std::find_if(scene.items.begin(), scene.items.end(), is_told);
   if (first == scene.items.end()) return "";
-  return first->where + ": shaders, 'casts-shadow' and 'mirror' are for kiln-shade alone; drawn by transfer and albedo";
+  return first->where +
+         ": shaders, 'casts-shadow' and 'mirror' are for kiln-shade and kiln-view; drawn by transfer and albedo";
 }
 
 FilmAssets::FilmAssets(MovingScene& scene, const RenderSettings& settings, int incident_samples)

@@ -6,9 +6,8 @@ namespace kiln {
 namespace {
 
 ShadedScene scene_of(const PrtAsset& asset, const std::string& shader) {
-  const bool has_planes = !asset.is_per_vertex() && !(asset.clusters && asset.clusters->count > 1);
   ShadedScene scene;
-  scene.meshes = {{&asset.mesh, has_planes ? &asset : nullptr}};
+  scene.meshes = {{&asset.mesh, &asset, has_shadable_planes(asset)}};
   scene.materials = {{shader}};
   scene.nodes = {{}};
   return scene;

@@ -116,11 +116,12 @@ char scene_key_named(std::string_view name) {
   return name.size() == 1 && character_keys.find(name) != std::string_view::npos ? name.front() : '\0';
 }
 
-ScriptWords scene_script_words() {
-  return {scene_key_named, true,
+ScriptWords scene_script_words(bool can_reload) {
+  return {scene_key_named, true, can_reload,
           "key KEY... (also space, left, right, up, down), drag left|middle RIGHT DOWN (pixels), move X Y RIGHT DOWN "
           "(from a pixel, counted from the upper left), wheel STEPS, resize WIDTH HEIGHT, frames COUNT, screenshot "
-          "FILE.png, window FILE.png (panels included)"};
+          "FILE.png, window FILE.png (panels included)" +
+              std::string(can_reload ? ", reload (waits for it)" : "")};
 }
 
 int item_at(MovingScene& scene, const Camera& camera, double right, double down, int width, int height) {
@@ -131,11 +132,11 @@ int item_at(MovingScene& scene, const Camera& camera, double right, double down,
   double nearest = std::numeric_limits<double>::infinity();
   int found = -1;
   for (int item = 0; item < scene.item_count(); ++item) {
-    if (scene.item(item).asset < 0) continue;
+    if (scene.mesh_of(item) == nullptr) continue;
     const Placement& pose = scene.pose(item);
     const Eigen::Vector3d from = pose.to_object(camera.position.cast<double>()),
                           direction = pose.rotation.transpose() * along / pose.scale;  // distances stay the scene's
-    const TriangleMesh& mesh = scene.asset_of(item).mesh;
+    const TriangleMesh& mesh = *scene.mesh_of(item);
     for (const Triangle& triangle : mesh.triangles) {
       const auto corner = [&](std::size_t k) { return mesh.positions[triangle[k]].cast<double>().eval(); };
       const double distance = distance_to(from, direction, {corner(0), corner(1), corner(2)});
@@ -150,8 +151,7 @@ int item_at(MovingScene& scene, const Camera& camera, double right, double down,
 
 void drag_item(MovingScene& scene, int item, const Camera& camera, double right_pixels, double down_pixels,
                int height) {
-  const Eigen::Vector3d middle =
-      scene.pose(item).to_scene(bounding_box(scene.asset_of(item).mesh).centre().cast<double>());
+  const Eigen::Vector3d middle = scene.pose(item).to_scene(bounding_box(*scene.mesh_of(item)).centre().cast<double>());
   const double depth = (middle - camera.position.cast<double>()).dot(camera.forward.cast<double>());
   const double units_per_pixel = 2.0 * camera.half_height * depth / height;
   scene.move(item,

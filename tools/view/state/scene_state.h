@@ -40,8 +40,8 @@ std::string scene_key_help_text();
 /// none of that name.
 char scene_key_named(std::string_view name);
 
-/// Words of scripts for a scene.
-ScriptWords scene_script_words();
+/// Words of scripts for a scene; `can_reload`: one whose files are read again when they change.
+ScriptWords scene_script_words(bool can_reload = false);
 
 /// Brings a time that plays on past the end back to the beginning.
 double looped(double time, double duration);

@@ -72,11 +72,11 @@ bool read_step(const Words& words, const ScriptWords& known, std::vector<ScriptS
     step.kind = words[0] == "window" ? ScriptStep::Kind::window : ScriptStep::Kind::screenshot;
     good = words.size() == 2 && words[1].ends_with(".png");
     step.file = words.back();
-  } else if (words[0] == "move" && words.size() == 5 && known.is_scene) {
+  } else if (words[0] == "move" && words.size() == 5 && known.moves) {
     step.kind = ScriptStep::Kind::move;
     good = read_numbers({words[0], words[1], words[2]}, 1, 0, 8192, step.from_x, &step.from_y) &&
            read_numbers({words[0], words[3], words[4]}, 1, -10000, 10000, step.x, &step.y);
-  } else if (words[0] == "reload" && !known.is_scene) {
+  } else if (words[0] == "reload" && known.reloads) {
     step.kind = ScriptStep::Kind::reload;
     good = words.size() == 1;
   }
@@ -86,7 +86,7 @@ bool read_step(const Words& words, const ScriptWords& known, std::vector<ScriptS
 
 }  // namespace
 
-ScriptWords asset_script_words() { return {key_named, false, script_grammar}; }
+ScriptWords asset_script_words() { return {key_named, false, true, script_grammar}; }
 
 std::vector<ScriptStep> read_script(const fs::path& file, const ScriptWords& known) {
   std::vector<ScriptStep> steps;

@@ -38,7 +38,8 @@ extern const char* const script_grammar;
 /// What scripts for one kind of window may say.
 struct ScriptWords {
   std::function<char(std::string_view)> key_named;
-  bool is_scene = false;  ///< `move` in place of `reload`
+  bool moves = false;    ///< has `move`
+  bool reloads = false;  ///< has `reload`
   std::string grammar;
 };
 
