@@ -189,7 +189,7 @@ UploadedNodeLight upload_node_light(const ShadedScene& scene) {
     if (asset == nullptr) continue;
     const Eigen::Vector3f middle = bounding_box(asset->mesh).centre();
     const AssetLight light = light_asset(rest, asset->bands, node.placement, std::span(&middle, 1));
-    weights.push_back(cluster_weights(*asset, light.samples.front(), {1, 1, 1}).front());
+    weights.push_back(cluster_weights(*asset, light.samples.front(), rgb_readers(*asset, {1, 1, 1})).front());
     texels += static_cast<int>(weight_texels(weights.back()));
   }
   if (!weights.empty()) uploaded.texture = upload_weights(weights).texture;

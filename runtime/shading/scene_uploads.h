@@ -50,7 +50,7 @@ struct UploadedPlanes {
 /// Uploads planes. Throws WrongUsage for an asset without planes or with several clusters, MachineLacks.
 UploadedPlanes upload_all_planes(const std::vector<ShadedMesh>& meshes);
 
-/// Light of all nodes with planes, after those with a direction are left out: a texture as of upload_light.
+/// Light of all nodes with planes, after those with a direction are left out: a texture as of upload_weights.
 struct UploadedNodeLight {
   GlTexture texture;
   std::vector<int> first_texel;  ///< of each node
