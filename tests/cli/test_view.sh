@@ -92,9 +92,13 @@ window lamps.png
 EOF
 display "$programs/kiln-view" hare --light "$(printf "$sun" 19:00+02:00)" "${lamps[@]}" --lamp F11 --lamp P2000 \
   --width 320 --height 240 --script script || fail "the script of lamps ended with status $?"
-lit() { "$programs/kiln-render" hare/prt "${lamps[@]}" --gl-device software --quiet --width 320 --height 240 "$@"; }
-lit --light "$(printf "$sun" 17:00Z)" --lamp F11 -o r_l0.png
-lit --light "$(printf "$sun" 18:00Z)" --lamp P2000 -o r_l1.png
+# The first light is white: the sun.
+lit() {
+  "$programs/kiln-render" hare/prt --light "$(printf "$sun" "$1")" "${lamps[@]}" --lamp "$2" -o "$3" \
+    --gl-device software --quiet --width 320 --height 240
+}
+lit 17:00Z F11 r_l0.png
+lit 18:00Z P2000 r_l1.png
 for k in 0 1; do same l$k.png r_l$k.png 1; done
 differ l1.png l0.png 3
 
