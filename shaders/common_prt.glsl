@@ -19,6 +19,8 @@
 // prt_light is the light, a small texture: for each incident-light sample, for each cluster, the constant (rgb), then
 // three texels for each layer: the scales of its four planes for red, for green and for blue.
 //
+// PRT_FUNCTIONS: number of functions that light is a sum of, 1 to 8, in place of red, green and blue; 3 unless defined.
+// What leaves is then a weight for each, of type PRT_LIGHT, before any albedo; constants take a texel for every four.
 // PRT_SAMPLES: number of incident-light samples ([Chapter 2010], 4.3.3 to 4.3.6); 1 unless defined.
 // PRT_PLACES: defined only if the samples of a point are not the first of prt_light; prt_places then says which.
 // PRT_CLUSTERED: defined only if there are several clusters.
@@ -26,6 +28,24 @@
 // pixel. Each has one cluster.
 #ifndef PRT_SAMPLES
 #define PRT_SAMPLES 1
+#endif
+
+#ifndef PRT_FUNCTIONS
+#define PRT_FUNCTIONS 3
+#endif
+
+#if PRT_FUNCTIONS == 1
+#define PRT_LIGHT float
+#elif PRT_FUNCTIONS == 2
+#define PRT_LIGHT vec2
+#elif PRT_FUNCTIONS == 3
+#define PRT_LIGHT vec3
+#elif PRT_FUNCTIONS == 4
+#define PRT_LIGHT vec4
+#elif PRT_FUNCTIONS <= 6
+#define PRT_LIGHT mat2x3
+#else
+#define PRT_LIGHT mat2x4
 #endif
 
 layout(binding = 0) uniform sampler2DArray prt_planes;
@@ -49,36 +69,72 @@ vec4 prt_light_at(int place) {
 int prt_places[PRT_SAMPLES];
 #endif
 
+const int prt_constants = (PRT_FUNCTIONS + 3) / 4;  // texels of constants
+
+// Reads the constants at a place of prt_light.
+PRT_LIGHT prt_constant_at(int place) {
+  vec4 first = prt_light_at(place);
+#if PRT_FUNCTIONS == 1
+  return first.x;
+#elif PRT_FUNCTIONS == 2
+  return first.xy;
+#elif PRT_FUNCTIONS == 3
+  return first.rgb;
+#elif PRT_FUNCTIONS == 4
+  return first;
+#else
+  vec4 second = prt_light_at(place + 1);
+#if PRT_FUNCTIONS <= 6
+  return mat2x3(first.xyz, vec3(first.w, second.xy));
+#else
+  return mat2x4(first, second);
+#endif
+#endif
+}
+
+// Multiplies the scales from a place of prt_light by the stored values of four planes.
+PRT_LIGHT prt_scaled_at(int place, vec4 stored) {
+#if PRT_FUNCTIONS == 1
+  return dot(prt_light_at(place), stored);
+#elif PRT_FUNCTIONS <= 4
+  PRT_LIGHT light;
+  for (int k = 0; k < PRT_FUNCTIONS; ++k) light[k] = dot(prt_light_at(place + k), stored);
+  return light;
+#else
+  const int column = PRT_FUNCTIONS <= 6 ? 3 : 4;
+  PRT_LIGHT light = PRT_LIGHT(0.0);
+  for (int k = 0; k < PRT_FUNCTIONS; ++k) light[k / column][k % column] = dot(prt_light_at(place + k), stored);
+  return light;
+#endif
+}
+
 // Finds where the light of a sample and a cluster begins.
 int prt_light_begin(int light_sample, int cluster) {
 #ifdef PRT_PLACES
   light_sample = prt_places[light_sample];
 #endif
-  return prt_first_light + (light_sample * prt_clusters + cluster) * (1 + 3 * prt_layers);
+  return prt_first_light + (light_sample * prt_clusters + cluster) * (prt_constants + PRT_FUNCTIONS * prt_layers);
 }
 
 // Mixes the constants of the samples; their `contributions` add up to 1.
-vec3 prt_constant(int cluster, float contributions[PRT_SAMPLES]) {
-  vec3 radiance = vec3(0.0);
-  for (int k = 0; k < PRT_SAMPLES; ++k)
-    radiance += contributions[k] * prt_light_at(prt_light_begin(k, cluster)).rgb;
-  return radiance;
+PRT_LIGHT prt_constant(int cluster, float contributions[PRT_SAMPLES]) {
+  PRT_LIGHT light = contributions[0] * prt_constant_at(prt_light_begin(0, cluster));
+  for (int k = 1; k < PRT_SAMPLES; ++k) light += contributions[k] * prt_constant_at(prt_light_begin(k, cluster));
+  return light;
 }
 
 // Computes what the four stored values of a layer add.
-vec3 prt_decoded(int cluster, int layer, vec4 stored, float contributions[PRT_SAMPLES]) {
-  vec3 radiance = vec3(0.0);
-  for (int k = 0; k < PRT_SAMPLES; ++k) {
-    int at = prt_light_begin(k, cluster) + 1 + 3 * layer;
-    radiance += contributions[k] * vec3(dot(prt_light_at(at), stored), dot(prt_light_at(at + 1), stored),
-                                        dot(prt_light_at(at + 2), stored));
-  }
-  return radiance;
+PRT_LIGHT prt_decoded(int cluster, int layer, vec4 stored, float contributions[PRT_SAMPLES]) {
+  int first = prt_constants + PRT_FUNCTIONS * layer;
+  PRT_LIGHT light = contributions[0] * prt_scaled_at(prt_light_begin(0, cluster) + first, stored);
+  for (int k = 1; k < PRT_SAMPLES; ++k)
+    light += contributions[k] * prt_scaled_at(prt_light_begin(k, cluster) + first, stored);
+  return light;
 }
 
 // Computes radiance where all texels of a lookup belong to one cluster.
-vec3 prt_filtered(int cluster, vec2 uv, float contributions[PRT_SAMPLES]) {
-  vec3 radiance = prt_constant(cluster, contributions);
+PRT_LIGHT prt_filtered(int cluster, vec2 uv, float contributions[PRT_SAMPLES]) {
+  PRT_LIGHT radiance = prt_constant(cluster, contributions);
   for (int layer = 0; layer < prt_layers; ++layer)
     radiance += prt_decoded(cluster, layer, textureLod(prt_planes, vec3(uv, prt_first_layer + layer), 0.0), contributions);
   return radiance;
@@ -88,8 +144,8 @@ vec3 prt_filtered(int cluster, vec2 uv, float contributions[PRT_SAMPLES]) {
 
 layout(binding = 1) uniform usampler2D prt_cluster_ids;
 
-vec3 prt_texel_radiance(ivec2 texel, uint cluster, float contributions[PRT_SAMPLES]) {
-  vec3 radiance = prt_constant(int(cluster), contributions);
+PRT_LIGHT prt_texel_radiance(ivec2 texel, uint cluster, float contributions[PRT_SAMPLES]) {
+  PRT_LIGHT radiance = prt_constant(int(cluster), contributions);
   for (int layer = 0; layer < prt_layers; ++layer)
     radiance += prt_decoded(int(cluster), layer, texelFetch(prt_planes, ivec3(texel, layer), 0), contributions);
   return radiance;
@@ -98,7 +154,7 @@ vec3 prt_texel_radiance(ivec2 texel, uint cluster, float contributions[PRT_SAMPL
 // Computes radiance from several clusters. Weights of two clusters belong to two bases and must not be mixed: if a
 // lookup's four texels belong to several clusters, each is decoded by itself, and the results are blended. If they
 // belong to one, which is almost everywhere, decoding and blending commute, and the texture unit blends.
-vec3 prt_exit_radiance(vec2 uv, float contributions[PRT_SAMPLES]) {
+PRT_LIGHT prt_exit_radiance(vec2 uv, float contributions[PRT_SAMPLES]) {
   ivec2 size = textureSize(prt_cluster_ids, 0);
   vec2 place = uv * vec2(size) - 0.5;
   ivec2 corner = ivec2(floor(place));
@@ -108,17 +164,18 @@ vec3 prt_exit_radiance(vec2 uv, float contributions[PRT_SAMPLES]) {
   vec2 share = place - vec2(corner);
   ivec2 low = clamp(corner, ivec2(0), size - 1), high = clamp(corner + 1, ivec2(0), size - 1);
   // Order of textureGather: upper left, upper right, lower right, lower left, where the first row is the lower one.
-  vec3 upper = mix(prt_texel_radiance(ivec2(low.x, high.y), ids.x, contributions),
-                   prt_texel_radiance(high, ids.y, contributions), share.x);
-  vec3 lower = mix(prt_texel_radiance(low, ids.w, contributions),
-                   prt_texel_radiance(ivec2(high.x, low.y), ids.z, contributions), share.x);
-  return mix(lower, upper, share.y);
+  // Weighs by products, since mix takes no matrices.
+  PRT_LIGHT upper = (1.0 - share.x) * prt_texel_radiance(ivec2(low.x, high.y), ids.x, contributions) +
+                    share.x * prt_texel_radiance(high, ids.y, contributions);
+  PRT_LIGHT lower = (1.0 - share.x) * prt_texel_radiance(low, ids.w, contributions) +
+                    share.x * prt_texel_radiance(ivec2(high.x, low.y), ids.z, contributions);
+  return (1.0 - share.y) * lower + share.y * upper;
 }
 
 #else
 
-// Computes linear RGB, which may be below 0 where truncated harmonics ring.
-vec3 prt_exit_radiance(vec2 uv, float contributions[PRT_SAMPLES]) {
+// Computes linear RGB (or weights of functions), which may be below 0 where truncated harmonics ring.
+PRT_LIGHT prt_exit_radiance(vec2 uv, float contributions[PRT_SAMPLES]) {
   return prt_filtered(0, uv, contributions);
 }
 

@@ -16,3 +16,44 @@ vec3 surface_albedo(vec2 uv) {
   return vec3(1.0);
 }
 #endif
+
+// COLOR_FUNCTIONS: number of functions that light is a sum of. A surface's colour under each is then a product with its
+// albedo, plus the difference that surface_colors holds by the albedo in sRGB's encoding: the functions' tables stand
+// one on another, and are read half a texel from their borders.
+#ifdef COLOR_FUNCTIONS
+layout(binding = 10) uniform sampler3D surface_colors;
+layout(location = 8) uniform mat3 surface_products[COLOR_FUNCTIONS];
+
+vec3 surface_color(vec2 uv, float light[COLOR_FUNCTIONS]) {
+  vec3 albedo = surface_albedo(uv);
+  vec3 encoded = mix(12.92 * albedo, 1.055 * pow(max(albedo, 0.003), vec3(1.0 / 2.4)) - 0.055,
+                     greaterThan(albedo, vec3(0.0031308)));
+  float side = float(textureSize(surface_colors, 0).x);
+  vec3 place = (clamp(encoded, 0.0, 1.0) * (side - 1.0) + 0.5) / (side * vec3(1.0, 1.0, COLOR_FUNCTIONS));
+  vec3 color = vec3(0.0);
+  for (int k = 0; k < COLOR_FUNCTIONS; ++k) {
+    color += light[k] * (surface_products[k] * albedo + textureLod(surface_colors, place, 0.0).rgb);
+    place.z += 1.0 / float(COLOR_FUNCTIONS);
+  }
+  return color;
+}
+
+#ifdef PRT_LIGHT
+vec3 surface_color(vec2 uv, PRT_LIGHT light) {
+  float weights[COLOR_FUNCTIONS];
+#if COLOR_FUNCTIONS == 1
+  weights[0] = light;
+#elif COLOR_FUNCTIONS <= 4
+  for (int k = 0; k < COLOR_FUNCTIONS; ++k) weights[k] = light[k];
+#else
+  const int column = COLOR_FUNCTIONS <= 6 ? 3 : 4;
+  for (int k = 0; k < COLOR_FUNCTIONS; ++k) weights[k] = light[k / column][k % column];
+#endif
+  return surface_color(uv, weights);
+}
+#endif
+#else
+vec3 surface_color(vec2 uv, vec3 light) {
+  return surface_albedo(uv) * light;
+}
+#endif

@@ -24,5 +24,5 @@ void main() {
 #else
   unpack_contributions(texelFetch(contributions_low, place, 0), texelFetch(contributions_high, place, 0), contributions);
 #endif
-  radiance_and_coverage = vec4(surface_albedo(appearance.xy) * prt_exit_radiance(appearance.xy, contributions), 1.0);
+  radiance_and_coverage = vec4(surface_color(appearance.xy, prt_exit_radiance(appearance.xy, contributions)), 1.0);
 }

@@ -29,5 +29,5 @@ void main() {
 #else
   unpack_contributions(surface_contributions_low, surface_contributions_high, contributions);
 #endif
-  radiance_and_coverage = vec4(surface_albedo(surface_uv) * prt_exit_radiance(surface_uv, contributions), 1.0);
+  radiance_and_coverage = vec4(surface_color(surface_uv, prt_exit_radiance(surface_uv, contributions)), 1.0);
 }

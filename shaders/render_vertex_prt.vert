@@ -12,7 +12,7 @@ layout(location = 3) in vec4 contributions_low;
 layout(location = 4) in vec4 contributions_high;
 
 out vec2 surface_uv;
-out vec3 vertex_radiance;
+out PRT_LIGHT vertex_radiance;
 
 void main() {
   float contributions[PRT_SAMPLES];

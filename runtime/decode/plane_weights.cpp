@@ -7,91 +7,106 @@
 #include <string>
 
 #include "base/errors.h"
+#include "base/function_ref.h"
 #include "base/parallel.h"
 
 namespace kiln {
 
 namespace {
 
-/// Multiplies a transfer vector (channels * bands^2 values) by a light: RGB.
-Eigen::Vector3d lit(const PrtAsset& asset, const LightCoefficients& light, std::span<const float> transfer) {
+/// What leaves a texel, without memory of its own.
+using Levels = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, most_light_functions, 1>;
+
+/// Multiplies a transfer vector (channels * bands^2 values) by a light, as `readers` read it.
+Levels lit(const PrtAsset& asset, const LightCoefficients& light, const LightReaders& readers,
+           std::span<const float> transfer) {
   const std::size_t coefficients = static_cast<std::size_t>(asset.bands) * asset.bands;
-  Eigen::Vector3d radiance = Eigen::Vector3d::Zero();
-  for (std::size_t color = 0; color < 3; ++color)
-    radiance[static_cast<Eigen::Index>(color)] = dot_product(
-        transfer.subspan(asset.channels == 1 ? 0 : color * coefficients, coefficients), light.channels[color]);
-  return radiance;
+  Levels sum = Levels::Zero(readers.front().rows());
+  for (std::size_t channel = 0; channel < readers.size(); ++channel)
+    for (std::size_t k = 0; k < light.channels.size(); ++k) {
+      const auto column = readers[channel].col(static_cast<Eigen::Index>(k)).cast<double>();
+      if (column.isZero(0)) continue;
+      sum += column * dot_product(transfer.subspan(channel * coefficients, coefficients), light.channels[k]);
+    }
+  return sum;
 }
 
-/// Computes the weights of planes that hold coefficients.
-PlaneWeights coefficient_weights(const PrtAsset& asset, const LightCoefficients& light, const Eigen::Vector3d& albedo) {
-  Eigen::Vector3d constant = Eigen::Vector3d::Zero();
+/// Returns what `reader` reads of a coefficient of a light.
+Levels read_coefficient(const LightReader& reader, const LightCoefficients& light, int coefficient) {
+  Levels sum = Levels::Zero(reader.rows());
+  for (std::size_t k = 0; k < light.channels.size(); ++k)
+    sum += reader.col(static_cast<Eigen::Index>(k)).cast<double>() *
+           static_cast<double>(light.channels[k][static_cast<std::size_t>(coefficient)]);
+  return sum;
+}
+
+/// Makes the weights of planes for each of which `level` returns the light per unit, on top of `constant`.
+PlaneWeights weights_of(const PrtAsset& asset, Levels constant, FunctionRef<Levels(const PrtPlane& plane)> level) {
   PlaneWeights weights;
-  for (const PrtPlane& plane : asset.planes) {
-    Eigen::Vector3d level = Eigen::Vector3d::Zero();
-    for (int color = 0; color < 3; ++color)
-      if (asset.channels == 1 || plane.channel == color)
-        level[color] = albedo[color] * light.channels[color][plane.coefficient];
-    constant += level * plane.range.lowest;
-    weights.scales.emplace_back((level * plane.range.width()).cast<float>());
+  weights.scales.resize(constant.size(), static_cast<Eigen::Index>(asset.planes.size()));
+  for (std::size_t k = 0; k < asset.planes.size(); ++k) {
+    const Levels unit = level(asset.planes[k]);
+    constant += unit * asset.planes[k].range.lowest;
+    weights.scales.col(static_cast<Eigen::Index>(k)) = (unit * asset.planes[k].range.width()).cast<float>();
   }
   weights.constant = constant.cast<float>();
   return weights;
 }
 
-/// Computes the weights of planes that hold weights of basis vectors.
-PlaneWeights basis_weights(const PrtAsset& asset, int cluster, const LightCoefficients& light,
-                           const Eigen::Vector3d& albedo) {
-  Eigen::Vector3d constant = albedo.cwiseProduct(lit(asset, light, asset.clusters->mean(cluster)));
-  PlaneWeights weights;
-  for (const PrtPlane& plane : asset.planes) {
-    const Eigen::Vector3d level =
-        albedo.cwiseProduct(lit(asset, light, asset.clusters->vector(cluster, plane.coefficient)));
-    constant += level * plane.range.lowest;
-    weights.scales.emplace_back((level * plane.range.width()).cast<float>());
-  }
-  weights.constant = constant.cast<float>();
-  return weights;
-}
-
-/// Throws unless the asset has colours, and `light` fits it.
-void require_light(const PrtAsset& asset, const LightCoefficients& light) {
-  if (light.bands != asset.bands || light.channels.size() != 3)
-    throw std::invalid_argument("cluster_weights: the light must have the asset's bands and three channels");
-  if (asset.channels != 1 && asset.channels != 3)
-    throw BadInput(asset.ranges_file.string(), "has " + std::to_string(asset.channels) + " channels, a spectral asset",
-                   "1 channel or 3", "draw it with kiln-render --lamp, or bake the asset with 1 channel or 3");
+/// Throws unless `light` and `readers` fit the asset.
+void require_light(const PrtAsset& asset, const LightCoefficients& light, const LightReaders& readers) {
+  bool fits = light.bands == asset.bands && readers.size() == static_cast<std::size_t>(asset.channels);
+  for (const LightReader& reader : readers)
+    fits = fits && reader.cols() == static_cast<Eigen::Index>(light.channels.size()) &&
+           reader.rows() == readers.front().rows();
+  if (!fits)
+    throw std::invalid_argument("cluster_weights: the light must have the asset's bands and the readers' channels");
 }
 
 }  // namespace
 
+LightReaders rgb_readers(const PrtAsset& asset, const std::array<float, 3>& albedo) {
+  if (asset.channels != 1 && asset.channels != 3)
+    throw BadInput(asset.ranges_file.string(), "has " + std::to_string(asset.channels) + " channels, a spectral asset",
+                   "1 channel or 3", "draw it with kiln-render --lamp, or bake the asset with 1 channel or 3");
+  const LightReader all = Eigen::Vector3f(albedo[0], albedo[1], albedo[2]).asDiagonal();
+  if (asset.channels == 1) return {all};
+  LightReaders readers(3, LightReader::Zero(3, 3));
+  for (Eigen::Index c = 0; c < 3; ++c) readers[static_cast<std::size_t>(c)](c, c) = all(c, c);
+  return readers;
+}
+
 std::vector<PlaneWeights> cluster_weights(const PrtAsset& asset, const LightCoefficients& light,
-                                          const std::array<float, 3>& albedo) {
-  require_light(asset, light);
-  const Eigen::Vector3d tint(albedo[0], albedo[1], albedo[2]);
-  if (!asset.clusters) return {coefficient_weights(asset, light, tint)};
+                                          const LightReaders& readers) {
+  require_light(asset, light, readers);
+  if (!asset.clusters)
+    return {weights_of(asset, Levels::Zero(readers.front().rows()), [&](const PrtPlane& plane) {
+      return read_coefficient(readers[static_cast<std::size_t>(plane.channel)], light, plane.coefficient);
+    })};
   std::vector<PlaneWeights> weights;
   for (int cluster = 0; cluster < asset.clusters->count; ++cluster)
-    weights.push_back(basis_weights(asset, cluster, light, tint));
+    weights.push_back(
+        weights_of(asset, lit(asset, light, readers, asset.clusters->mean(cluster)), [&](const PrtPlane& plane) {
+          return lit(asset, light, readers, asset.clusters->vector(cluster, plane.coefficient));
+        }));
   return weights;
 }
 
-PlaneWeights vector_weights(const PrtAsset& asset, const LightCoefficients& light, const std::array<float, 3>& albedo) {
-  require_light(asset, light);
-  const int coefficients = asset.bands * asset.bands;
+PlaneWeights vector_weights(const PrtAsset& asset, const LightCoefficients& light, const LightReaders& readers) {
+  require_light(asset, light, readers);
+  const Eigen::Index coefficients = asset.bands * asset.bands, outputs = readers.front().rows();
   PlaneWeights weights;
+  weights.constant = Eigen::VectorXf::Zero(outputs);
+  weights.scales.resize(outputs, asset.channels * coefficients);
   for (int channel = 0; channel < asset.channels; ++channel)
-    for (int i = 0; i < coefficients; ++i) {
-      Eigen::Vector3f scale = Eigen::Vector3f::Zero();
-      for (int color = 0; color < 3; ++color)
-        if (asset.channels == 1 || channel == color) scale[color] = albedo[color] * light.channels[color][i];
-      weights.scales.push_back(scale);
-    }
+    for (int i = 0; i < coefficients; ++i)
+      weights.scales.col(channel * coefficients + i) =
+          read_coefficient(readers[static_cast<std::size_t>(channel)], light, i).cast<float>();
   return weights;
 }
 
 Image<float> relight_texels(const PrtAsset& asset, const LightCoefficients& light, const std::array<float, 3>& albedo) {
-  const std::vector<PlaneWeights> clusters = cluster_weights(asset, light, albedo);
+  const std::vector<PlaneWeights> clusters = cluster_weights(asset, light, rgb_readers(asset, albedo));
   const float white = std::exp2(static_cast<float>(asset.bits)) - 1;
   Image<float> radiance(asset.width, asset.height, 3);
   const auto relight = [&](const auto& pictures) {
@@ -100,7 +115,8 @@ Image<float> relight_texels(const PrtAsset& asset, const LightCoefficients& ligh
         const std::size_t texel = static_cast<std::size_t>(j) * asset.width + i;
         const PlaneWeights& weights = clusters[asset.clusters ? asset.clusters->of_texel(texel) : 0];
         Eigen::Vector3f sum = weights.constant;
-        for (std::size_t k = 0; k < pictures.size(); ++k) sum += weights.scales[k] * (pictures[k].at(i, j) / white);
+        for (std::size_t k = 0; k < pictures.size(); ++k)
+          sum += weights.scales.col(static_cast<Eigen::Index>(k)) * (pictures[k].at(i, j) / white);
         for (int color = 0; color < 3; ++color) radiance.at(i, j, color) = sum[color];
       }
     });

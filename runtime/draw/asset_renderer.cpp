@@ -16,25 +16,12 @@ namespace {
 
 // Bindings and locations of shaders/common_prt.glsl and shaders/render_*.
 constexpr GLuint planes_unit = 0, cluster_ids_unit = 1, light_unit = 2, albedo_unit = 3, vertex_transfer_unit = 4,
-                 normal_map_unit = 5, opacity_unit = 9, triangles_unit = 12, phong_binding = 1;
-constexpr GLint clip_from_object_location = 0, layers_location = 1, clusters_location = 2, asset_number_location = 3;
+                 normal_map_unit = 5, opacity_unit = 9, colors_unit = 10, triangles_unit = 12, phong_binding = 1;
+constexpr GLint clip_from_object_location = 0, layers_location = 1, clusters_location = 2, asset_number_location = 3,
+                products_location = 8;
 
 bool is_textured(Technique technique) {
   return technique == Technique::textured_prt || technique == Technique::compressed;
-}
-
-/// Fills the buffer of shaders/render_phong.frag.
-std::vector<float> phong_buffer(const AssetLight& light, const std::array<float, 3>& albedo, const SurfaceLook& look,
-                                const Eigen::Vector3f& eye) {
-  std::vector<float> values = {albedo[0], albedo[1], albedo[2], look.specular, eye[0], eye[1], eye[2], look.shininess};
-  const LightCoefficients rest = scale_light(irradiance(light.rest), 1 / std::numbers::pi);
-  for (std::size_t i = 0; i < 9; ++i)
-    for (std::size_t c = 0; c < 4; ++c) values.push_back(c < 3 ? rest.channels[c][i] : 0);
-  for (const DirectLight& direct : light.direct) {
-    values.insert(values.end(), {direct.place[0], direct.place[1], direct.place[2], direct.radius});
-    values.insert(values.end(), {direct.radiance[0], direct.radiance[1], direct.radiance[2], 0});
-  }
-  return values;
 }
 
 }  // namespace
@@ -51,16 +38,63 @@ AssetRenderer::AssetRenderer(const PrtAsset& asset, int incident_samples)
 
 std::array<float, 3> AssetRenderer::albedo(const SurfaceLook& look) const {
   constexpr float grey = unknown_albedo;
-  const bool own = look.own_albedo && asset_.albedo.known;
+  const bool own = look.own_albedo && (colors_ ? colors_->is_known : asset_.albedo.known);
   std::array<float, 3> albedo = look.albedo.value_or(own ? std::array{1.f, 1.f, 1.f} : std::array{grey, grey, grey});
-  for (std::size_t c = 0; own && c < 3; ++c) albedo[c] *= asset_.albedo.constant[static_cast<Eigen::Index>(c)];
+  for (std::size_t c = 0; own && !colors_ && c < 3; ++c)
+    albedo[c] *= asset_.albedo.constant[static_cast<Eigen::Index>(c)];
   return albedo;
 }
 
-void AssetRenderer::bind_surface_maps() const {
+LightReaders AssetRenderer::readers(const SurfaceLook& look) const {
+  const std::array<float, 3> factors = albedo(look);
+  if (!colors_) return rgb_readers(asset_, factors);
+  if (differs_by_albedo()) return {factors[0] * LightReader::Identity(colors_->functions(), colors_->functions())};
+  LightReaders scaled = colors_->readers;
+  for (LightReader& reader : scaled)
+    for (Eigen::Index c = 0; c < reader.rows(); ++c) reader.row(c) *= factors[static_cast<std::size_t>(c)];
+  return scaled;
+}
+
+void AssetRenderer::set_colors(std::shared_ptr<const SurfaceColors> colors) {
+  if (colors == colors_) return;
+  const auto functions = [](const std::shared_ptr<const SurfaceColors>& one) {
+    return one ? std::pair(one->functions(), one->readers.empty()) : std::pair(0, false);
+  };
+  if (functions(colors) != functions(colors_)) programs_.clear();
+  colors_ = std::move(colors);
+  color_table_ = colors_ ? upload_color_table(colors_->table) : UploadedTexture();
+  lit_.reset();
+}
+
+std::vector<float> AssetRenderer::phong_buffer(const Eigen::Vector3f& eye) const {
+  const SurfaceLook& look = lit_->look;
+  const AssetLight& light = lit_->light;
+  const std::array<float, 3> factors = albedo(look);
+  std::vector<float> values = {factors[0], factors[1], factors[2], look.specular,
+                               eye[0],     eye[1],     eye[2],     look.shininess};
+  const std::size_t channels = light.rest.channels.size(), padded = (channels + 3) / 4 * 4;
+  for (std::size_t k = 0; k < channels; ++k)
+    for (Eigen::Index c = 0; c < 4; ++c)
+      values.push_back(colors_ && c < 3 ? colors_->highlight(c, static_cast<Eigen::Index>(k)) : 0);
+  const LightCoefficients rest = scale_light(irradiance(light.rest), 1 / std::numbers::pi);
+  for (std::size_t i = 0; i < 9; ++i)
+    for (std::size_t c = 0; c < padded; ++c) values.push_back(c < channels ? rest.channels[c][i] : 0);
+  for (const DirectLight& direct : light.direct) {
+    values.insert(values.end(), {direct.place[0], direct.place[1], direct.place[2], direct.radius});
+    values.insert(values.end(), direct.radiance.begin(), direct.radiance.end());
+    values.insert(values.end(), padded - channels, 0.f);
+  }
+  return values;
+}
+
+void AssetRenderer::bind_surface_maps(const GlProgram& used, bool by_table) const {
   if (opacity_map_.texture.name() != 0) glBindTextureUnit(opacity_unit, opacity_map_.texture.name());
-  if (albedo_map_.texture.name() != 0)
-    glBindTextureUnit(albedo_unit, (!lit_ || lit_->look.own_albedo ? albedo_map_ : white_).texture.name());
+  const bool is_own = (!lit_ || lit_->look.own_albedo) && (!colors_ || by_table);
+  if (albedo_map_.texture.name() != 0) glBindTextureUnit(albedo_unit, (is_own ? albedo_map_ : white_).texture.name());
+  if (!by_table) return;
+  glBindTextureUnit(colors_unit, color_table_.texture.name());
+  glProgramUniformMatrix3fv(used.name(), products_location, colors_->functions(), GL_FALSE,
+                            colors_->table.products.front().data());
 }
 
 const GlProgram& AssetRenderer::program(Pass pass) {
@@ -69,8 +103,12 @@ const GlProgram& AssetRenderer::program(Pass pass) {
   if (is_clustered()) defines.emplace_back("PRT_CLUSTERED", "1");
   if (albedo_map_.texture.name() != 0) defines.emplace_back("ALBEDO_MAP", "1");
   if (opacity_map_.texture.name() != 0) defines.emplace_back("OPACITY_MAP", "1");
+  const ShaderDefines in_functions = {{"PRT_FUNCTIONS", std::to_string(colors_ ? colors_->functions() : 3)},
+                                      {"COLOR_FUNCTIONS", std::to_string(colors_ ? colors_->functions() : 3)}};
   ShaderDefines phong = defines;
   phong.emplace_back("PHONG", "1");
+  if (colors_) phong.push_back(in_functions.back());
+  if (differs_by_albedo()) defines.insert(defines.end(), in_functions.begin(), in_functions.end());
   ShaderDefines normal_mapped = phong;
   normal_mapped.emplace_back("NORMAL_MAP", "1");
   ShaderDefines at_vertices = defines;
@@ -120,10 +158,11 @@ std::shared_ptr<const UploadedLight> AssetRenderer::upload_asset_light(const Ass
   auto lit = std::make_shared<UploadedLight>();
   lit->light = light;
   lit->look = look;
+  const LightReaders read = readers(look);
   std::vector<std::vector<PlaneWeights>> plane_weights, vertex_weights;
   for (const LightCoefficients& sample : light.samples) {
-    if (!asset_.is_per_vertex()) plane_weights.push_back(cluster_weights(asset_, sample, albedo(look)));
-    vertex_weights.push_back({vector_weights(asset_, sample, albedo(look))});
+    if (!asset_.is_per_vertex()) plane_weights.push_back(cluster_weights(asset_, sample, read));
+    vertex_weights.push_back({vector_weights(asset_, sample, read)});
   }
   if (!plane_weights.empty()) lit->planes = upload_light(plane_weights);
   lit->vertices = upload_light(vertex_weights);
@@ -155,21 +194,23 @@ void AssetRenderer::draw(Technique technique, const Eigen::Matrix4f& clip_from_o
                          const Eigen::Vector3f& eye_object) {
   prepare(technique);
   if (!lit_) throw std::logic_error("AssetRenderer: no light was set");
-  bind_surface_maps();
   if (technique == Technique::phong || technique == Technique::normal_map) {
     const GlProgram& used = program(technique == Technique::phong ? Pass::phong : Pass::normal_map);
-    std::vector<float> values = phong_buffer(lit_->light, albedo(lit_->look), lit_->look, eye_object);
+    bind_surface_maps(used, colors_ != nullptr);
+    const std::vector<float> values = phong_buffer(eye_object);
     phong_lights_ = make_buffer(std::span<const float>(values));
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, phong_binding, phong_lights_.name());
     glBindTextureUnit(normal_map_unit, normal_map_.texture.name());
     draw_triangles(used, clip_from_object);
   } else if (technique == Technique::vertex_prt) {
     const GlProgram& used = program(Pass::vertex_prt);
+    bind_surface_maps(used, differs_by_albedo());
     bind_prt(used, lit_->vertices, layer_count(asset_.vector_length()), 1);
     glBindTextureUnit(vertex_transfer_unit, vertex_transfer_.texture.name());
     draw_triangles(used, clip_from_object);
   } else {
     const GlProgram& used = program(Pass::prt);
+    bind_surface_maps(used, differs_by_albedo());
     bind_planes(used);
     if (samples_.are_vertices())
       draw_corners(used, clip_from_object);
@@ -188,7 +229,7 @@ void AssetRenderer::bind_planes(const GlProgram& used) const {
 void AssetRenderer::draw_appearance(const Eigen::Matrix4f& clip_from_object, int number) {
   const GlProgram& used = program(Pass::appearance);
   glProgramUniform1f(used.name(), asset_number_location, static_cast<float>(number));
-  bind_surface_maps();
+  bind_surface_maps(used, false);
   draw_triangles(used, clip_from_object);
 }
 
@@ -197,7 +238,7 @@ void AssetRenderer::shade_appearance(int number) {
   if (!lit_) throw std::logic_error("AssetRenderer: no light was set");
   const GlProgram& used = program(Pass::deferred);
   bind_planes(used);
-  bind_surface_maps();
+  bind_surface_maps(used, differs_by_albedo());
   glProgramUniform1f(used.name(), asset_number_location, static_cast<float>(number));
   glUseProgram(used.name());
   glBindVertexArray(mesh_.vertices.name());  // the core profile requires one, although the shader reads nothing from it
@@ -219,7 +260,7 @@ GpuMemory AssetRenderer::memory(Technique technique) const {
     memory.per_mesh += lit_ ? lit_->vertices.bytes : 0;
     memory.per_vertex += vertex_transfer_.bytes / std::max<std::size_t>(1, mesh_.vertex_count);
   }
-  memory.per_mesh += albedo_map_.bytes + opacity_map_.bytes;
+  memory.per_mesh += albedo_map_.bytes + opacity_map_.bytes + color_table_.bytes;
   if (is_textured(technique))
     memory.per_mesh += planes_.bytes + cluster_ids_.bytes + corners_.bytes + (lit_ ? lit_->planes.bytes : 0);
   return memory;

@@ -13,6 +13,7 @@
 #include "gpu/gl_objects.h"
 #include "runtime/draw/asset_uploads.h"
 #include "runtime/draw/scene_view.h"
+#include "runtime/draw/surface_colors.h"
 #include "runtime/draw/technique.h"
 #include "runtime/light/incident_samples.h"
 #include "runtime/light/scene_lights.h"
@@ -49,8 +50,12 @@ class AssetRenderer {
   /// drawn by it, BadInput, and MachineLacks if the device does not support such textures.
   void prepare(Technique technique);
 
+  /// Draws by spectra from now on, or by RGB without colours: lights that are uploaded afterwards have their functions
+  /// as channels.
+  void set_colors(std::shared_ptr<const SurfaceColors> colors);
+
   /// Sets the light of all following draws; its number of samples must be incident_samples. Throws as cluster_weights
-  /// does.
+  /// and rgb_readers do.
   void set_light(const AssetLight& light, const SurfaceLook& look) { use_light(upload_asset_light(light, look)); }
 
   /// Does the same in two steps, for an asset that stands at several places: its light there is uploaded once, and
@@ -76,8 +81,11 @@ class AssetRenderer {
   const GlProgram& program(Pass pass);
   void bind_prt(const GlProgram& program, const UploadedTexture& light, int layers, int clusters) const;
   std::array<float, 3> albedo(const SurfaceLook& look) const;
-  /// Binds the albedo and the opacity.
-  void bind_surface_maps() const;
+  LightReaders readers(const SurfaceLook& look) const;
+  bool differs_by_albedo() const { return colors_ && colors_->readers.empty(); }
+  std::vector<float> phong_buffer(const Eigen::Vector3f& eye) const;
+  /// Binds the albedo, the opacity and the table of colours, for what the program computes by the table.
+  void bind_surface_maps(const GlProgram& program, bool by_table) const;
   void bind_planes(const GlProgram& program) const;
   void draw_triangles(const GlProgram& program, const Eigen::Matrix4f& clip_from_object) const;
   void draw_corners(const GlProgram& program, const Eigen::Matrix4f& clip_from_object) const;
@@ -90,6 +98,8 @@ class AssetRenderer {
   std::map<Pass, GlProgram> programs_;
   UploadedTexture planes_, cluster_ids_, normal_map_, albedo_map_, white_, opacity_map_;
   UploadedVertexTransfer vertex_transfer_;
+  std::shared_ptr<const SurfaceColors> colors_;
+  UploadedTexture color_table_;
   GlBuffer phong_lights_;
   std::shared_ptr<const UploadedLight> lit_;
 };

@@ -68,7 +68,8 @@ std::vector<float> looked_up_transfer(const PrtAsset& asset) {
 int layer_count(std::size_t planes) { return static_cast<int>((planes + planes_per_layer - 1) / planes_per_layer); }
 
 std::size_t weight_texels(const PlaneWeights& weights) {
-  return 1 + 3 * static_cast<std::size_t>(layer_count(weights.scales.size()));
+  const auto numbers = static_cast<std::size_t>(weights.scales.rows());
+  return (numbers + 3) / 4 + numbers * static_cast<std::size_t>(layer_count(weights.scales.cols()));
 }
 
 void require_at_most(GLenum limit, int wanted, const char* what) {
@@ -170,6 +171,19 @@ UploadedTexture upload_albedo(const Image<std::uint8_t>& picture, int levels) {
   return map;
 }
 
+UploadedTexture upload_color_table(const ColorTable& table) {
+  const int side = table.side, depth = side * table.functions();
+  require_at_most(GL_MAX_3D_TEXTURE_SIZE, depth, "textures of three dimensions with a side");
+  UploadedTexture colors{make_texture(GL_TEXTURE_3D),
+                         4 * sizeof(float) * table.colors.size() / 3};  // drivers pad RGB to four channels
+  glTextureStorage3D(colors.texture.name(), 1, GL_RGB32F, side, side, depth);
+  glTextureSubImage3D(colors.texture.name(), 0, 0, 0, 0, side, side, depth, GL_RGB, GL_FLOAT, table.colors.data());
+  set_sampling(colors.texture, GL_LINEAR);
+  glTextureParameteri(colors.texture.name(), GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
+  check_gl("uploading the table of colours");
+  return colors;
+}
+
 UploadedTexture upload_opacity(const Image<std::uint8_t>& picture) {
   if (picture.values().empty()) return {};
   require_at_most(GL_MAX_TEXTURE_SIZE, std::max(picture.width(), picture.height()), "textures with a side");
@@ -213,11 +227,12 @@ UploadedTexture upload_weights(std::span<const PlaneWeights> all) {
   std::vector<float> values(4 * static_cast<std::size_t>(light_width) * static_cast<std::size_t>(rows), 0.f);
   float* to = values.data();
   for (const PlaneWeights& weights : all) {
-    for (std::size_t color = 0; color < 3; ++color) {
-      to[color] = weights.constant[static_cast<Eigen::Index>(color)];
-      for (std::size_t plane = 0; plane < weights.scales.size(); ++plane)
-        to[4 * (1 + 3 * (plane / planes_per_layer) + color) + plane % planes_per_layer] =
-            weights.scales[plane][static_cast<Eigen::Index>(color)];
+    const Eigen::Index numbers = weights.scales.rows(), constants = (numbers + 3) / 4;
+    for (Eigen::Index k = 0; k < numbers; ++k) {
+      to[k] = weights.constant[k];
+      for (Eigen::Index plane = 0; plane < weights.scales.cols(); ++plane)
+        to[4 * (constants + numbers * (plane / planes_per_layer) + k) + plane % planes_per_layer] =
+            weights.scales(k, plane);
     }
     to += 4 * weight_texels(weights);
   }

@@ -9,6 +9,7 @@
 #include "asset/prt_asset.h"
 #include "gpu/gl_objects.h"
 #include "runtime/decode/plane_weights.h"
+#include "runtime/draw/surface_colors.h"
 #include "runtime/light/incident_samples.h"
 
 namespace kiln {
@@ -57,6 +58,10 @@ UploadedTexture upload_albedo(const Image<std::uint8_t>& picture, int levels = 1
 
 /// Uploads a map of opacity, with bilinear lookup; none where the picture is empty.
 UploadedTexture upload_opacity(const Image<std::uint8_t>& picture);
+
+/// The tables of what surfaces show by their albedo: a texture of three dimensions, float32, in which the functions'
+/// tables stand one on another.
+UploadedTexture upload_color_table(const ColorTable& table);
 
 /// Transfer vectors at the vertices, float32, in a buffer texture: four coefficients per texel, layer_count texels per
 /// vertex. Those of a textured asset are looked up at the vertices' uvs.

@@ -22,17 +22,33 @@ LightCoefficients first_bands(const LightCoefficients& light, int bands) {
   return cut;
 }
 
-DirectLight direct_light(const LightSpec& spec, const Placement& placement) {
+/// Spreads grey light over functions; without a vector returns it as it is.
+LightCoefficients in_functions(LightCoefficients grey, const Eigen::VectorXf* vector) {
+  if (vector == nullptr) return grey;
+  LightCoefficients light{grey.bands, {}};
+  for (const float weight : *vector) {
+    std::vector<float>& channel = light.channels.emplace_back(grey.channels.front());
+    for (float& value : channel) value *= weight;
+  }
+  return light;
+}
+
+DirectLight direct_light(const LightSpec& spec, const Eigen::VectorXf* vector, const Placement& placement) {
+  std::vector<float> radiance(spec.color.begin(), spec.color.end());
+  if (vector != nullptr) {
+    radiance.clear();
+    for (const float weight : *vector) radiance.push_back(weight * spec.color[0]);
+  }
   if (spec.kind != Kind::sphere) {
     const Eigen::Vector3d towards = direction_from_angles(spec.azimuth_degrees, spec.elevation_degrees).cast<double>();
-    return {(placement.rotation.transpose() * towards).cast<float>(), 0, spec.color};
+    return {(placement.rotation.transpose() * towards).cast<float>(), 0, std::move(radiance)};
   }
   // Computes the ball's own radiance: a white surface at the scene's origin that faces it has the radiance `colour`.
   const Eigen::Vector3d position(spec.position.data());
   const double sine = std::min(1.0, spec.radius / position.norm());
   DirectLight light{placement.to_object(position).cast<float>(), static_cast<float>(spec.radius / placement.scale),
-                    spec.color};
-  for (float& radiance : light.radiance) radiance = static_cast<float>(radiance / (sine * sine));
+                    std::move(radiance)};
+  for (float& value : light.radiance) value = static_cast<float>(value / (sine * sine));
   return light;
 }
 
@@ -52,15 +68,16 @@ LightCoefficients SceneLights::incident(int bands, const Eigen::Vector3d& viewpo
   // Windows come last, so that they damp ringing of the light that arrives.
   const int source_bands = probes != nullptr ? std::max(bands, probes->bands) : bands,
             carried_bands = probes != nullptr ? std::min(bands, probes->bands) : bands;
-  LightCoefficients sum = constant_light(bands, std::array<float, 3>{0, 0, 0});
+  LightCoefficients sum = constant_light(bands, std::vector<float>(channels(), 0.f));
   const auto add = [&](LightCoefficients light, std::span<const double> weights) {
     if (probes != nullptr) light = light_at(*probes, viewpoint.cast<float>(), light);
     light = first_bands(light, carried_bands);
     apply_window(light, weights);
     sum = add_lights(sum, first_bands(light, bands));
   };
-  for (const LightSpec& spec : specs)
-    add(light_coefficients(spec, source_bands, viewpoint), window_weights(spec, carried_bands, window, viewpoint));
+  for (std::size_t k = 0; k < specs.size(); ++k)
+    add(in_functions(light_coefficients(specs[k], source_bands, viewpoint), vector_of(k)),
+        window_weights(specs[k], carried_bands, window, viewpoint));
   if (environment)
     add(first_bands(*environment, source_bands), window_weights(first_bands(*environment, carried_bands), window));
   return sum;
@@ -75,11 +92,20 @@ AssetLight light_asset(const SceneLights& lights, int bands, const Placement& pl
     light.samples.push_back(placement.turns() ? into_object(incident) : incident);
   }
   SceneLights others{{}, lights.environment, LightWindow::none};
-  for (const LightSpec& spec : lights.specs)
-    if (is_direct(spec))
-      light.direct.push_back(direct_light(spec, placement));
-    else
-      others.specs.push_back(spec);
+  for (std::size_t k = 0; k < lights.specs.size(); ++k) {
+    const LightSpec& spec = lights.specs[k];
+    if (is_direct(spec)) {
+      light.direct.push_back(direct_light(spec, lights.vector_of(k), placement));
+      continue;
+    }
+    others.specs.push_back(spec);
+    if (lights.vector_of(k) != nullptr) others.vectors.push_back(*lights.vector_of(k));
+  }
+  // Darkness has as many channels.
+  if (others.specs.empty() && !lights.vectors.empty()) {
+    others.specs.push_back({.kind = Kind::ambient, .color = {0, 0, 0}});
+    others.vectors.push_back(lights.vectors.front());
+  }
   constexpr int rest_bands = 3;
   light.rest = ShRotation(rest_bands, placement.rotation.transpose())(others.incident(rest_bands, {0, 0, 0}));
   return light;

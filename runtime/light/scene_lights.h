@@ -21,11 +21,20 @@ struct SceneLights {
   std::optional<LightCoefficients> environment;  ///< distant light of any number of bands
   LightWindow window = LightWindow::hann;
   const ProbeSet* probes = nullptr;  ///< objects at the origin that shadow the light on its way; null: none
+  /// Light vectors [Peercy 1995] of `specs`, each of which is grey then: weights, per radiance, of the functions that
+  /// light is a sum of. None: light is red, green and blue. Not beside an environment.
+  std::vector<Eigen::VectorXf> vectors = {};
+
+  /// Returns the number of channels of the light: functions, or three.
+  std::size_t channels() const { return vectors.empty() ? 3 : static_cast<std::size_t>(vectors.front().size()); }
 
   /// Tests whether the light depends on the place.
   bool is_local() const;
 
-  /// Computes the light that arrives at `viewpoint`, three channels, every light windowed (window_weights).
+  /// Returns the light vector of a light; null where light is red, green and blue.
+  const Eigen::VectorXf* vector_of(std::size_t spec) const { return vectors.empty() ? nullptr : &vectors[spec]; }
+
+  /// Computes the light that arrives at `viewpoint`, channels() of them, every light windowed (window_weights).
   LightCoefficients incident(int bands, const Eigen::Vector3d& viewpoint) const;
 };
 
@@ -34,7 +43,7 @@ struct DirectLight {
   Eigen::Vector3f place;  ///< centre of a ball, or unit vector towards a distant light
   float radius = 0;       ///< of a ball, object units; 0 if distant
   /// Radiance of a ball itself, or of a white surface that faces a distant light.
-  std::array<float, 3> radiance = {};
+  std::vector<float> radiance = {};  ///< by channel
 };
 
 /// Tests whether a light has a position or a direction, and so becomes a DirectLight.

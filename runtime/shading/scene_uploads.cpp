@@ -203,7 +203,7 @@ UploadedNodeLight upload_node_light(const ShadedScene& scene, const std::vector<
     const ShadedMesh& mesh = scene.meshes[static_cast<std::size_t>(scene.nodes[k].mesh)];
     if (!mesh.has_transfer()) continue;
     for (const LightCoefficients& sample : light[k]) {
-      weights.push_back(cluster_weights(*mesh.asset, sample, {1, 1, 1}).front());
+      weights.push_back(cluster_weights(*mesh.asset, sample, rgb_readers(*mesh.asset, {1, 1, 1})).front());
       texels += static_cast<int>(weight_texels(weights.back()));
     }
   }

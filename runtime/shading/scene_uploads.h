@@ -58,7 +58,7 @@ using NodeLight = std::vector<LightCoefficients>;
 /// with a direction is among it.
 std::vector<NodeLight> unshadowed_light(const ShadedScene& scene, int incident_samples, DirectLightBy direct);
 
-/// Light of all nodes with planes: a texture as of upload_light.
+/// Light of all nodes with planes: a texture as of upload_weights.
 struct UploadedNodeLight {
   GlTexture texture;
   std::vector<int> first_texel;  ///< of each node

@@ -254,9 +254,9 @@ void ShadedRenderer::upload_lights() {
     const DirectLight& direct = light.direct[k];
     ShadowView view{Eigen::Matrix4f::Identity(), 1};
     if (!casters.empty()) view = shadow_view(direct, casters);
-    const auto& [red, green, blue] = direct.radiance;
     block.direct[k].place = {direct.place.x(), direct.place.y(), direct.place.z(), direct.radius};
-    block.direct[k].radiance = {red, green, blue, view.width / static_cast<float>(shadows_.size())};
+    block.direct[k].radiance = {direct.radiance[0], direct.radiance[1], direct.radiance[2],
+                                view.width / static_cast<float>(shadows_.size())};
     Eigen::Map<Eigen::Matrix4f>(block.shadow_from_scene[k].data()) = lookup_matrix() * view.clip_from_scene;
     shadow_views_.push_back(view);
   }

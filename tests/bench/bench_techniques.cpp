@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Measures the time of a frame and the GPU memory of every technique, as in [Chapter 2010], tables 6.1 and 6.2, and of
 // deferred shading where many surfaces lie behind one another; and the error of a few samples of incident light near a
-// mesh. Prints Markdown.
+// mesh; and of light in one to eight functions beside RGB. Prints Markdown.
 //
 //   bench_techniques PRT [--compressed FOLDER] [--width 1280] [--height 720] [--rounds 20] [--gl-device auto]
+//   [--only-functions]
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -15,6 +16,7 @@
 
 #include "base/command_line.h"
 #include "gpu/egl_context.h"
+#include "render/lamps.h"
 #include "render/render_settings.h"
 #include "runtime/draw/scene_renderer.h"
 #include "sh/basis.h"
@@ -28,6 +30,7 @@ using namespace kiln;
 struct Arguments {
   std::string folder, compressed, device = "auto";
   int width = 1280, height = 720, rounds = 20;
+  bool only_functions = false;
 };
 
 /// Milliseconds per frame, over many frames.
@@ -55,6 +58,53 @@ SceneView view_of(const Arguments& arguments, const std::vector<Eigen::Vector3f>
   settings.width = arguments.width;
   settings.height = arguments.height;
   return views_of(settings, shape).front();
+}
+
+/// Times textured PRT under one to eight functions of light beside RGB, of a surface whose albedo is a picture.
+void compare_functions(const Arguments& arguments, PrtAsset asset) {
+  if (asset.albedo.picture.values().empty()) {
+    asset.albedo = PrtAlbedo::of_picture("albedo.png");
+    asset.albedo.picture = Image<std::uint8_t>(512, 512, 3);
+    for (std::size_t k = 0; std::uint8_t & value : asset.albedo.picture.values())
+      value = static_cast<std::uint8_t>(k++ * 2654435761u >> 8);
+  }
+  const Frame frame(arguments.width, arguments.height);
+  const char* const lamps[] = {"A", "F11", "D65", "F2", "D50", "F7", "P1900", "D25000"};
+  std::printf("\n| light | ms a frame, least | median | to RGB |\n| --- | --- | --- | --- |\n");
+  constexpr int most = 8;
+  std::vector<std::unique_ptr<AssetRenderer>> renderers;
+  for (int functions = 0; functions <= most; ++functions) {
+    renderers.push_back(std::make_unique<AssetRenderer>(asset));
+    AssetRenderer& renderer = *renderers.back();
+    const std::vector<SceneAsset> assets = {{&renderer, {}, Technique::textured_prt}};
+    LightSettings lights;
+    for (int k = 0; k < std::max(1, functions); ++k) lights.lights.push_back("45,30");
+    if (functions == 0) {
+      light_scene(assets, scene_lights(lights, asset.bands), {});
+      continue;
+    }
+    const LampScene scene =
+        SpectralAssets({&asset}, {}).under(lights, std::vector<std::string>(lamps, lamps + functions), asset.bands);
+    renderer.set_colors(scene.colors[0]);
+    light_scene(assets, scene.lights, {});
+  }
+  // Frames of all take turns, so that what else the machine does meets all alike.
+  std::vector<std::vector<double>> times(renderers.size());
+  for (int round = -2; round < arguments.rounds; ++round)
+    for (std::size_t k = 0; k < renderers.size(); ++k) {
+      const std::vector<SceneAsset> assets = {{renderers[k].get(), {}, Technique::textured_prt}};
+      const SceneView view = view_of(arguments, scene_shape(assets));
+      glFinish();
+      const auto start = std::chrono::steady_clock::now();
+      draw_scene(assets, view.camera.clip_from_object().cast<double>(), view.camera.position.cast<double>(), frame);
+      glFinish();
+      if (round >= 0)
+        times[k].push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    }
+  for (std::vector<double>& some : times) std::sort(some.begin(), some.end());
+  for (std::size_t k = 0; k < times.size(); ++k)
+    std::printf("| %s | %.2f | %.2f | %.2f |\n", k == 0 ? "RGB" : std::to_string(k).c_str(), times[k].front(),
+                times[k][times[k].size() / 2], times[k].front() / times[0].front());
 }
 
 void compare_techniques(const Arguments& arguments, const PrtAsset& asset, const std::optional<PrtAsset>& compressed) {
@@ -187,6 +237,7 @@ int main(int argc, char** argv) {
     app.add_option("--height", arguments.height);
     app.add_option("--rounds", arguments.rounds);
     app.add_option("--gl-device", arguments.device);
+    app.add_flag("--only-functions", arguments.only_functions);
     app.parse(argc, argv);
     const PrtAsset asset = load_prt_asset(arguments.folder);
     std::optional<PrtAsset> compressed;
@@ -194,8 +245,11 @@ int main(int argc, char** argv) {
     const EglContext context(arguments.device);
     std::printf("%s, %d x %d pixels, %zu triangles\n\n", context.renderer().c_str(), arguments.width, arguments.height,
                 asset.mesh.triangles.size());
-    compare_techniques(arguments, asset, compressed);
-    compare_shading(arguments, asset);
-    compare_samples(asset.mesh);
+    if (!arguments.only_functions) {
+      compare_techniques(arguments, asset, compressed);
+      compare_shading(arguments, asset);
+      compare_samples(asset.mesh);
+    }
+    compare_functions(arguments, asset);
   });
 }

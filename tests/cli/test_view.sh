@@ -81,6 +81,27 @@ for name in compressed phong vertex difference; do differ $name.png textured.png
 differ turned.png back.png 3
 differ keys.png readout.png 3
 
+echo "== lamps, and the sun at an hour"
+sun='sun:2026-06-21T%s@48.1,11.6'
+lamps=(--light -60,20 --ambient 0.1 --white lamp)
+cat >script <<'EOF'
+screenshot l0.png
+key k t t t t
+screenshot l1.png
+window lamps.png
+EOF
+display "$programs/kiln-view" hare --light "$(printf "$sun" 19:00+02:00)" "${lamps[@]}" --lamp F11 --lamp P2000 \
+  --width 320 --height 240 --script script || fail "the script of lamps ended with status $?"
+# The first light is white: the sun.
+lit() {
+  "$programs/kiln-render" hare/prt --light "$(printf "$sun" "$1")" "${lamps[@]}" --lamp "$2" -o "$3" \
+    --gl-device software --quiet --width 320 --height 240
+}
+lit 17:00Z F11 r_l0.png
+lit 18:00Z P2000 r_l1.png
+for k in 0 1; do same l$k.png r_l$k.png 1; done
+differ l1.png l0.png 3
+
 echo "== a scene"
 cat >scene.yaml <<'EOF'
 nodes:

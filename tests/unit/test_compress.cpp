@@ -565,11 +565,8 @@ TEST(PcaAsset, GpuAndCpuAgree) {
     // half a step off twice, with weights of 8 bits; 16-bit ones in float. Texels are decoded one by one where clusters
     // meet.
     double steps = 0;
-    for (const PlaneWeights& weights : cluster_weights(read, light, albedo)) {
-      double sum = 0;
-      for (const Eigen::Vector3f& scale : weights.scales) sum += scale.cwiseAbs().maxCoeff() / 255;
-      steps = std::max(steps, sum);
-    }
+    for (const PlaneWeights& weights : cluster_weights(read, light, rgb_readers(read, albedo)))
+      steps = std::max<double>(steps, weights.scales.cwiseAbs().colwise().maxCoeff().sum() / 255);
     SCOPED_TRACE(
         fmt::format("{} clusters, {} components, {} bits: GPU {:.5f}, steps {:.5f}, compression {:.5f} of {:.3f}",
                     c.clusters, c.components, read.bits, largest, steps, worst, brightest));

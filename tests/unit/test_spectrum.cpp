@@ -10,6 +10,7 @@
 #include "spectrum/colorimetry.h"
 #include "spectrum/sensor.h"
 #include "spectrum/spectrum_file.h"
+#include "spectrum/sun_position.h"
 
 namespace kiln {
 namespace test_spectrum {
@@ -251,6 +252,74 @@ TEST(SpectrumFile, FaultsAreSaidWithTheirLines) {
   std::ofstream(scratch / "s.csv") << negative;
   EXPECT_NO_THROW(read_spectra(scratch / "s.csv", SpectrumKind::component));
   EXPECT_THROW(read_spectra(scratch / "none.csv", SpectrumKind::light), BadInput);
+}
+
+/// Returns an hour of a place, of the front of `parse_sun_hour`'s text.
+SunPosition sun_at(const std::string& time, const std::string& place) {
+  return sun_position(parse_sun_hour("sun:" + time + "@" + place));
+}
+
+TEST(SunPosition, IsThatOfPublishedAlmanacs) {
+  // The worked example of NREL's algorithm (Reda and Andreas, NREL/TP-560-34302, 2003): azimuth 194.340241, elevation
+  // 39.872046 without refraction; at 820 hPa 39.888378.
+  const SunPosition example = sun_at("2003-10-17T12:30:30-07:00", "39.742476,-105.1786");
+  EXPECT_NEAR(example.azimuth_degrees, 194.340, 0.02);
+  EXPECT_NEAR(example.elevation_degrees, 39.888, 0.02);
+
+  // Sunrises and sunsets of NREL's calculator: the upper limb stands at the horizon, so the middle 16 minutes of arc
+  // below it. There the calculator takes 34 minutes of refraction, as almanacs do, where the formula has 37.
+  const std::string golden = "39.742476,-105.1786", south = "-35,0";
+  const std::pair<const char*, std::string> edges[] = {
+      {"2015-01-02T07:21:55-07:00", golden}, {"2015-01-02T16:47:43-07:00", golden},
+      {"2015-08-02T05:00:27-07:00", golden}, {"1996-07-05T07:08:15Z", south},
+      {"1996-07-05T17:01:04Z", south},       {"2004-12-04T04:38:57Z", south},
+      {"2004-12-04T19:02:03Z", south}};
+  for (const auto& [time, place] : edges) {
+    EXPECT_NEAR(sun_at(time, place).elevation_degrees, (-16 + 37 - 34) / 60.0, 0.01) << time;
+    const bool is_morning = std::string(time).find("T0") != std::string::npos;
+    EXPECT_EQ(sun_at(time, place).azimuth_degrees < 180, is_morning) << time;
+  }
+  for (const char* const noon : {"2015-01-02T12:04:45-07:00", "2015-08-02T12:06:58-07:00"})
+    EXPECT_NEAR(sun_at(noon, golden).azimuth_degrees, 180, 0.02) << noon;
+  for (const char* const noon : {"1996-07-05T12:04:36Z", "2004-12-04T11:50:22Z"})
+    EXPECT_NEAR(std::remainder(sun_at(noon, south).azimuth_degrees, 360), 0, 0.02) << noon;
+
+  // At noon of a solstice on its tropic the sun stands overhead; then 23.44 degrees above the horizon at the pole.
+  EXPECT_GT(sun_at("2000-06-21T12:01:50Z", "23.4394,0").elevation_degrees, 89.9);
+  EXPECT_NEAR(sun_at("2000-06-21T01:48:00Z", "90,0").elevation_degrees, 23.4394 + 0.04, 0.02);
+}
+
+TEST(SunPosition, TextsAreReadAndRefused) {
+  const SunHour hour = parse_sun_hour("sun:2026-06-21T17:30+02:00@48.1,-11.6");
+  EXPECT_NEAR(hour.day, 9668 - 0.5 + 15.5 / 24, 1e-9);  // 9668 days after 1 January 2000, from noon
+  EXPECT_EQ(hour.longitude_degrees, -11.6);
+  EXPECT_EQ(to_text(hour), "sun:2026-06-21T15:30Z@48.1,-11.6");
+  EXPECT_EQ(to_text(parse_sun_hour("sun:1999-12-31T23:59:30-01:00@1,2,90")), "sun:2000-01-01T01:00Z@1,2,90");
+  EXPECT_EQ(to_text(parse_sun_hour("sun:1990-03-01T00:10Z@1,2")), "sun:1990-03-01T00:10Z@1,2");
+  EXPECT_FALSE(is_sun_hour("sun:20"));
+  for (const char* const text :
+       {"sun:2026-06-21T17:30@48.1,11.6", "sun:2026-06-21@48.1,11.6", "sun:2026-02-30T17:30Z@48.1,11.6",
+        "sun:2026-06-21T24:30Z@48.1,11.6", "sun:2026-06-21T17:60Z@48.1,11.6", "sun:2026-06-21T17:30Z+02:00@48.1,11.6",
+        "sun:2026-06-21T17:30+15:00@48.1,11.6", "sun:2026-06-21T17:30Z@91,11.6", "sun:2026-06-21T17:30Z@48.1",
+        "sun:2026-06-21T17:30Z@48.1,181", "sun:1899-06-21T17:30Z@48.1,11.6", "sun:2026-6-21T17:30Z@48.1,11.6", "sun:@"})
+    EXPECT_THROW(parse_sun_hour(text), WrongUsage) << text;
+  EXPECT_THROW(visible_sun(parse_sun_hour("sun:2026-06-21T23:30+02:00@48.1,11.6")), WrongUsage);
+
+  // In a scene the front faces south and +X is east.
+  const SunHour noon = parse_sun_hour("sun:2026-06-21T11:15Z@48.1,11.6"),
+                turned = parse_sun_hour("sun:2026-06-21T11:15Z@48.1,11.6,0");
+  EXPECT_NEAR(scene_azimuth(noon, sun_position(noon)), 0, 2);
+  EXPECT_NEAR(std::abs(scene_azimuth(turned, sun_position(turned))), 180, 2);
+  const SunHour morning = parse_sun_hour("sun:2026-06-21T05:00Z@48.1,11.6");
+  EXPECT_GT(scene_azimuth(morning, sun_position(morning)), 60);
+
+  // Its light is that of its elevation.
+  const StandardSpectra standards;
+  const std::string text = "sun:2026-06-21T17:30Z@48.1,11.6";
+  const double elevation = sun_position(parse_sun_hour(text)).elevation_degrees;
+  EXPECT_LT(
+      (standards.light(text).values - standards.light("sun:" + std::to_string(elevation)).values).abs().maxCoeff(),
+      1e-6);
 }
 
 }  // namespace test_spectrum

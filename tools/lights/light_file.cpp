@@ -3,6 +3,7 @@
 
 #include "asset/fields.h"
 #include "base/json.h"
+#include "lights/suns.h"
 
 namespace kiln {
 
@@ -21,7 +22,6 @@ LightSettings read_light_file(const std::filesystem::path& file) {
         if (!value.is_array()) fail("a list of lights, each a text as --light takes it");
         for (const Json& light : value) {
           if (!light.is_string()) fail("a list of lights, each a text as --light takes it");
-          parse_light_spec(light.get<std::string>());
           settings.lights.push_back(light);
         }
       } else if (key == "environment") {
@@ -39,8 +39,8 @@ LightSettings read_light_file(const std::filesystem::path& file) {
     }
   }
   try {
-    light_specs(settings);
-  } catch (const WrongUsage& error) {  // an invalid ambient light
+    light_specs(with_placed_suns(settings));
+  } catch (const WrongUsage& error) {
     throw BadInput(file.string(), error.what(), "a light file", remedy);
   }
   return settings;

@@ -10,11 +10,11 @@ namespace kiln {
 
 namespace {
 
-/// Stores them as planes of 16 bits.
+/// Stores transfer vectors of the asset's channels as planes of 16 bits.
 void put_planes(PrtAsset& asset, const std::vector<float>& vectors) {
   constexpr int bits = 16;
   const int coefficients = asset.bands * asset.bands;
-  const auto length = static_cast<std::size_t>(3 * coefficients);
+  const std::size_t length = asset.vector_length();
   const std::size_t places = vectors.size() / length;
   std::vector<Image<std::uint16_t>> pictures(length);
   asset.bits = bits;
@@ -45,7 +45,7 @@ Spectrum spectrum_of(const PrtReflectance& shipped) {
 }
 
 WavelengthFold::WavelengthFold(const PrtAsset& asset, const std::optional<Spectrum>& measured)
-    : asset_(asset), at_wavelengths_(asset.spectrum->wavelengths_nm), is_known_(measured || asset.albedo.known) {
+    : asset_(asset), at_wavelengths_(asset.spectrum->wavelengths_nm) {
   const PrtAlbedo& albedo = asset.albedo;
   if (measured)
     constant_ = at_wavelengths_.of(*measured);
@@ -69,12 +69,13 @@ void WavelengthFold::shares_at(std::size_t place, std::span<float> shares) const
     std::ranges::copy(constant_, shares.begin());
 }
 
-/// Returns transfer vectors of three channels, one place after another.
+/// Returns transfer vectors of the channels, one place after another.
 std::vector<float> WavelengthFold::vectors(const Eigen::MatrixXf& channels, std::size_t places) const {
   constexpr std::size_t at_once = 4096;
   const auto wavelengths = static_cast<Eigen::Index>(asset_.channels);
   const Eigen::Index coefficients = asset_.bands * asset_.bands;
-  const std::size_t length = asset_.vector_length(), folded_length = 3 * static_cast<std::size_t>(coefficients);
+  const std::size_t length = asset_.vector_length(),
+                    folded_length = static_cast<std::size_t>(channels.rows() * coefficients);
   std::vector<float> folded(places * folded_length);
   parallel_for(std::size_t{0}, (places + at_once - 1) / at_once, [&](std::size_t block) {
     const std::size_t first = block * at_once, count = std::min(at_once, places - first);
@@ -88,7 +89,7 @@ std::vector<float> WavelengthFold::vectors(const Eigen::MatrixXf& channels, std:
       shares_at(first + p, shares);
       const Eigen::Map<const Eigen::MatrixXf> transfer(from + p * length, coefficients, wavelengths);
       const Eigen::Map<const Eigen::VectorXf> share(shares.data(), wavelengths);
-      Eigen::Map<Eigen::MatrixXf> to(folded.data() + (first + p) * folded_length, coefficients, 3);
+      Eigen::Map<Eigen::MatrixXf> to(folded.data() + (first + p) * folded_length, coefficients, channels.rows());
       to.noalias() = transfer * share.asDiagonal() * channels.transpose();
     }
   });
@@ -101,11 +102,10 @@ PrtAsset WavelengthFold::through(const Eigen::MatrixXd& channels) const {
                                  : static_cast<std::size_t>(asset_.width) * static_cast<std::size_t>(asset_.height);
   std::vector<float> folded = vectors(channels.cast<float>(), places);
   PrtAsset result = asset_;
-  result.channels = 3;
+  result.channels = static_cast<int>(channels.rows());
   result.spectrum.reset();
   result.pca.reset();
   result.clusters.reset();
-  if (is_known_) result.albedo = PrtAlbedo::of_constant(Eigen::Vector3f::Ones());
   if (asset_.is_per_vertex()) {
     result.planes.resize(result.vector_length());
     result.vertex_transfer = std::move(folded);

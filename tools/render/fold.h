@@ -15,7 +15,7 @@ namespace kiln {
 /// Returns a reflectance that an asset ships with.
 Spectrum spectrum_of(const PrtReflectance& shipped);
 
-/// Folds an asset's transfer at wavelengths into three channels.
+/// Folds an asset's transfer at wavelengths into fewer channels, with what its surface reflects of them.
 class WavelengthFold {
  public:
   /// The surface has the measured reflectance, or else at the planes' texels that of the asset's materials which were
@@ -24,7 +24,8 @@ class WavelengthFold {
   WavelengthFold(const PrtAsset& asset, const std::optional<Spectrum>& measured);
 
   /// Returns the asset with, as transfer, that of the wavelengths times what the surface reflects of them, through
-  /// `channels`, 3 x wavelengths: planes of 16 bits, and an albedo of 1 if the reflectance is known.
+  /// `channels`, a row for each channel that is made and a column for each wavelength: planes of 16 bits. The albedo is
+  /// within the transfer then.
   PrtAsset through(const Eigen::MatrixXd& channels) const;
 
  private:
@@ -35,7 +36,6 @@ class WavelengthFold {
   WavelengthAlbedo at_wavelengths_;
   std::vector<std::vector<float>> of_materials_;  ///< of the asset's reflectances
   std::vector<float> constant_;  ///< reflectances of all of the surface; empty where its albedo is a picture
-  bool is_known_;
 };
 
 }  // namespace kiln

@@ -13,6 +13,7 @@
 #include "gpu/egl_context.h"
 #include "image/image_file.h"
 #include "lights/light_command.h"
+#include "lights/suns.h"
 #include "mesh/camera_record.h"
 #include "render/output/contact_sheet.h"
 #include "render/output/frame_name.h"
@@ -193,16 +194,16 @@ RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& lig
         "planes; expected one asset, lit where it was baked");
   if (paths.each_asset && (!paths.places.empty() || !paths.probes.empty()))
     throw WrongUsage("each-asset: found --place or --probes; expected assets where they were baked");
-  const LightSettings given = chosen_lights(light_settings, paths.light_file);
-  const bool by_spectra = !paths.lamps.lamps.empty();
+  const LightSettings chosen = chosen_lights(light_settings, paths.light_file);
+  const bool by_spectra = are_spectral(chosen, paths.lamps);
+  const LightSettings given = with_placed_suns(chosen);
   if (by_spectra && (is_sheet(settings) || settings.space == PictureSpace::texture || paths.each_light ||
                      paths.each_asset || !paths.probes.empty() || !paths.compressed.empty()))
     throw WrongUsage(
         "lamp: found a sheet, --space texture, --each-light, --each-asset, --probes or --compressed; expected a "
         "picture "
         "of assets in a camera's view");
-  if (!by_spectra && !(paths.lamps.reflectances.empty() && paths.lamps.sensor.empty()))
-    throw WrongUsage("reflectance and sensor: found no --lamp; expected the spectrum of the light, such as --lamp D65");
+  if (by_spectra) require_grey(settings);
   if (paths.each_light && given.lights.empty()) throw WrongUsage("each-light: found no --light; expected at least one");
 
   RenderScene scene;
@@ -226,7 +227,11 @@ RenderScene load_render_scene(const RenderPaths& paths, const LightSettings& lig
   if (!paths.probes.empty()) scene.probes = load_probes(paths.probes);
   const int light_bands = std::max(bands, scene.probes ? scene.probes->bands : 0);
   scene.lights = scene_lights(given, light_bands);
-  if (by_spectra) scene.lamps = lamp_scene(scene.assets, given, light_bands, paths.lamps);
+  if (by_spectra) {
+    std::vector<const PrtAsset*> assets;
+    for (const PrtAsset& asset : scene.assets) assets.push_back(&asset);
+    scene.lamps = SpectralAssets(assets, paths.lamps).under(chosen, paths.lamps.lamps, light_bands);
+  }
   for (std::size_t k = 0; paths.each_light && k < given.lights.size(); ++k) {
     LightSettings one = given;
     one.lights = {given.lights[k]};
@@ -247,22 +252,16 @@ class PictureSeries {
   /// Draws assets `first` to `last` - 1 under all lights or each; returns the metrics of the first picture.
   Json draw(std::size_t first, std::size_t last, const EglContext& context) {
     Uploaded uploaded;
-    for (std::size_t k = first; k < last && !scene_.lamps; ++k) {
+    for (std::size_t k = first; k < last; ++k) {
       const bool probed = scene_.probes && (k > 0 || scene_.assets.size() == 1);
       const int samples = incident_samples_of(settings_, probed || scene_.lights.is_local());
       const bool other_form = settings_.technique == TechniqueChoice::compressed && scene_.compressed;
-      const PrtAsset& asset = other_form ? *scene_.compressed : scene_.assets[k];
+      const PrtAsset& asset = other_form     ? *scene_.compressed
+                              : scene_.lamps ? *scene_.lamps->assets[k]
+                                             : scene_.assets[k];
       uploaded.add(asset, scene_.placements[k], technique_of(settings_, asset), samples,
                    probed ? &*scene_.probes : nullptr);
-    }
-    std::vector<Uploaded> by_lamp;
-    for (std::size_t l = 0; scene_.lamps && l < scene_.lamps->lamps.size(); ++l) {
-      by_lamp.emplace_back();
-      for (std::size_t k = first; k < last; ++k) {
-        const PrtAsset& asset = scene_.lamps->lamps[l].assets[k];
-        by_lamp.back().add(asset, scene_.placements[k], technique_of(settings_, asset),
-                           incident_samples_of(settings_, scene_.lights.is_local()));
-      }
+      if (scene_.lamps) uploaded.renderers.back()->set_colors(scene_.lamps->colors[k]);
     }
     const PictureSettings picture = picture_of(settings_);
     const std::vector<SceneView> views = views_of(settings_, framed_shape(scene_, first, last));
@@ -272,13 +271,13 @@ class PictureSeries {
     Json metrics;
     for (std::size_t k = 0; k < pictures; ++k, ++drawn_) {
       const SceneView& view = views[std::min(k, views.size() - 1)];
-      const SceneLights& lights = scene_.each_light.empty() ? scene_.lights : scene_.each_light[k];
-      const Image<float> radiance =
-          scene_.lamps ? by_spectra(by_lamp, view) : render_scene(uploaded.assets, lights, view);
+      const SceneLights& lights = scene_.lamps                ? scene_.lamps->lights
+                                  : scene_.each_light.empty() ? scene_.lights
+                                                              : scene_.each_light[k];
+      const Image<float> radiance = render_scene(uploaded.assets, lights, view);
       write_picture(outputs_.add(is_numbered ? frame_name(name_, drawn_) : name_), radiance, picture);
       if (k == 0) {
-        const Uploaded& drawn = scene_.lamps ? by_lamp.front() : uploaded;
-        metrics = render_metrics(drawn.assets, scene_.specs, radiance, context);
+        metrics = render_metrics(uploaded.assets, scene_.specs, radiance, context);
         metrics["camera"] = to_json(view.camera);
         metrics["frames"] = views.size();
         if (scene_.lamps) metrics["lamps"] = scene_.lamps->names;
@@ -289,16 +288,6 @@ class PictureSeries {
   }
 
  private:
-  /// Sums the pictures of each lamp.
-  Image<float> by_spectra(const std::vector<Uploaded>& by_lamp, const SceneView& view) const {
-    Image<float> radiance;
-    for (std::size_t l = 0; l < by_lamp.size(); ++l) {
-      const LampLit& lit = scene_.lamps->lamps[l];
-      add_radiance(render_scene(by_lamp[l].assets, lit.lights, view), lit.rgb_from_channels, radiance);
-    }
-    return radiance;
-  }
-
   OutputSet& outputs_;
   const std::string& name_;
   const RenderScene& scene_;

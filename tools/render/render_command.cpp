@@ -32,7 +32,7 @@ void RenderCommand::add_to(CommandLine& command) {
   command.input_option("probes", paths.probes,
                        "Folder of kiln-probes: the light around the first asset, which stands at the origin, for the "
                        "others; for the only asset, that around what is not drawn");
-  add_lamp_options(command, paths.lamps);
+  add_lamp_options(command, paths.lamps, "Spectrum of all lights, or of each --light in turn");
   command.options("Picture", render_options(settings));
   command.options("Scene", film_options(film));
   command.flag("tree", tree, "Scene", "Print the tree that shadows go by at --time, and draw nothing");

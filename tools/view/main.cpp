@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "base/command_line.h"
+#include "base/errors.h"
 #include "base/json.h"
 #include "base/stopwatch.h"
 #include "lights/light_command.h"
@@ -27,6 +28,7 @@ int main(int argc, char** argv) {
     command.input_option("script", script,
                          std::string("Does what the file says, one step a line, then closes: ") + script_grammar);
     add_light_options(command, setup.lights, light_file);
+    add_lamp_options(command, setup.lamps, "Spectrum of all lights; of several, one at a time by key");
     // Leaves out options that the window decides: its GL device and its frames.
     command.options("Picture", render_options(setup.look).without({"frames", "gl-device"}));
     command.options("Window", viewer_options(setup));
@@ -35,13 +37,16 @@ int main(int argc, char** argv) {
     command.options("Scene by shaders", shading_options(scene_settings.shading));
     command.footer("Keys:\n" + key_help_text() + "\nKeys of a scene:\n" + scene_key_help_text());
     command.parse(argc, argv);
+    command.also_read(lamp_files(setup.lamps));
     if (is_scene_file(folder)) return view_scene_file(command, folder, script, setup, scene_settings);
 
     // Step 2: load, before a window is opened, so that bad input is reported without a display, too.
     setup.say = [&](const std::string& line) { command.say(line); };
     setup.folders = find_asset_folders(folder, compressed);
     setup.lights = chosen_lights(setup.lights, light_file);
-    ViewScene scene = load_view_scene(setup.folders, setup.lights);
+    if (!setup.shader.empty() && are_spectral(setup.lights, setup.lamps))
+      throw WrongUsage("shader: found one by lamps; expected it without lamps, since shaders are RGB");
+    ViewScene scene = load_view_scene(setup.folders, setup.lights, setup.lamps);
     first_state(scene, setup.lights, setup.look);
     const std::vector<ScriptStep> steps = script.empty() ? std::vector<ScriptStep>() : read_script(script);
 

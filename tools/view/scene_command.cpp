@@ -35,8 +35,8 @@ OptionSet scene_options(SceneCommandSettings& settings) {
 
 void view_scene_file(CommandLine& command, const std::filesystem::path& file, const std::filesystem::path& script,
                      const ViewerSetup& setup, const SceneCommandSettings& settings) {
-  for (const char* option :
-       {"light", "ambient", "environment", "environment-rotation", "light-file", "window", "compressed"})
+  for (const char* option : {"light", "ambient", "environment", "environment-rotation", "light-file", "window",
+                             "compressed", "lamp", "reflectance", "sensor", "white"})
     if (command.given(option))
       throw WrongUsage(std::string(option) + ": found it beside a scene; expected it in the scene");
   if (is_sheet(setup.look) || setup.look.space == PictureSpace::texture)

@@ -46,6 +46,7 @@ OptionSet viewer_options(ViewerSetup& setup) {
 }
 
 ViewState first_state(const ViewScene& scene, const LightSettings& lights, const RenderSettings& look) {
+  if (!scene.lights.lamps.empty()) require_grey(look);
   if (look.technique == TechniqueChoice::all)
     throw WrongUsage("technique: found all; expected one, as kiln-view shows them one after another");
   const PrtAsset& main = scene.forms.main();
@@ -99,7 +100,7 @@ void Viewer::press_key(char key) {
 }
 
 void Viewer::reload() {
-  ViewScene scene = load_view_scene(setup_.folders, setup_.lights);
+  ViewScene scene = load_view_scene(setup_.folders, setup_.lights, setup_.lamps);
   const bool had_all_bands = state_.bands == asset_->limits().bands;
   auto asset = std::make_unique<AssetView>(std::move(scene), setup_.look, state_);
   if (!setup_.shader.empty()) asset->set_shader(setup_.shader);

@@ -8,6 +8,7 @@
 
 #include "base/options.h"
 #include "lights/light_settings.h"
+#include "render/lamps.h"
 #include "render/render_settings.h"
 #include "view/draw/asset_view.h"
 #include "view/state/keys.h"
@@ -19,6 +20,7 @@ namespace kiln {
 struct ViewerSetup {
   AssetFolders folders;
   LightSettings lights;
+  LampSettings lamps;  ///< to choose among, by spectra
   RenderSettings look;
   std::string screenshots = ".";                ///< folder for screenshots
   std::filesystem::path shader;                 ///< the asset is drawn by it; empty: by a technique

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "base/parallel.h"
-#include "image/srgb.h"
 #include "spectrum/standards.h"
 
 namespace kiln {
@@ -38,34 +36,10 @@ std::vector<float> WavelengthAlbedo::of(const Eigen::Vector3f& albedo) const {
 }
 
 void WavelengthAlbedo::prepare_table() {
-  if (!table_.empty()) return;
-  table_.resize(table_side * table_side * table_side * size());
-  parallel_for(0, table_side * table_side, [&](int row) {
-    for (int i = 0; i < table_side; ++i) {
-      const Eigen::Vector3i node(i, row % table_side, row / table_side);
-      const Eigen::Vector3f encoded = node.cast<float>() / (table_side - 1);
-      const std::vector<float> shares = of(Eigen::Vector3f(encoded.unaryExpr(&linear_from_srgb)));
-      std::ranges::copy(shares, table_.begin() + static_cast<std::ptrdiff_t>(
-                                                     (static_cast<std::size_t>(row) * table_side + i) * size()));
-    }
+  if (!table_.is_empty()) return;
+  table_ = AlbedoTable(table_side, size(), [&](const Eigen::Vector3d& albedo, std::span<float> shares) {
+    std::ranges::copy(of(Eigen::Vector3f(albedo.cast<float>())), shares.begin());
   });
-}
-
-void WavelengthAlbedo::look_up(const Eigen::Vector3f& albedo, std::span<float> shares) const {
-  const Eigen::Vector3f place = albedo.unaryExpr(&srgb_from_linear) * (table_side - 1);
-  const Eigen::Vector3i low = place.cast<int>().cwiseMin(table_side - 2).cwiseMax(0);
-  const Eigen::Vector3f share = place - low.cast<float>();
-  std::ranges::fill(shares, 0.f);
-  for (int corner = 0; corner < 8; ++corner) {
-    std::size_t node = 0, stride = 1;
-    float weight = 1;
-    for (int c = 0; c < 3; ++c, stride *= table_side) {
-      const int up = corner >> c & 1;
-      node += stride * static_cast<std::size_t>(low(c) + up);
-      weight *= up != 0 ? share(c) : 1 - share(c);
-    }
-    for (std::size_t k = 0; k < shares.size(); ++k) shares[k] += weight * table_[node * size() + k];
-  }
 }
 
 SceneReflectance::SceneReflectance(const SceneMesh& scene, std::vector<int> wavelengths_nm)

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "material/albedo_table.h"
 #include "material/scene_mesh.h"
 #include "spectrum/rgb_lift.h"
 #include "spectrum/spectrum.h"
@@ -29,12 +30,12 @@ class WavelengthAlbedo {
   void prepare_table();
 
   /// Interpolates between the table's nodes, which stand evenly in sRGB's encoding: one share for each wavelength.
-  void look_up(const Eigen::Vector3f& albedo, std::span<float> shares) const;
+  void look_up(const Eigen::Vector3f& albedo, std::span<float> shares) const { table_.look_up(albedo, shares); }
 
  private:
   std::vector<int> wavelengths_;
   RgbLift lift_;
-  std::vector<float> table_;
+  AlbedoTable table_;
 };
 
 /// Reflectances at a few wavelengths of the meshes of a scene, each of which has an albedo.

@@ -15,6 +15,7 @@
 #include "base/errors.h"
 #include "base/numbers.h"
 #include "spectrum/spectrum_file.h"
+#include "spectrum/sun_position.h"
 
 namespace kiln {
 
@@ -70,6 +71,8 @@ NamedSpectrum StandardSpectra::light(const std::string& name) const {
   } else if (const auto kelvin = number_after(capitals, 'P')) {
     require_within(name, *kelvin, 500, 100000);
     power = black_body(*kelvin);
+  } else if (is_sun_hour(name)) {
+    power = sunlight(visible_sun(parse_sun_hour(name)).elevation_degrees);
   } else if (capitals.starts_with("SUN:")) {
     power = sunlight(parse_numbers("light sun", std::string_view(name).substr(4), 0, 90).front());
   } else if (std::error_code error; fs::is_regular_file(name, error)) {
@@ -77,7 +80,7 @@ NamedSpectrum StandardSpectra::light(const std::string& name) const {
   } else {
     throw WrongUsage("light: found '" + name +
                      "'; expected A to E or F1 to F12 of the CIE, D50 or D5600 for daylight, P2856 for a black body, "
-                     "sun:20 for the sun, or a file");
+                     "sun:20 for the sun, sun:2026-06-21T17:30+02:00@48.1,11.6 at an hour, or a file");
   }
   const double luminance = (power * observer(Observer::cie_1931).col(1).array()).sum();
   if (!(luminance > 0))

@@ -26,7 +26,8 @@ class StandardSpectra {
   /// - any other D and two digits (D75), the daylight of nominal temperature 7500 K, or D and four or five digits
   ///   (D5600), that of the correlated colour temperature: 4000 to 25000 K;
   /// - P and a temperature (P2856): a black body of 500 to 100000 K;
-  /// - sun:ELEVATION, the sun's disc at 0 to 90 degrees above the horizon in clear air (sunlight);
+  /// - sun:ELEVATION, the sun's disc at 0 to 90 degrees above the horizon in clear air (sunlight), or the same of an
+  ///   hour (parse_sun_hour);
   /// - else a file of one spectrum.
   /// Throws WrongUsage for a name that is none, BadInput for a file.
   NamedSpectrum light(const std::string& name) const;

@@ -44,6 +44,7 @@ AssetView::AssetView(ViewScene scene, const RenderSettings& settings, const View
       limits_(limits_of(scene_)),
       wanted_samples_(settings.incident_samples),
       look_(look_of(settings)) {
+  if (!scene_.lights.lamps.empty()) spectral_ = std::make_unique<SpectralAssets>(assets_of(scene_.forms), scene_.lamps);
   ViewState allowed = state;
   limit(allowed, limits_);
   renderer(scene_.forms.of(allowed.technique), allowed.light).prepare(allowed.technique);
@@ -66,6 +67,15 @@ AssetRenderer& AssetView::renderer(const PrtAsset& asset, const LightChoice& cho
   return *found;
 }
 
+SceneLights AssetView::lit_scene(const LightChoice& choice) {
+  SceneLights lights = lights_of(choice, scene_.lights);
+  if (!spectral_) return lights;
+  spectral_->set_sensor(choice.other_sensor ? std::filesystem::path() : scene_.lamps.sensor);
+  LampScene made = spectral_->under(std::move(lights), spectra_of(choice, scene_.lights));
+  for (std::size_t k = 0; k < made.assets.size(); ++k) colors_[made.assets[k].get()] = made.colors[k];
+  return std::move(made.lights);
+}
+
 const AssetLight& AssetView::light(const LightChoice& choice, int bands, const AssetRenderer& renderer) {
   if (!(choice == lit_by_)) {
     lights_.clear();
@@ -73,8 +83,7 @@ const AssetLight& AssetView::light(const LightChoice& choice, int bands, const A
   }
   const auto found = lights_.find(bands);
   if (found != lights_.end()) return found->second;
-  const AssetLight made =
-      light_for_asset(lights_of(choice, scene_.lights), bands, renderer.asset(), renderer.samples());
+  const AssetLight made = light_for_asset(lit_scene(choice), bands, renderer.asset(), renderer.samples());
   return lights_.emplace(bands, made).first->second;
 }
 
@@ -85,9 +94,12 @@ void AssetView::draw_lit(const ViewState& state, Technique technique, int bands,
   if (state.show == Show::coefficient) {
     look.albedo = std::array{1.f, 1.f, 1.f};
     look.own_albedo = false;
+    used.set_colors(nullptr);
     used.set_light(light_of_coefficient(state.coefficient, used.asset(), used.samples()), look);
   } else {
-    used.set_light(light(state.light, bands, used), look);
+    const AssetLight& lit = light(state.light, bands, used);
+    used.set_colors(spectral_ ? colors_.at(&used.asset()) : nullptr);
+    used.set_light(lit, look);
   }
   const bool is_deferred = state.shading == Shading::deferred && can_defer(technique);
   draw_scene({{&used, {}, technique}}, camera.clip_from_object().cast<double>(), camera.position.cast<double>(), frame,

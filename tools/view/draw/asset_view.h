@@ -46,6 +46,8 @@ class AssetView {
 
  private:
   AssetRenderer& renderer(const PrtAsset& asset, const LightChoice& light);
+  /// Returns the lights of a choice, by spectra if there are lamps; colors_ then follow.
+  SceneLights lit_scene(const LightChoice& choice);
   const AssetLight& light(const LightChoice& choice, int bands, const AssetRenderer& renderer);
   void draw_lit(const ViewState& state, Technique technique, int bands, const Camera& camera, Canvas& canvas,
                 const Frame& frame);
@@ -53,6 +55,8 @@ class AssetView {
 
   ViewScene scene_;
   ViewLimits limits_;
+  std::unique_ptr<SpectralAssets> spectral_;                                // null: RGB
+  std::map<const PrtAsset*, std::shared_ptr<const SurfaceColors>> colors_;  // under the lamps of lit_by_
   int wanted_samples_;
   SurfaceLook look_;
   std::map<const PrtAsset*, std::unique_ptr<AssetRenderer>> renderers_;

@@ -42,10 +42,7 @@ std::string name_of(const fs::path& folder) {
 }
 
 /// Throws BadInput if the asset has no colours.
-void require_colors(const PrtAsset& asset) {
-  const std::vector<float> dark(asset.vector_length() / static_cast<std::size_t>(asset.channels), 0.f);
-  vector_weights(asset, {asset.bands, {dark, dark, dark}}, {1, 1, 1});
-}
+void require_colors(const PrtAsset& asset) { rgb_readers(asset, {1, 1, 1}); }
 
 }  // namespace
 

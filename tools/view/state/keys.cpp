@@ -72,6 +72,24 @@ KeyResult toggle_environment(const Press& press) {
   return {};
 }
 
+KeyResult step_lamp(const Press& press) {
+  if (press.limits.lamps == 0) return {Wish::none, "lamps: none was given; see --lamp"};
+  press.state.light.lamp = step(press.state.light.lamp, press.key == 'k' ? 1 : -1, press.limits.lamps);
+  return {};
+}
+
+KeyResult step_hour(const Press& press) {
+  if (!press.limits.has_suns) return {Wish::none, "time of day: no light is the sun at an hour; see --light"};
+  press.state.light.sun_hours += press.key == 't' ? 0.25 : -0.25;
+  return {};
+}
+
+KeyResult toggle_sensor(const Press& press) {
+  if (!press.limits.has_camera) return {Wish::none, "sensor: no camera was given; see --sensor"};
+  press.state.light.other_sensor = !press.state.light.other_sensor;
+  return {};
+}
+
 KeyResult step_bands(const Press& press) {
   press.state.bands = std::clamp(press.state.bands + (press.key == ']' ? 1 : -1), 1, press.limits.bands);
   return {};
@@ -103,6 +121,9 @@ const std::vector<Binding>& bindings() {
          return KeyResult{};
        }},
       {"e", "e", "environment on or off", toggle_environment},
+      {"kK", "k  K", "next, previous lamp of those given", step_lamp},
+      {"tT", "t  T", "the sun a quarter of an hour later, earlier", step_hour},
+      {"v", "v", "seen by the camera, or by the CIE's observer", toggle_sensor},
       {"w", "w", "window of the light: none, Hann, Lanczos, dering",
        [](const Press& press) {
          press.state.light.window = step(press.state.light.window, 1, 4);

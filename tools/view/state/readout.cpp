@@ -71,6 +71,12 @@ Panel readout(const ViewState& state, const ViewLimits& limits, const PrtAsset& 
   row("Shading", is_deferred ? "deferred" : "forward");
   row("Shows", shown(state, limits, facts));
   row("Light", describe(state.light, lights));
+  if (limits.lamps > 0) {
+    const std::string& lamp = lights.lamps[static_cast<std::size_t>(state.light.lamp)];
+    row("Lamp", limits.lamps > 1 ? fmt::format("{}, {} of {}", lamp, state.light.lamp + 1, limits.lamps) : lamp);
+  }
+  if (limits.has_suns) row("Sun", describe_sun(state.light, lights));
+  if (limits.has_camera) row("Seen by", state.light.other_sensor ? "the CIE 1931 observer" : "the camera");
   if (limits.has_environment) row("Environment", describe_environment(state.light, lights));
   row("Window", window_name(state.light.window));
   row("Bands", fmt::format("{} of {}", state.bands, limits.bands));

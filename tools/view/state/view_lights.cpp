@@ -76,6 +76,21 @@ std::vector<LightSpec>::const_iterator main_light(const std::vector<LightSpec>& 
   return std::find_if(specs.begin(), specs.end(), has_direction);
 }
 
+SunHour moved(SunHour hour, double hours) {
+  hour.day += hours / 24;
+  return hour;
+}
+
+/// Puts a sun where it stands at its hour.
+void place_sun(LightSpec& spec, const SunHour& hour) {
+  const SunPosition sun = sun_position(hour);
+  spec.azimuth_degrees = scene_azimuth(hour, sun);
+  spec.elevation_degrees = sun.elevation_degrees;
+  if (sun.elevation_degrees < 0) spec.color.fill(0);
+}
+
+void make_grey(std::array<float, 3>& color) { color.fill((color[0] + color[1] + color[2]) / 3); }
+
 std::string light_name(const LightSpec& spec) {
   switch (spec.kind) {
     case LightSpec::Kind::cone:
@@ -123,6 +138,12 @@ SceneLights lights_of(const LightChoice& choice, const GivenLights& given) {
   else
     lights.specs = {preset_light(choice, given.box)};
   if (choice.environment) lights.environment = given.environment;
+  if (!given.lamps.empty() && choice.preset != LightPreset::given) {
+    make_grey(lights.specs.front().color);
+    make_grey(lights.specs.front().ground);
+  }
+  for (std::size_t k = 0; choice.preset == LightPreset::given && choice.sun_hours != 0 && k < given.suns.size(); ++k)
+    if (given.suns[k]) place_sun(lights.specs[k], moved(*given.suns[k], choice.sun_hours));
   // Without a drag nothing moves, not even by rounding.
   const LightChoice still = given_choice(given, choice.window);
   if (choice.preset != LightPreset::given ||
@@ -137,6 +158,29 @@ SceneLights lights_of(const LightChoice& choice, const GivenLights& given) {
     lights.environment = ShRotation(lights.environment->bands, turn.toRotationMatrix())(*lights.environment);
   }
   return lights;
+}
+
+std::vector<std::string> spectra_of(const LightChoice& choice, const GivenLights& given) {
+  const std::size_t count = choice.preset == LightPreset::given ? given.specs.size() : 1;
+  std::vector<std::string> names(count, given.lamps[static_cast<std::size_t>(choice.lamp)]);
+  for (std::size_t k = 0; choice.preset == LightPreset::given && k < given.suns.size(); ++k) {
+    if (!given.suns[k]) continue;
+    const SunHour hour = moved(*given.suns[k], choice.sun_hours);
+    // At night there is no light to have a spectrum.
+    if (sun_position(hour).elevation_degrees >= 0) names[k] = to_text(hour);
+  }
+  return names;
+}
+
+std::string describe_sun(const LightChoice& choice, const GivenLights& given) {
+  const auto sun = std::ranges::find_if(given.suns, [](const auto& one) { return one.has_value(); });
+  if (sun == given.suns.end()) return "";
+  const SunHour hour = moved(**sun, choice.sun_hours);
+  std::string text = to_text(hour).substr(4, 16);
+  text[10] = ' ';
+  const double elevation = sun_position(hour).elevation_degrees;
+  return text +
+         fmt::format(" UTC, {:.0f} degrees {} the horizon", std::abs(elevation), elevation < 0 ? "below" : "above");
 }
 
 AssetLight light_for_asset(const SceneLights& lights, int bands, const PrtAsset& asset,
@@ -165,7 +209,11 @@ std::string describe(const LightChoice& choice, const GivenLights& given) {
   const std::vector<LightSpec> specs = lights_of(choice, given).specs;
   const auto light = main_light(specs);
   std::string text = specs.empty() ? "none" : light_name(light == specs.end() ? specs.front() : *light);
-  if (light != specs.end()) text += fmt::format(" {:.0f}, {:.0f}", choice.azimuth_degrees, choice.elevation_degrees);
+  if (light != specs.end()) {
+    const bool has_moved = choice.sun_hours != 0 && light->kind != LightSpec::Kind::sphere;
+    text += fmt::format(" {:.0f}, {:.0f}", has_moved ? light->azimuth_degrees : choice.azimuth_degrees,
+                        has_moved ? light->elevation_degrees : choice.elevation_degrees);
+  }
   if (specs.size() > 1) text += fmt::format(" and {} more", specs.size() - 1);
   return text;
 }

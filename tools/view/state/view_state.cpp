@@ -18,6 +18,7 @@ void limit(ViewState& state, const ViewLimits& limits) {
       (state.show == Show::difference && !limits.has_reference) || (state.show == Show::charts && !limits.has_charts);
   if (lacks) state.show = Show::picture;
   state.light.environment = state.light.environment && limits.has_environment;
+  state.light.lamp = std::clamp(state.light.lamp, 0, std::max(0, limits.lamps - 1));
 }
 
 bool can_defer(Technique technique) {

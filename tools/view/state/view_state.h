@@ -37,6 +37,9 @@ struct LightChoice {
   double elevation_degrees = 30;
   bool environment = false;
   LightWindow window = LightWindow::hann;
+  int lamp = 0;               ///< of those given, by spectra
+  double sun_hours = 0;       ///< after the hours that the suns were given at
+  bool other_sensor = false;  ///< whether the CIE's observer sees, in place of the camera
 
   bool operator==(const LightChoice&) const = default;
 };
@@ -65,6 +68,9 @@ struct ViewLimits {
   bool has_reference = false;  ///< whether there is a form to compare others with
   bool has_charts = false;
   bool has_environment = false;
+  int lamps = 0;  ///< number of lamps to choose among; 0: by RGB
+  bool has_suns = false;
+  bool has_camera = false;
 
   int coefficients() const { return channels * bands * bands; }
   bool allows(Technique technique) const;
