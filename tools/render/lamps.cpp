@@ -43,8 +43,6 @@ void require_one_radiance(const std::vector<LightSpec>& specs) {
                        "; expected one radiance, since a lamp's spectrum is its colour");
 }
 
-}
-
 void require_plain_transfer(const PrtAsset& asset) {
   const std::string file = asset.ranges_file.string();
   if (asset.channels != 1 && !asset.spectrum)
