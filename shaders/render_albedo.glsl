@@ -24,7 +24,28 @@ vec3 surface_albedo(vec2 uv) {
 layout(binding = 10) uniform sampler3D surface_colors;
 layout(location = 8) uniform mat3 surface_products[COLOR_FUNCTIONS];
 
+// MEASURED_MATERIALS: some of the surface are materials whose reflectance was measured; measured_at has their numbers
+// by texel of the planes, 0 elsewhere, measured_colors what each, from 1, shows of each function.
+#ifdef MEASURED_MATERIALS
+layout(binding = 11) uniform usampler2D measured_at;
+layout(binding = 13) uniform sampler2D measured_colors;
+
+int measured_material(vec2 uv) {
+  ivec2 size = textureSize(measured_at, 0);
+  return int(texelFetch(measured_at, clamp(ivec2(floor(uv * vec2(size))), ivec2(0), size - 1), 0).r);
+}
+#endif
+
 vec3 surface_color(vec2 uv, float light[COLOR_FUNCTIONS]) {
+#ifdef MEASURED_MATERIALS
+  int material = measured_material(uv);
+  if (material > 0) {
+    vec3 measured = vec3(0.0);
+    for (int k = 0; k < COLOR_FUNCTIONS; ++k)
+      measured += light[k] * texelFetch(measured_colors, ivec2(material - 1, k), 0).rgb;
+    return measured;
+  }
+#endif
   vec3 albedo = surface_albedo(uv);
   vec3 encoded = mix(12.92 * albedo, 1.055 * pow(max(albedo, 0.003), vec3(1.0 / 2.4)) - 0.055,
                      greaterThan(albedo, vec3(0.0031308)));

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 
 #include "gpu/program.h"
 #include "runtime/decode/plane_weights.h"
@@ -16,7 +17,8 @@ namespace {
 
 // Bindings and locations of shaders/common_prt.glsl and shaders/render_*.
 constexpr GLuint planes_unit = 0, cluster_ids_unit = 1, light_unit = 2, albedo_unit = 3, vertex_transfer_unit = 4,
-                 normal_map_unit = 5, opacity_unit = 9, colors_unit = 10, triangles_unit = 12, phong_binding = 1;
+                 normal_map_unit = 5, opacity_unit = 9, colors_unit = 10, materials_unit = 11, triangles_unit = 12,
+                 measured_unit = 13, phong_binding = 1;
 constexpr GLint clip_from_object_location = 0, layers_location = 1, clusters_location = 2, asset_number_location = 3,
                 products_location = 8;
 
@@ -32,7 +34,8 @@ AssetRenderer::AssetRenderer(const PrtAsset& asset, int incident_samples)
       mesh_(upload_mesh(asset.mesh, samples_)),
       albedo_map_(upload_albedo(asset.albedo.picture, albedo_levels(asset))),
       white_(upload_albedo(Image<std::uint8_t>(1, 1, 3, 255))),
-      opacity_map_(upload_opacity(asset.opacity)) {
+      opacity_map_(upload_opacity(asset.opacity)),
+      material_numbers_(upload_material_numbers(asset.albedo.measured_at)) {
   if (samples_.are_vertices() && !asset.is_per_vertex()) corners_ = upload_corners(asset.mesh, mesh_);
 }
 
@@ -58,11 +61,12 @@ LightReaders AssetRenderer::readers(const SurfaceLook& look) const {
 void AssetRenderer::set_colors(std::shared_ptr<const SurfaceColors> colors) {
   if (colors == colors_) return;
   const auto functions = [](const std::shared_ptr<const SurfaceColors>& one) {
-    return one ? std::pair(one->functions(), one->readers.empty()) : std::pair(0, false);
+    return one ? std::tuple(one->functions(), one->readers.empty(), one->measured.empty()) : std::tuple(0, false, true);
   };
   if (functions(colors) != functions(colors_)) programs_.clear();
   colors_ = std::move(colors);
   color_table_ = colors_ ? upload_color_table(colors_->table) : UploadedTexture();
+  measured_colors_ = colors_ ? upload_measured_colors(colors_->measured) : UploadedTexture();
   lit_.reset();
 }
 
@@ -93,6 +97,10 @@ void AssetRenderer::bind_surface_maps(const GlProgram& used, bool by_table) cons
   if (albedo_map_.texture.name() != 0) glBindTextureUnit(albedo_unit, (is_own ? albedo_map_ : white_).texture.name());
   if (!by_table) return;
   glBindTextureUnit(colors_unit, color_table_.texture.name());
+  if (has_measured_materials()) {
+    glBindTextureUnit(materials_unit, material_numbers_.texture.name());
+    glBindTextureUnit(measured_unit, measured_colors_.texture.name());
+  }
   glProgramUniformMatrix3fv(used.name(), products_location, colors_->functions(), GL_FALSE,
                             colors_->table.products.front().data());
 }
@@ -103,6 +111,7 @@ const GlProgram& AssetRenderer::program(Pass pass) {
   if (is_clustered()) defines.emplace_back("PRT_CLUSTERED", "1");
   if (albedo_map_.texture.name() != 0) defines.emplace_back("ALBEDO_MAP", "1");
   if (opacity_map_.texture.name() != 0) defines.emplace_back("OPACITY_MAP", "1");
+  if (has_measured_materials()) defines.emplace_back("MEASURED_MATERIALS", "1");
   const ShaderDefines in_functions = {{"PRT_FUNCTIONS", std::to_string(colors_ ? colors_->functions() : 3)},
                                       {"COLOR_FUNCTIONS", std::to_string(colors_ ? colors_->functions() : 3)}};
   ShaderDefines phong = defines;
@@ -260,7 +269,8 @@ GpuMemory AssetRenderer::memory(Technique technique) const {
     memory.per_mesh += lit_ ? lit_->vertices.bytes : 0;
     memory.per_vertex += vertex_transfer_.bytes / std::max<std::size_t>(1, mesh_.vertex_count);
   }
-  memory.per_mesh += albedo_map_.bytes + opacity_map_.bytes + color_table_.bytes;
+  memory.per_mesh +=
+      albedo_map_.bytes + opacity_map_.bytes + color_table_.bytes + material_numbers_.bytes + measured_colors_.bytes;
   if (is_textured(technique))
     memory.per_mesh += planes_.bytes + cluster_ids_.bytes + corners_.bytes + (lit_ ? lit_->planes.bytes : 0);
   return memory;

@@ -83,6 +83,7 @@ class AssetRenderer {
   std::array<float, 3> albedo(const SurfaceLook& look) const;
   LightReaders readers(const SurfaceLook& look) const;
   bool differs_by_albedo() const { return colors_ && colors_->readers.empty(); }
+  bool has_measured_materials() const { return differs_by_albedo() && !colors_->measured.empty(); }
   std::vector<float> phong_buffer(const Eigen::Vector3f& eye) const;
   /// Binds the albedo, the opacity and the table of colours, for what the program computes by the table.
   void bind_surface_maps(const GlProgram& program, bool by_table) const;
@@ -99,7 +100,7 @@ class AssetRenderer {
   UploadedTexture planes_, cluster_ids_, normal_map_, albedo_map_, white_, opacity_map_;
   UploadedVertexTransfer vertex_transfer_;
   std::shared_ptr<const SurfaceColors> colors_;
-  UploadedTexture color_table_;
+  UploadedTexture color_table_, material_numbers_, measured_colors_;
   GlBuffer phong_lights_;
   std::shared_ptr<const UploadedLight> lit_;
 };

@@ -197,6 +197,35 @@ UploadedTexture upload_opacity(const Image<std::uint8_t>& picture) {
   return map;
 }
 
+UploadedTexture upload_material_numbers(const Image<std::uint8_t>& numbers) {
+  if (numbers.values().empty()) return {};
+  require_at_most(GL_MAX_TEXTURE_SIZE, std::max(numbers.width(), numbers.height()), "textures with a side");
+  UploadedTexture map{make_texture(GL_TEXTURE_2D), numbers.values().size()};
+  glTextureStorage2D(map.texture.name(), 1, GL_R8UI, numbers.width(), numbers.height());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage2D(map.texture.name(), 0, 0, 0, numbers.width(), numbers.height(), GL_RED_INTEGER, GL_UNSIGNED_BYTE,
+                      numbers.values().data());
+  set_sampling(map.texture, GL_NEAREST);
+  check_gl("uploading the numbers of materials");
+  return map;
+}
+
+UploadedTexture upload_measured_colors(const LightReaders& materials) {
+  if (materials.empty()) return {};
+  const auto count = static_cast<int>(materials.size());
+  const auto functions = static_cast<int>(materials.front().cols());
+  std::vector<float> colors;
+  for (int k = 0; k < functions; ++k)
+    for (const LightReader& material : materials)
+      for (int c = 0; c < 3; ++c) colors.push_back(material(c, k));
+  UploadedTexture map{make_texture(GL_TEXTURE_2D), 4 * sizeof(float) * colors.size() / 3};  // padded to four channels
+  glTextureStorage2D(map.texture.name(), 1, GL_RGB32F, count, functions);
+  glTextureSubImage2D(map.texture.name(), 0, 0, 0, count, functions, GL_RGB, GL_FLOAT, colors.data());
+  set_sampling(map.texture, GL_NEAREST);
+  check_gl("uploading the colours of measured materials");
+  return map;
+}
+
 UploadedVertexTransfer upload_vertex_transfer(const PrtAsset& asset) {
   const std::vector<float> vectors = asset.is_per_vertex() ? asset.vertex_transfer : looked_up_transfer(asset);
   const std::size_t length = asset.vector_length(), vertices = asset.mesh.positions.size();

@@ -63,6 +63,12 @@ UploadedTexture upload_opacity(const Image<std::uint8_t>& picture);
 /// tables stand one on another.
 UploadedTexture upload_color_table(const ColorTable& table);
 
+/// The numbers of measured materials, 8 bits, not interpolated; none where the picture is empty.
+UploadedTexture upload_material_numbers(const Image<std::uint8_t>& numbers);
+
+/// What measured materials show: a texel for each material and, one row on another, function; none without materials.
+UploadedTexture upload_measured_colors(const LightReaders& materials);
+
 /// Transfer vectors at the vertices, float32, in a buffer texture: four coefficients per texel, layer_count texels per
 /// vertex. Those of a textured asset are looked up at the vertices' uvs.
 struct UploadedVertexTransfer {

@@ -25,7 +25,10 @@ struct SurfaceColors {
   /// For each channel of the transfer, 3 x functions, where the surface is the same everywhere or within the transfer;
   /// then transfer is drawn as that of RGB is. Empty where the surface differs by its albedo.
   LightReaders readers = {};
-  ColorTable table = {};           ///< for shading without transfer, and where there are no readers
+  ColorTable table = {};  ///< for shading without transfer, and where there are no readers
+  /// 3 x functions, of each of the asset's materials that were measured (PrtAlbedo::reflectances), in place of the
+  /// table.
+  LightReaders measured = {};
   Eigen::MatrixXf highlight = {};  ///< 3 x functions: of white, for highlights
   bool is_known = true;            ///< whether the asset knows its surface; else a look's grey counts
 

@@ -233,7 +233,8 @@ class Bench {
  private:
   ShadeSettings settings_of_scene() const {
     ShadeSettings settings;
-    use_scene_look(settings.picture, scene_.film.description, [](const std::string&) { return false; });
+    SceneDescription description = scene_.film.description;  // as the camera is chosen in it
+    use_scene_look(settings.picture, description, [](const std::string&) { return false; });
     return settings;
   }
 

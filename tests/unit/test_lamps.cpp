@@ -128,12 +128,20 @@ TEST(Lamps, TexturesAreLiftedTexelByTexel) {
   const SpectrumMatrix observer = standards.observer(Observer::cie_1931);
   const RgbLift lift(standards);
   const Eigen::Matrix3d to_xyz = lift.rgb_from_xyz().inverse();
+  const std::vector<NamedSpectrum> materials = {standards.reflectance("TCS12"), standards.reflectance("TCS09")};
+  asset.albedo.measured_at = Image<std::uint8_t>(40, 25, 1);
+  for (const NamedSpectrum& one : materials)
+    asset.albedo.reflectances.push_back({one.name, first_wavelength_nm, 1, {one.values.begin(), one.values.end()}});
   Eigen::MatrixXd surfaces(wavelength_count, 1000);
   for (int k = 0; k < 1000; ++k) {
     Eigen::Vector3d albedo;
     for (int c = 0; c < 3; ++c)
       albedo(c) = linear_from_srgb(static_cast<float>(asset.albedo.picture.at(k % 40, k / 40, c)) / 255);
     surfaces.col(k) = lift.lift(albedo).spectrum().matrix();
+    if (k % 7 != 3) continue;
+    // Every seventh texel is of one of two materials that were measured.
+    asset.albedo.measured_at.at(k % 40, k / 40, 0) = static_cast<std::uint8_t>(1 + k % 2);
+    surfaces.col(k) = materials[static_cast<std::size_t>(k % 2)].values.matrix();
   }
   const auto context = test::software_context();
   const SpectralAssets assets({&asset}, {});

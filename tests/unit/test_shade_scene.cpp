@@ -33,7 +33,7 @@ nodes:
 lights: [{directional: [0, 0], animate: {keyframes: [{time: 0, radiance: 1}, {time: 1, radiance: 0.5}]}}]
 camera: {azimuth: 0, elevation: 0, target: [0, 0, 0], distance: 4, field-of-view: 30}
 )";
-  const ShadeScene scene = load_shade_scene(scratch / "scene.yaml");
+  ShadeScene scene = load_shade_scene(scratch / "scene.yaml");
   ShadeSettings settings;
   settings.picture.width = 80;
   settings.picture.height = 40;

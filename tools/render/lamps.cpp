@@ -234,6 +234,9 @@ SpectralAssets::LightFunctions SpectralAssets::functions_of(const std::vector<Na
     scene.reflectances.push_back({"", lift_.lift(AlbedoTable::albedo_of(node, side)).spectrum()});
   for (const std::optional<Spectrum>& measured : reflectances_)
     if (measured) scene.reflectances.push_back({"", *measured});
+  for (const PrtAsset* asset : assets_)
+    for (const PrtReflectance& material : asset->albedo.reflectances)
+      scene.reflectances.push_back({"", spectrum_of(material)});
   const BasisFinder finder(scene);
   const SpectralBasis basis = finder.characteristic(std::min(most_light_functions, finder.rank()));
   made.functions = basis.functions;
@@ -267,7 +270,13 @@ std::shared_ptr<const SurfaceColors> SpectralAssets::colors_of(std::size_t asset
     return colors;
   }
 
-  // Step 2: else products, which are the observer's with the wider primaries of BT.2020, in which they are less wrong,
+  // Step 2: materials that were measured are matrices.
+  for (const PrtReflectance& material : albedo.reflectances)
+    colors->measured.emplace_back(
+        (sensor.responses.transpose() * spectrum_of(material).matrix().asDiagonal() * functions.functions)
+            .cast<float>());
+
+  // Step 3: else products, which are the observer's with the wider primaries of BT.2020, in which they are less wrong,
   // and a table of what they are wrong by.
   const AlbedoTable& albedos = lifted();
   table.side = albedos.side();

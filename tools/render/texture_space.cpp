@@ -6,12 +6,11 @@
 #include "base/errors.h"
 #include "base/json.h"
 #include "runtime/decode/plane_weights.h"
+#include "runtime/draw/asset_uploads.h"
 
 namespace kiln {
 
 namespace {
-
-constexpr float unknown_albedo = 0.8f;  // as in AssetRenderer
 
 /// Returns the share of light that a texel reflects.
 std::array<float, 3> albedo_at(const PrtAsset& asset, const SurfaceLook& look, std::size_t texel) {

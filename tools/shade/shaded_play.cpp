@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/errors.h"
+#include "base/json.h"
 
 namespace kiln {
 
@@ -57,6 +58,8 @@ void ShadedPlay::update() {
 void ShadedPlay::draw(const Camera& camera, const ShadedFrame& frame, int frame_number, PartTimes* times) {
   blaming(scene_, [&] { renderer_.draw(camera, frame, moving_.time(), frame_number, times); });
 }
+
+Json ShadedPlay::shadow_record() const { return kiln::shadow_record(film_, moving_.shadow_engine()); }
 
 void ShadedPlay::read_shaders_again() {
   blaming(scene_, [&] { renderer_.set_shaders(scene_.shaders_again()); });

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "base/json_fwd.h"
 #include "render/film/film_settings.h"
 #include "runtime/shading/shaded_renderer.h"
 #include "shade/shade_scene.h"
@@ -27,7 +28,7 @@ class ShadedPlay {
   void draw(const Camera& camera, const ShadedFrame& frame, int frame_number, PartTimes* times = nullptr);
 
   /// Describes how nodes with transfer are shadowed, for the result.
-  Json shadow_record() const { return kiln::shadow_record(film_, moving_.shadow_engine()); }
+  Json shadow_record() const;
 
   /// Takes the shaders' files as they are now; frames must be made anew. Throws BadInput, and all stays.
   void read_shaders_again();

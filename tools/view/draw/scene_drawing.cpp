@@ -3,6 +3,8 @@
 
 #include <optional>
 
+#include "base/json.h"
+
 namespace kiln {
 
 namespace {
