@@ -20,7 +20,8 @@ class ByTransfer : public SceneDrawing {
       : look_(look),
         settings_(settings),
         samples_(film_samples_of(look, settings, film.description)),
-        moving_(film.description, film.asset_pointers(), {shadow_settings_of(settings, threads), samples_, shadow_engine_of(settings)}),
+        moving_(film.description, film.asset_pointers(),
+                {shadow_settings_of(settings, threads), samples_, shadow_engine_of(settings)}),
         assets_(moving_, look, samples_) {}
 
   MovingScene& moving() override { return moving_; }
