@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "base/json.h"
 #include "render/film/film_settings.h"
 #include "runtime/shading/shaded_renderer.h"
 #include "shade/shade_scene.h"
