@@ -171,6 +171,7 @@ Scene Scene::load(const std::filesystem::path& file, const SceneSettings& settin
   return report_errors([&] {
     SceneDescription description = load_scene(file);
     require_transfer(description);
+    require_no_lamps(description, "leave 'lamp' out, or draw the scene by kiln-render or kiln-view");
     std::vector<Asset> assets;
     for (const std::filesystem::path& folder : description.assets) assets.push_back(Asset::load(folder));
     return Scene(std::make_unique<Implementation>(std::move(description), std::move(assets), settings));

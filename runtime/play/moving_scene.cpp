@@ -2,7 +2,9 @@
 #include "runtime/play/moving_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -12,6 +14,9 @@
 namespace kiln {
 
 namespace {
+
+/// Functions of light that shadows are computed for at once: in place of red, green and blue.
+constexpr std::size_t functions_at_once = 3;
 
 /// Returns the sphere around a mesh whose centre is that of its box.
 NodeSphere sphere_around(const TriangleMesh& mesh) {
@@ -87,6 +92,19 @@ int MovingScene::find(std::string_view name) const {
   return -1;
 }
 
+void MovingScene::set_light_vectors(std::vector<Eigen::VectorXf> vectors) {
+  if (!vectors.empty() && vectors.size() != scene_.lights.size())
+    throw std::invalid_argument("MovingScene: there must be a light vector for each light");
+  if (!vectors.empty() && lights_.environment)
+    throw WrongUsage("scene: found an environment, which is red, green and blue, with lamps; expected lights alone");
+  if (settings_.engine && !vectors.empty() && static_cast<std::size_t>(vectors.front().size()) > functions_at_once)
+    throw WrongUsage("shadow-backend: found gpu with " + std::to_string(vectors.front().size()) +
+                     " different lamps; expected at most 3, or backend rays");
+  lights_.vectors = std::move(vectors);
+  shadows_.clear();
+  is_lit_ = false;
+}
+
 void MovingScene::set_time(double time) {
   if (time == time_) return;
   time_ = time;
@@ -153,18 +171,23 @@ void MovingScene::update() {
   place();
   if (is_lit_) return;
   if (found_tree_ && found_tree_->update(spheres())) {
-    if (shadows_) ++tree_changes_;
-    if (shadows_) shadows_->set_tree(found_tree_->tree());
+    if (!shadows_.empty()) ++tree_changes_;
+    for (MovingShadows& shadows : shadows_) shadows.set_tree(found_tree_->tree());
   }
-  if (!shadows_) {
+  if (shadows_.empty()) make_shadows();
+  for (std::size_t k = 0; k < shadows_.size(); ++k)
+    shadows_[k].update(tree_poses(), transferred_lights(functions_at_once * k));
+  is_lit_ = true;
+}
+
+void MovingScene::make_shadows() {
+  for (std::size_t first = 0; first < lights_.channels(); first += functions_at_once) {
     std::vector<ShadowObject> objects;
     for (std::size_t k = 0; k < assets_.size(); ++k)
       objects.push_back({&assets_[k]->mesh, points_[k], assets_[k]->bands, normals_at(k)});
-    shadows_.emplace(found_tree_ ? found_tree_->tree() : given_tree_, std::move(objects), settings_.shadows,
-                     settings_.engine);
+    shadows_.emplace_back(found_tree_ ? found_tree_->tree() : given_tree_, std::move(objects), settings_.shadows,
+                          settings_.engine);
   }
-  shadows_->update(tree_poses(), transferred_lights());
-  is_lit_ = true;
 }
 
 /// Returns the normals of an asset's points, where these are its vertices.
@@ -184,8 +207,20 @@ const SceneLights& MovingScene::lights() {
   return lights_;
 }
 
-SceneLights MovingScene::transferred_lights() const {
+/// Returns the lights whose red, green and blue are functions from `functions` on, if light is a sum of these: light
+/// and shadow are linear in radiance. Of one function all three are alike, which is computed once.
+SceneLights MovingScene::transferred_lights(std::size_t functions) const {
   SceneLights lights = lights_;
+  lights.vectors.clear();
+  for (std::size_t k = 0; k < lights_.vectors.size(); ++k) {
+    const Eigen::VectorXf& vector = lights_.vectors[k];
+    const auto count = static_cast<std::size_t>(vector.size());
+    for (std::array<float, 3>* const color : {&lights.specs[k].color, &lights.specs[k].ground})
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::size_t function = count == 1 ? 0 : functions + c;
+        (*color)[c] *= function < count ? vector[static_cast<Eigen::Index>(function)] : 0;
+      }
+  }
   if (settings_.without_direct) std::erase_if(lights.specs, [](const LightSpec& spec) { return is_direct(spec); });
   return lights;
 }
@@ -193,8 +228,15 @@ SceneLights MovingScene::transferred_lights() const {
 AssetLight MovingScene::light(int item) {
   update();
   AssetLight light = light_asset(lights_, asset_of(item).bands, pose(item), {});
-  const std::span<const LightCoefficients> samples = shadows_->light_of(node_of(item));
+  const std::span<const LightCoefficients> samples = shadows_.front().light_of(node_of(item));
   light.samples.assign(samples.begin(), samples.end());
+  for (std::size_t k = 1; k < shadows_.size(); ++k) {
+    const std::span<const LightCoefficients> more = shadows_[k].light_of(node_of(item));
+    for (std::size_t s = 0; s < more.size(); ++s)
+      light.samples[s].channels.insert(light.samples[s].channels.end(), more[s].channels.begin(),
+                                       more[s].channels.end());
+  }
+  for (LightCoefficients& sample : light.samples) sample.channels.resize(lights_.channels());
   return light;
 }
 
@@ -206,7 +248,7 @@ const SceneTree& MovingScene::tree() {
   place();
   if (!found_tree_) return given_tree_;
   if (found_tree_->update(spheres())) {
-    if (shadows_) shadows_->set_tree(found_tree_->tree());
+    for (MovingShadows& shadows : shadows_) shadows.set_tree(found_tree_->tree());
     is_lit_ = false;
   }
   return found_tree_->tree();

@@ -41,6 +41,12 @@ class MovingScene {
   /// Returns the index of the item of that name, or -1.
   int find(std::string_view name) const;
 
+  /// Makes light a sum of functions, with a light vector for each of the description's lights (SceneLights::vectors),
+  /// whose radiance is grey at all times: lights() and light() have a channel for each function then. Shadows are
+  /// computed for three functions at a time. Throws WrongUsage for more than three beside an engine, and for an
+  /// environment.
+  void set_light_vectors(std::vector<Eigen::VectorXf> vectors);
+
   /// Sets the time, seconds. Nothing is computed before it is asked for.
   void set_time(double time);
   double time() const { return time_; }
@@ -64,8 +70,8 @@ class MovingScene {
 
   /// Computes the light of all items, if anything has changed since it was computed; light() does so as well.
   void update();
-  /// Tells what the last computation of light did.
-  const ShadowStatistics& statistics() const { return shadows_->statistics(); }
+  /// Tells what the last computation of light did; of the first three functions.
+  const ShadowStatistics& statistics() const { return shadows_.front().statistics(); }
 
   /// Returns the tree that shadows go by.
   const SceneTree& tree();
@@ -77,7 +83,8 @@ class MovingScene {
   std::vector<NodeSphere> spheres() const;
   std::vector<Eigen::Vector3f> normals_at(std::size_t asset) const;
   ScenePoses tree_poses() const;
-  SceneLights transferred_lights() const;
+  SceneLights transferred_lights(std::size_t functions) const;
+  void make_shadows();
   int node_of(int item) const;
 
   SceneDescription scene_;
@@ -95,7 +102,7 @@ class MovingScene {
   SceneTree given_tree_;
   std::optional<ClusterTree> found_tree_;
   int tree_changes_ = 0;
-  std::optional<MovingShadows> shadows_;
+  std::vector<MovingShadows> shadows_;  ///< one for each three functions of light; made when light is first computed
 };
 
 }  // namespace kiln

@@ -63,6 +63,8 @@ struct LightKeyframes {
 struct SceneLight {
   LightSpec spec;  ///< at rest
   std::variant<std::monostate, LightKeyframes, CircularOrbit> motion;
+  std::string lamp = {};   ///< a spectrum by name, or a file relative to the scene's folder; empty: RGB
+  std::string where = {};  ///< "FILE:LINE"; empty for one from code
 };
 
 /// What a camera is told, at rest or at one moment; what it leaves out is up to the program.
@@ -107,8 +109,8 @@ struct SceneDescription {
   std::vector<std::filesystem::path> assets;  ///< folders
   std::vector<std::filesystem::path> meshes;  ///< files with uvs, without transfer
   std::filesystem::path shaders;              ///< folder of shaders of one's own; empty: none
-  std::vector<SceneLight> lights;
-  std::filesystem::path environment;  ///< empty: none
+  std::vector<SceneLight> lights;             ///< all with a lamp, or none
+  std::filesystem::path environment;          ///< empty: none
   double environment_rotation_degrees = 0;
   LightWindow window = LightWindow::hann;
   std::vector<SceneCamera> cameras = {{}};         ///< at least one; the first is the one to begin with

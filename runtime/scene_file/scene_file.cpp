@@ -166,6 +166,14 @@ class SceneReader {
         read_environment(node);
       else
         scene_.lights.push_back(values_.light(node));
+    const auto has_lamp = [](const YAML::Node& node) { return node["lamp"].IsDefined(); };
+    if (std::none_of(list.begin(), list.end(), has_lamp)) return;
+    for (const YAML::Node& node : list)
+      file_.require(has_lamp(node), node,
+                    node["environment"].IsDefined()
+                        ? "an environment, which is red, green and blue, beside lights with a 'lamp'"
+                        : "a light without a 'lamp' beside lights with one",
+                    "'lamp' of all lights, or of none");
   }
 
   void read_environment(const YAML::Node& node) {
@@ -228,6 +236,13 @@ void require_transfer(const SceneDescription& scene) {
       throw BadInput(item.where, "node '" + item.name + "' with a mesh, which has no transfer",
                      "'asset', an output folder of kiln-bake or kiln-compress",
                      "bake the mesh, or draw the scene by kiln-shade, whose shaders need no transfer");
+}
+
+void require_no_lamps(const SceneDescription& scene, const std::string& remedy) {
+  for (const SceneLight& light : scene.lights)
+    if (!light.lamp.empty())
+      throw BadInput(light.where, "the lamp '" + light.lamp + "', where light is red, green and blue",
+                     "lights without 'lamp'", remedy);
 }
 
 }  // namespace kiln

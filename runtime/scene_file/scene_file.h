@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "base/json_fwd.h"
 #include "runtime/scene/scene_description.h"
@@ -14,6 +15,10 @@ SceneDescription load_scene(const std::filesystem::path& file);
 
 /// Throws BadInput, which names the line, where a node has a mesh without transfer: only shaders of one's own draw it.
 void require_transfer(const SceneDescription& scene);
+
+/// Throws BadInput, which names the line and says the remedy, where a light has a lamp: renderers by red, green and
+/// blue would show its colours wrong.
+void require_no_lamps(const SceneDescription& scene, const std::string& remedy);
 
 /// Makes the JSON Schema of such a file.
 Json scene_schema();

@@ -76,21 +76,29 @@ Json light(const std::string& kind, const Json& main, Json properties, const std
 
 Json lights() {
   const Json color = reference("color"), angles = reference("angles"), place = reference("place");
+  const Json lamp = described({{"type", "string"}, {"minLength", 1}},
+                              "Its spectrum: D65, F11, P2856, sun:20, or a file; of all lights or of none");
   const auto moved = [&](const std::string& key, const Json& at, bool has_radius) {
     return animation({{key, at}, {"radiance", color}}, orbit(has_radius));
   };
-  return {{"anyOf",
-           {light("directional", angles,
-                  {{"radiance", color},
-                   {"radius", described(number(0, 180), "Half-angle of the light, degrees")},
-                   {"animate", moved("directional", angles, false)}}),
-            light("sphere", place,
-                  {{"radiance", color}, {"radius", number_above_zero()}, {"animate", moved("sphere", place, true)}},
-                  {"radius"}),
-            light("hemisphere", angles,
-                  {{"radiance", color}, {"ground", color}, {"animate", moved("hemisphere", angles, false)}}),
-            light("ambient", color, Json::object()),
-            light("environment", {{"type", "string"}}, {{"rotation", number(-360, 360)}})}}};
+  return {
+      {"anyOf",
+       {light("directional", angles,
+              {{"radiance", color},
+               {"lamp", lamp},
+               {"radius", described(number(0, 180), "Half-angle of the light, degrees")},
+               {"animate", moved("directional", angles, false)}}),
+        light("sphere", place,
+              {{"radiance", color},
+               {"lamp", lamp},
+               {"radius", number_above_zero()},
+               {"animate", moved("sphere", place, true)}},
+              {"radius"}),
+        light(
+            "hemisphere", angles,
+            {{"radiance", color}, {"lamp", lamp}, {"ground", color}, {"animate", moved("hemisphere", angles, false)}}),
+        light("ambient", color, {{"lamp", lamp}}),
+        light("environment", {{"type", "string"}}, {{"rotation", number(-360, 360)}})}}};
 }
 
 /// Makes the schema of a camera, with a name or without.

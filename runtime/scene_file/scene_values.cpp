@@ -207,10 +207,13 @@ SceneLight SceneValues::light(const YAML::Node& node) const {
   const std::string kind = only_key(node, {"directional", "sphere", "hemisphere", "ambient", "environment"});
   const YAML::Node main = node[kind];
   std::vector<std::string> keys = {kind};
+  if (kind != "environment") keys.emplace_back("lamp");
   if (kind != "ambient") keys.insert(keys.end(), {"radiance", "animate"});
   if (kind == "directional" || kind == "sphere") keys.emplace_back("radius");
   if (kind == "hemisphere") keys.emplace_back("ground");
   file_.check_keys(node, keys);
+  light.where = file_.where(node);
+  if (node["lamp"]) light.lamp = file_.scalar(node["lamp"], "a lamp, such as D65 or F11, or a file of a spectrum");
   if (kind == "ambient") {
     spec.kind = Kind::ambient;
     spec.color = color(main);

@@ -139,6 +139,13 @@ differ s3.png s2.png 3
 same s4.png s2.png 1 # dragged there and back
 same s5.png s0.png 1
 differ s6.png s5.png 3 # what is static stays, and the camera turns
+sed 's/\[60, 35\]/&, lamp: F11/; s/ambient: 0.2/&, lamp: D75/' scene.yaml >lit.yaml
+echo 'screenshot lit.png' >script
+display "$programs/kiln-view" lit.yaml --width 320 --height 240 --time 0.5 --script script --quiet ||
+  fail "the script of a scene with lamps ended with status $?"
+"$programs/kiln-render" lit.yaml --gl-device software --quiet --width 320 --height 240 --time 0.5 -o r_lit.png
+same lit.png r_lit.png 1
+differ lit.png r_s1.png 3
 if display "$programs/kiln-view" scene.yaml --light 1,2 2>said; then fail "lights beside a scene are taken"; fi
 grep -q "beside a scene" said || fail "of lights beside a scene it says: $(cat said)"
 

@@ -9,6 +9,7 @@
 #include "base/outputs.h"
 #include "image/srgb.h"
 #include "prt_folders.h"
+#include "render/film/film_lamps.h"
 #include "render/lamps.h"
 #include "scratch.h"
 #include "shapes.h"
@@ -278,6 +279,87 @@ TEST(Lamps, ChannelsOfWavelengthsBecomeColors) {
   AssetRenderer renderer(asset, 1);
   EXPECT_THROW(render_scene({{&renderer, {}, Technique::textured_prt, nullptr}}, scene_lights(furnace(), 3), view),
                BadInput);  // by RGB
+}
+
+/// Reads a scene whose only asset lies in a folder, lit by the lamps of its lights or of the settings.
+Film lit_film(const Scratch& scratch, const std::string& lights, const LampSettings& settings) {
+  std::ofstream(scratch / "scene.yaml") << "nodes: [{name: x, asset: .}]\n" << lights;
+  Film film = load_film(scratch / "scene.yaml", 0);
+  light_by_lamps(film, scratch / "scene.yaml", settings, {});
+  return film;
+}
+
+/// Draws a scene at time 0, the pixels.
+Image<float> drawn_film(const Film& film, const SceneView& view) {
+  RenderSettings look;
+  MovingScene scene = moving_scene(film, {{}, 1});
+  FilmAssets assets(scene, film, look, 1);
+  return render_scene(assets.now(view.look), scene.lights(), view);
+}
+
+TEST(Lamps, ASceneOfOneAssetIsThatAsset) {
+  const Scratch scratch;
+  const PrtAsset asset = sphere(scratch);
+  const auto context = test::software_context();
+  const SceneView view = test::small_view(asset.mesh, 16, 12);
+  std::ofstream(scratch / "tube.csv") << "400 1\n420 1\n440 9\n460 1\n480 1\n500 1\n520 1\n540 9\n560 1\n580 1\n600 "
+                                         "1\n620 9\n640 1\n660 1\n680 1\n700 1\n";
+  LampSettings settings;
+  settings.reflectances = {"TCS12"};
+  const std::string scene =
+      "lights: [{directional: [30, 40], lamp: F11}, {hemisphere: [0, 90], ground: 0.2, radiance: 0.5, lamp: tube.csv}, "
+      "{ambient: 0.2, lamp: A}, {directional: [-60, 0], radius: 9, lamp: D75}]\n";
+  const Film by_scene = lit_film(scratch, scene, settings);
+  ASSERT_EQ(by_scene.lamps->lights.vectors.front().size(), 4);
+  LightSettings lights;
+  lights.lights = {"30,40", "hemisphere:0,90,0.5,0.5,0.5,0.2,0.2,0.2", "ambient:0.2", "cone:-60,0,9"};
+  settings.lamps = {"F11", scratch / "tube.csv", "A", "D75"};
+  const LampScene by_asset = lamp_scene(asset, lights, settings);
+  const auto draw_alone = [&](const LampScene& lamps) {
+    AssetRenderer renderer(*lamps.assets[0], 1);
+    renderer.set_colors(lamps.colors[0]);
+    return render_scene({{&renderer, {}, Technique::textured_prt, nullptr}}, lamps.lights, view);
+  };
+  const auto expect_same = [](const Image<float>& a, const Image<float>& b) {
+    double brightest = 0;
+    for (std::size_t k = 0; k < a.values().size(); ++k) {
+      EXPECT_NEAR(a.values()[k], b.values()[k], 2e-5);
+      brightest = std::max<double>(brightest, a.values()[k]);
+    }
+    EXPECT_GT(brightest, 0.3);
+  };
+  expect_same(drawn_film(by_scene, view), draw_alone(by_asset));
+  // One for all, in place of those of the scene.
+  settings.lamps = {"P2000"};
+  expect_same(drawn_film(lit_film(scratch, scene, settings), view), draw_alone(lamp_scene(asset, lights, settings)));
+}
+
+TEST(Lamps, ScenesRefuseWhatLampsCannotLight) {
+  const Scratch scratch;
+  sphere(scratch);
+  const auto refuses = [&](const std::string& lights, int line, const std::string& part) {
+    try {
+      lit_film(scratch, lights, {});
+      ADD_FAILURE() << "not refused: " << lights;
+    } catch (const BadInput& error) {
+      EXPECT_TRUE(error.file().ends_with("scene.yaml:" + std::to_string(line))) << error.what();
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  };
+  refuses("lights:\n  - {ambient: 1, lamp: F99}\n", 3, "the lamp 'F99'");
+  refuses("lights:\n  - {ambient: 1, lamp: none.csv}\n", 3, "relative to the scene's folder");
+  refuses("lights:\n  - {ambient: [1, 0.5, 1], lamp: A}\n", 3, "a light of a colour");
+  refuses(
+      "lights:\n  - {directional: [0, 0], lamp: A, animate: {keyframes: [{time: 0, radiance: [1, 0.5, 1]}, {time: 1, "
+      "radiance: 1}]}}\n",
+      3, "a light of a colour");
+  EXPECT_FALSE(lit_film(scratch, "lights: [{ambient: [1, 0.5, 1]}]\n", {}).lamps);
+  LampSettings two;
+  two.lamps = {"A", "D65"};
+  EXPECT_THROW(lit_film(scratch, "lights: [{ambient: 1}, {ambient: 1}]\n", two), WrongUsage);
+  LampSettings surface;
+  surface.reflectances = {"TCS01"};
+  EXPECT_THROW(lit_film(scratch, "lights: [{ambient: 1}]\n", surface), WrongUsage);
 }
 
 TEST(Lamps, WhatCannotBeBySpectraIsRefused) {

@@ -358,6 +358,11 @@ TEST(SceneFile, FaultsNameTheirLine) {
   folder.refuses("nodes:\n  - {name: x, asset: a}\nlights:\n  - {sphere: [0, 1, 0]}\n", 4, "without a radius");
   folder.refuses("nodes:\n  - {name: x, asset: a}\nlights:\n  - {sun: [0, 1]}\n", 4, "one of directional");
   folder.refuses("nodes:\n  - {name: x, asset: a}\nlights:\n  - {environment: sky.hdr}\n", 4, "does not exist");
+  folder.refuses("nodes:\n  - {name: x, asset: a}\nlights:\n  - {ambient: 1, lamp: A}\n  - {ambient: 1}\n", 5,
+                 "of all lights, or of none");
+  folder.refuses("nodes:\n  - {name: x, asset: a}\nlights:\n  - {environment: a}\n  - {ambient: 1, lamp: A}\n", 4,
+                 "an environment");
+  folder.refuses("nodes:\n  - {name: x, asset: a}\nlights:\n  - {ambient: 1, lamp: [A]}\n", 4, "D65");
   folder.refuses("nodes:\n  - {name: x, asset: a}\ntree: oak\n", 3, "given or auto");
   folder.refuses("nodes:\n  - {name: x, asset: a}\n---\nnodes: []\n", 3, "a second document");
 }
@@ -496,6 +501,80 @@ TEST(MovingScene, WhatPassesTakesLightAndWhatIsStaticDoesNot) {
   EXPECT_GT(alone, 1);
   EXPECT_LT(std::abs(above("")), 0.02 * alone);  // the light is behind the other
   EXPECT_EQ(above(", static: true"), alone);     // the bake holds that already
+}
+
+TEST(SceneFile, LightsHaveLamps) {
+  const SceneFolder folder;
+  const SceneDescription scene = folder.read(
+      "nodes: [{name: x, asset: a}]\nlights:\n  - {directional: [0, 80], lamp: F11}\n"
+      "  - {ambient: 0.2, lamp: 'sun:20'}\n");
+  EXPECT_EQ(scene.lights[0].lamp, "F11");
+  EXPECT_EQ(scene.lights[1].lamp, "sun:20");
+  EXPECT_TRUE(scene.lights[1].where.ends_with("scene.yaml:4"));
+  try {
+    require_no_lamps(scene, "leave it out");
+    ADD_FAILURE() << "not refused";
+  } catch (const BadInput& error) {
+    EXPECT_TRUE(error.file().ends_with("scene.yaml:3")) << error.what();
+  }
+}
+
+/// A light of each kind, two of them moving, and something that passes before another.
+constexpr const char* lit_scene =
+    "nodes:\n  - {name: low, asset: a}\n"
+    "  - {name: high, asset: a, translate: [0, 4, 0], animate: {keyframes: [{time: 0, translate: [9, 4, 0]}, {time: 1, "
+    "translate: [0.3, 2, 0]}]}}\n"
+    "lights:\n  - {directional: [0, 80], radius: 5, lamp: A}\n"
+    "  - {directional: [0, 20], animate: {orbit: {period: 2}}, lamp: A}\n"
+    "  - {sphere: [0, 6, 1], radius: 1, radiance: 2, lamp: A}\n"
+    "  - {hemisphere: [0, 90], radiance: 1, ground: 0.1, lamp: A}\n"
+    "  - {ambient: 0.25, lamp: A}\n";
+
+TEST(MovingScene, EachFunctionOfLightIsShadowedByItself) {
+  const SceneFolder folder;
+  const SceneDescription description = folder.read(lit_scene);
+  PrtAsset ball;
+  ball.mesh = shapes::cube_sphere(4);
+  ball.bands = 3;
+  constexpr Eigen::Index count = 5;
+  for (const ShadowMethod method : {ShadowMethod::combined, ShadowMethod::product}) {
+    const MovingSceneSettings settings{{.method = method, .directions = 64}, 2};
+    // The truth: each light alone, in red, green and blue.
+    std::vector<AssetLight> alone;
+    for (std::size_t k = 0; k < count; ++k) {
+      SceneDescription one = description;
+      one.lights = {description.lights[k]};
+      MovingScene scene(one, {&ball}, settings);
+      scene.set_time(1);
+      alone.push_back(scene.light(0));
+    }
+    MovingScene scene(description, {&ball}, settings);
+    std::vector<Eigen::VectorXf> vectors;
+    for (Eigen::Index k = 0; k < count; ++k) vectors.emplace_back(Eigen::VectorXf::Unit(count, k));
+    vectors[0] << 1, 0, 0, -0.5f, 2;  // a mixture, as of characteristic vectors
+    scene.set_light_vectors(vectors);
+    scene.light(0);
+    scene.set_time(1);  // what is kept from another time does not matter
+    const AssetLight found = scene.light(0);
+    ASSERT_EQ(found.samples.size(), 2u);
+    EXPECT_EQ(found.rest.channels.size(), 5u);
+    for (std::size_t s = 0; s < 2; ++s) {
+      ASSERT_EQ(found.samples[s].channels.size(), 5u);
+      for (std::size_t f = 0; f < count; ++f)
+        for (std::size_t i = 0; i < 9; ++i) {
+          float truth = 0;
+          for (std::size_t k = 0; k < count; ++k)
+            truth += vectors[k][static_cast<Eigen::Index>(f)] * alone[k].samples[s].channels[0][i];
+          EXPECT_NEAR(found.samples[s].channels[f][i], truth, 2e-5) << f << " " << i;
+        }
+    }
+    MovingScene grey(description, {&ball}, settings);
+    grey.set_time(1);
+    const AssetLight as_grey = grey.light(0);
+    grey.set_light_vectors(std::vector<Eigen::VectorXf>(5, Eigen::VectorXf::Ones(1)));
+    const AssetLight one = grey.light(0);
+    EXPECT_EQ(one.samples.front().channels.at(0), as_grey.samples.front().channels[0]);
+  }
 }
 
 TEST(MovingScene, NodesMoveByHandUnlessTheyAreStatic) {

@@ -9,6 +9,7 @@
 #include "base/outputs.h"
 #include "base/stopwatch.h"
 #include "render/film/film.h"
+#include "render/film/film_lamps.h"
 #include "render/lamps.h"
 #include "render/render_command.h"
 
@@ -30,6 +31,8 @@ int main(int argc, char** argv) {
       film = load_film(asked.paths.assets.front(), asked.settings.level);
       use_scene_look(asked.settings, film->description, [&](const auto& name) { return command.given(name); });
       if (const std::string note = note_of_shaders(film->description); !note.empty()) command.say(note);
+      light_by_lamps(*film, asked.paths.assets.front(), asked.paths.lamps, asked.settings);
+      if (film->lamps) command.also_read(lamp_files({.lamps = film->lamps->names}));
     } else {
       scene = load_render_scene(asked.paths, asked.lights, asked.settings);
       if (!scene->note.empty()) command.say(scene->note);

@@ -32,7 +32,8 @@ void RenderCommand::add_to(CommandLine& command) {
   command.input_option("probes", paths.probes,
                        "Folder of kiln-probes: the light around the first asset, which stands at the origin, for the "
                        "others; for the only asset, that around what is not drawn");
-  add_lamp_options(command, paths.lamps, "Spectrum of all lights, or of each --light in turn");
+  add_lamp_options(command, paths.lamps,
+                   "Spectrum of all lights, those of a scene as well, or of each --light in turn");
   command.options("Picture", render_options(settings));
   command.options("Scene", film_options(film));
   command.flag("tree", tree, "Scene", "Print the tree that shadows go by at --time, and draw nothing");
@@ -45,8 +46,7 @@ void RenderCommand::check(const CommandLine& command) const {
   if (is_film()) {
     for (const char* option : {"light", "ambient", "environment", "environment-rotation", "light-file", "window"})
       require(!command.given(option), std::string(option) + ": found it beside a scene; expected lights in the scene");
-    for (const char* option :
-         {"place", "probes", "compressed", "each-light", "each-asset", "lamp", "reflectance", "sensor", "white"})
+    for (const char* option : {"place", "probes", "compressed", "each-light", "each-asset"})
       require(!command.given(option), std::string(option) + ": found it beside a scene; expected assets alone");
     require(!is_sheet(settings) && settings.space == PictureSpace::camera,
             "technique all, side-by-side and space: found one with a scene; expected a picture of the whole scene");

@@ -131,6 +131,8 @@ ShadeScene load_shade_scene(const fs::path& file) {
   if (read.film.description.shaders.empty())
     throw BadInput(file.string(), "a scene without 'shaders'", "'shaders', a folder of NAME.glsl",
                    "add it, and 'shader' to each node; or draw the scene by kiln-render, which needs none");
+  require_no_lamps(read.film.description,
+                   "leave 'lamp' out, or draw the scene by kiln-render or by kiln-view --by transfer");
   read.shaders = read_shaders(read.film.description.shaders);
   add_nodes(read);
   load_meshes(read);

@@ -9,6 +9,7 @@
 #include "base/json.h"
 #include "base/stopwatch.h"
 #include "render/film/film.h"
+#include "render/film/film_lamps.h"
 #include "runtime/scene_file/scene_file.h"
 #include "view/scene_viewer.h"
 
@@ -35,8 +36,8 @@ OptionSet scene_options(SceneCommandSettings& settings) {
 
 void view_scene_file(CommandLine& command, const std::filesystem::path& file, const std::filesystem::path& script,
                      const ViewerSetup& setup, const SceneCommandSettings& settings) {
-  for (const char* option : {"light", "ambient", "environment", "environment-rotation", "light-file", "window",
-                             "compressed", "lamp", "reflectance", "sensor", "white"})
+  for (const char* option :
+       {"light", "ambient", "environment", "environment-rotation", "light-file", "window", "compressed"})
     if (command.given(option))
       throw WrongUsage(std::string(option) + ": found it beside a scene; expected it in the scene");
   if (is_sheet(setup.look) || setup.look.space == PictureSpace::texture)
@@ -63,7 +64,8 @@ void view_scene_file(CommandLine& command, const std::filesystem::path& file, co
                        command.threads(),
                        {}};
   if (by_shaders) {
-    for (const char* option : {"technique", "level", "shading", "specular", "shininess", "supersample", "albedo"})
+    for (const char* option : {"technique", "level", "shading", "specular", "shininess", "supersample", "albedo",
+                               "lamp", "reflectance", "sensor", "white"})
       if (command.given(option))
         throw WrongUsage(std::string(option) +
                          ": found it beside a scene that is drawn by its shaders; expected --by "
@@ -73,6 +75,7 @@ void view_scene_file(CommandLine& command, const std::filesystem::path& file, co
     own.make_drawing = [&] { return drawing_by_shaders(shaded, shade, command.threads()); };
   } else {
     if (const std::string note = note_of_shaders(description); !note.empty()) command.say(note);
+    light_by_lamps(film, file, setup.lamps, shade.picture);
     own.make_drawing = [&] { return drawing_by_transfer(film, shade.picture, shade.film, command.threads()); };
   }
   check_shadow_backend(shade.film);

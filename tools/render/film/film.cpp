@@ -64,12 +64,21 @@ Json record_of(const SceneTree& tree, int node) {
 
 std::vector<const PrtAsset*> Film::asset_pointers() const {
   std::vector<const PrtAsset*> pointers;
-  for (const PrtAsset& asset : assets) pointers.push_back(&asset);
+  if (lamps)
+    for (const std::shared_ptr<const PrtAsset>& asset : lamps->assets) pointers.push_back(asset.get());
+  else
+    for (const PrtAsset& asset : assets) pointers.push_back(&asset);
   return pointers;
 }
 
+MovingScene moving_scene(const Film& film, const MovingSceneSettings& settings) {
+  MovingScene scene(film.description, film.asset_pointers(), settings);
+  if (film.lamps) scene.set_light_vectors(film.lamps->lights.vectors);
+  return scene;
+}
+
 Film load_film(const std::filesystem::path& file, int level) {
-  Film film{load_scene(file), {}};
+  Film film{.description = load_scene(file), .assets = {}};
   require_transfer(film.description);
   for (const std::filesystem::path& folder : film.description.assets) {
     film.assets.push_back(load_prt_asset(folder));
@@ -89,7 +98,7 @@ std::string note_of_shaders(const SceneDescription& scene) {
          ": shaders, 'casts-shadow' and 'mirror' are for kiln-shade and kiln-view; drawn by transfer and albedo";
 }
 
-FilmAssets::FilmAssets(MovingScene& scene, const RenderSettings& settings, int incident_samples)
+FilmAssets::FilmAssets(MovingScene& scene, const Film& film, const RenderSettings& settings, int incident_samples)
     : scene_(scene), renderers_(scene.description().assets.size()), techniques_(renderers_.size()) {
   for (int item = 0; item < scene.item_count(); ++item) {
     if (scene.item(item).asset < 0) continue;
@@ -97,6 +106,7 @@ FilmAssets::FilmAssets(MovingScene& scene, const RenderSettings& settings, int i
     if (renderers_[k]) continue;
     techniques_[k] = technique_of(settings, scene.asset_of(item));
     renderers_[k] = std::make_unique<AssetRenderer>(scene.asset_of(item), incident_samples);
+    if (film.lamps) renderers_[k]->set_colors(film.lamps->colors[k]);
     renderers_[k]->prepare(techniques_[k]);
   }
 }
@@ -194,10 +204,9 @@ Json film_to_files(OutputSet& outputs, const std::string& name, const Film& film
   const int samples = film_samples_of(settings, film_settings, film.description);
   const EglContext context(settings.gl_device, threads);
   const std::shared_ptr<VisibilityEngine> engine = shadow_engine_of(film_settings);
-  MovingScene scene(film.description, film.asset_pointers(),
-                    {shadow_settings_of(film_settings, threads), samples, engine});
+  MovingScene scene = moving_scene(film, {shadow_settings_of(film_settings, threads), samples, engine});
   scene.set_time(times.front());
-  FilmAssets assets(scene, settings, samples);
+  FilmAssets assets(scene, film, settings, samples);
   const CameraSettings camera = film_camera(scene, settings);
   SceneView view;
   view.width = settings.width;
@@ -219,6 +228,7 @@ Json film_to_files(OutputSet& outputs, const std::string& name, const Film& film
       metrics["times"] = times;
       metrics["tree"] = tree_record(scene.tree());
       metrics["shadows"] = shadow_record(film_settings, engine.get());
+      if (film.lamps) metrics["lamps"] = film.lamps->names;
     }
     return radiance;
   };

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "base/progress.h"
 #include "image/image.h"
 #include "render/film/film_settings.h"
+#include "render/lamps.h"
 #include "runtime/draw/scene_renderer.h"
 #include "runtime/play/moving_scene.h"
 
@@ -22,9 +24,14 @@ namespace kiln {
 struct Film {
   SceneDescription description;
   std::vector<PrtAsset> assets;
+  std::optional<LampScene> lamps = {};  ///< light and surfaces by spectra (light_by_lamps), of `assets`; nothing: RGB
 
+  /// Returns the assets to draw: those of the lamps, if there are any.
   std::vector<const PrtAsset*> asset_pointers() const;
 };
+
+/// Returns a film's nodes and lights as they move. `film` must live on. Throws as MovingScene does.
+MovingScene moving_scene(const Film& film, const MovingSceneSettings& settings);
 
 /// Reads a scene and its assets, with the mesh of a level of detail. Throws BadInput, also for nodes without transfer.
 Film load_film(const std::filesystem::path& file, int level);
@@ -36,8 +43,8 @@ std::string note_of_shaders(const SceneDescription& scene);
 /// Assets of a scene on the GPU: each once, however many nodes have it. Needs the GL context in which it was made.
 class FilmAssets {
  public:
-  /// Uploads the assets, each by its technique. `scene` must live on. Throws as AssetRenderer does.
-  FilmAssets(MovingScene& scene, const RenderSettings& settings, int incident_samples);
+  /// Uploads the assets, each by its technique. `scene` is the film's, and must live on. Throws as AssetRenderer does.
+  FilmAssets(MovingScene& scene, const Film& film, const RenderSettings& settings, int incident_samples);
 
   /// Returns the scene as it is now, lit, to be drawn.
   std::vector<SceneAsset> now(const SurfaceLook& look);

@@ -20,9 +20,8 @@ class ByTransfer : public SceneDrawing {
       : look_(look),
         settings_(settings),
         samples_(film_samples_of(look, settings, film.description)),
-        moving_(film.description, film.asset_pointers(),
-                {shadow_settings_of(settings, threads), samples_, shadow_engine_of(settings)}),
-        assets_(moving_, look, samples_) {}
+        moving_(moving_scene(film, {shadow_settings_of(settings, threads), samples_, shadow_engine_of(settings)})),
+        assets_(moving_, film, look, samples_) {}
 
   MovingScene& moving() override { return moving_; }
   void light() override { drawn_ = assets_.now(look_of(look_)); }
