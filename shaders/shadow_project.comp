@@ -6,12 +6,14 @@
 //   CHUNK   coefficients that a group adds up at a time, at most GROUP
 layout(local_size_x = GROUP) in;
 
+const uint TOGETHER = 8u;  // as in runtime/shadow/blocked_directions.cpp
 const int COEFFICIENTS = BANDS * BANDS;
 
 /// A point before a light.
 struct Job {
-  vec4 right;          // w: half-widths of the map at distance 1; 0: the maps are a cube's
-  vec4 up;             // w: 1 - cosine of the light's half-angle; below 0: the directions are those of skies
+  vec4 right;          // w: half-widths of the map at distance 1; 0: the maps are a cube's; of skies: the normal, or 0
+  vec4 up;             // w: 1 - cosine of the light's half-angle; below 0: the directions are those of skies, and x is
+                       // the sine below the horizon from which one of TOGETHER neighbours stands for the others
   vec4 axis;           // w: distance to the centre of a ball of light; 0: the light is endlessly far
   vec4 ball;           // x: sine of its half-angle
   ivec4 layers;        // of the maps, or of a cube's +X, -X, +Y, -Y; below 0: nothing is there
@@ -101,18 +103,23 @@ void main() {
   // Step 1: each invocation looks up every GROUPth direction, and projects those that are blocked.
   uint found = 0u;
   for (uint k = own; k < uint(job.numbers.x); k += uint(GROUP)) {
-    vec3 direction, local = vec3(0.0, 0.0, 1.0);
+    vec3 direction, looked_up, local = vec3(0.0, 0.0, 1.0);
     float farthest = 0.0;
     if (job.up.w < 0.0) {
-      direction = sky[k].xyz;
+      looked_up = direction = sky[k].xyz;
+      if (dot(job.right.xyz, direction) < job.up.x) {
+        uint leader = k - k % TOGETHER;
+        while (leader < k && dot(job.right.xyz, sky[leader].xyz) >= job.up.x) ++leader;
+        looked_up = sky[leader].xyz;
+      }
     } else {
       float below = job.numbers.x == 1 ? 0.0 : disc[k].x * job.up.w, squared = below * (2.0 - below);
       float radius = sqrt(max(0.0, squared));
       local = vec3(radius * disc[k].y, radius * disc[k].z, 1.0 - below);
-      direction = local.x * job.right.xyz + local.y * job.up.xyz + local.z * job.axis.xyz;
+      looked_up = direction = local.x * job.right.xyz + local.y * job.up.xyz + local.z * job.axis.xyz;
       farthest = job.axis.w * (local.z - sqrt(max(0.0, job.ball.x * job.ball.x - squared)));
     }
-    if (!is_blocked(job, direction, local, farthest)) continue;
+    if (!is_blocked(job, looked_up, local, farthest)) continue;
     ++found;
     add_harmonics(direction, job.numbers.y < 0 ? 1.0 : weights[uint(job.numbers.y) + k]);
   }

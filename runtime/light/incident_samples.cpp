@@ -10,6 +10,23 @@ namespace kiln {
 
 namespace {
 
+/// How far from the centre towards the vertices samples stand: at the two Chebyshev nodes of a span. Where light
+/// curves, linear interpolation then errs by half as much, at worst, as between the ends of the span; and a shadow that
+/// only touches an end of the mesh does not count for half of it.
+constexpr double outwards = 0.70710678118654752;
+
+/// Returns the centre of mass of the surface.
+Eigen::Vector3f centre_of(const TriangleMesh& mesh) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double whole = 0;
+  for (const Triangle& triangle : mesh.triangles) {
+    const double area = area_normal(mesh, triangle).cast<double>().norm();
+    for (const std::uint32_t vertex : triangle) sum += area / 3 * mesh.positions[vertex].cast<double>();
+    whole += area;
+  }
+  return whole > 0 ? Eigen::Vector3f((sum / whole).cast<float>()) : bounding_box(mesh).centre();
+}
+
 /// Picks vertices: both extremes along x, y and z, then the farthest from all so far; each position once.
 std::vector<Eigen::Vector3f> spread_points(const TriangleMesh& mesh, std::size_t count) {
   std::vector<Eigen::Vector3f> points;
@@ -77,7 +94,9 @@ IncidentSamples place_incident_samples(const TriangleMesh& mesh, int count) {
     return samples;
   }
   samples.points = spread_points(mesh, static_cast<std::size_t>(count));
-  const double unit = std::max(0.5 * static_cast<double>(bounding_box(mesh).diagonal()), 1e-30);
+  const Eigen::Vector3f centre = centre_of(mesh);
+  for (Eigen::Vector3f& point : samples.points) point = centre + static_cast<float>(outwards) * (point - centre);
+  const double unit = std::max(0.5 * outwards * static_cast<double>(bounding_box(mesh).diagonal()), 1e-30);
   for (const Eigen::Vector3f& vertex : mesh.positions) {
     const std::vector<double> contributions = contributions_at(vertex, samples.points, unit);
     samples.contributions.insert(samples.contributions.end(), contributions.begin(), contributions.end());

@@ -24,8 +24,8 @@ struct IncidentSamples {
 };
 
 /// Places `count` points, 1 to most_incident_samples, or samples_at_vertices. A single one stands at the centre of the
-/// box. Several are vertices: first both extremes along x, y and z, then, while there are vertices, the one farthest
-/// from all points so far.
+/// box. Several stand 1 / sqrt(2) of the way from the surface's centre of mass to vertices: first both extremes along
+/// x, y and z, then, while there are vertices, the one farthest from all so far.
 ///
 /// [Chapter 2010] gives a sample's contribution at a vertex as D_s / D_t, its distance over the sum of all distances.
 /// By its own text nearer samples should count more, so the ratio is inverted there. Here samples are weighted by

@@ -17,9 +17,6 @@ namespace {
 using std::numbers::pi;
 constexpr float endless = std::numeric_limits<float>::infinity();
 
-/// Sine of the angle below the horizon from which light counts as none: texels near a vertex lean off its normal.
-constexpr double far_below_horizon = -0.35;
-
 /// Tests whether any ray from the receiver's ball to within a cone of directions can meet the occluder's ball: a ray
 /// from its centre at the occluder grown by the receiver (Minkowski sum).
 bool may_meet(const BoundingBall& receiver, const BoundingBall& occluder, const Eigen::Vector3d& axis,
@@ -29,15 +26,14 @@ bool may_meet(const BoundingBall& receiver, const BoundingBall& occluder, const 
   return std::acos(std::clamp(grown.axis.dot(axis), -1.0, 1.0)) <= half_angle + grown.half_angle;
 }
 
-/// Tests whether all of a ball is so far below the horizon that the node's own body hides it.
+}  // namespace
+
 bool is_far_below(const ShadowPoint& point, const BoundingBall& ball) {
   if (!point.normal) return false;
   const ViewCone cone = cone_of(ball, point.position);
   return std::acos(std::clamp(point.normal->dot(cone.axis), -1.0, 1.0)) >
          std::acos(far_below_horizon) + cone.half_angle;
 }
-
-}  // namespace
 
 // Tests whether the occluder's ball meets the convex hull of the other two: the union of balls whose centres and radii
 // go evenly from one to the other; the distance to the nearest of these is a convex function of the place between them.

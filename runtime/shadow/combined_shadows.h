@@ -59,11 +59,17 @@ std::size_t layer_words(const ShadowStage& stage, const LightSources& sources);
 /// not looked at.
 NodeOccluders find_occluders(const ShadowStage& stage, int receiver, const LightSources& sources, double cap);
 
+/// Sine of the angle below the horizon from which light counts as none: texels near a vertex lean off its normal.
+inline constexpr double far_below_horizon = -0.35;
+
 /// A point that receives light, in the scene's space.
 struct ShadowPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   std::optional<Eigen::Vector3d> normal;  ///< then cones and caps far below its horizon cost few rays, or none
 };
+
+/// Tests whether all of a ball is so far below the horizon that the node's own body hides it.
+bool is_far_below(const ShadowPoint& point, const BoundingBall& ball);
 
 /// Sees a cone of light from a point: what may stand before it, and whether its axis alone stands for it.
 struct ConeView {

@@ -147,17 +147,21 @@ struct VisibilityMaps::Implementation {
     rows.push_back(row);
   }
 
-  /// Looks for what stands before skies, whose rows follow each other from `row` on.
+  /// Looks for what stands before skies, whose rows follow each other from `row` on. What is far below the point's
+  /// horizon is left out or grouped as rays do it.
   void add_skies(const ShadowStage& stage, const ShadowPoint& point, std::span<const int> nodes, std::size_t skies,
                  std::size_t row) {
-    MapJob job = {packed(Eigen::Vector3d::Zero(), 0),
-                  packed(Eigen::Vector3d::Zero(), -1),
+    std::vector<int> seen;
+    for (const int node : nodes)
+      if (!is_far_below(point, stage.place_of(node).ball)) seen.push_back(node);
+    MapJob job = {packed(point.normal.value_or(Eigen::Vector3d::Zero()), 0),
+                  packed({far_below_horizon, 0, 0}, -1),
                   packed(Eigen::Vector3d::Zero(), 0),
                   packed(Eigen::Vector3d::Zero(), 0),
                   {-1, -1, -1, -1},
                   {-1, -1, -1, -1},
                   {static_cast<std::int32_t>(sky_directions), -1, 0, 0}};
-    if (!add_cube(stage, point.position, nodes, job)) return;
+    if (!add_cube(stage, point.position, seen, job)) return;
     for (std::size_t k = 0; k < 3 * skies; ++k) {
       job.numbers[1] = static_cast<std::int32_t>(k * sky_directions);
       jobs.push_back(job);

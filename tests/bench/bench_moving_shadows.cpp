@@ -4,7 +4,7 @@
 // independent rays, and jumps between frames. Prints Markdown.
 //
 //   bench_moving_shadows [--mesh /usr/share/glmark2/models/bunny.obj] [--seconds 0.25] [--frames 24] [--only speed]
-//                        [--stand B]
+//                        [--stand B] [--samples 6] [--method "combined, 1,024 directions"]
 //   bench_moving_shadows --scene samples/strike.yaml     [--frames 24]   # goes through its film, light at all vertices
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -24,9 +24,11 @@ namespace {
 using namespace kiln;
 
 struct Arguments {
-  std::string mesh = "/usr/share/glmark2/models/bunny.obj", only = "all", stand, scene;
+  std::string mesh = "/usr/share/glmark2/models/bunny.obj", only = "all", stand, method, scene;
   double seconds = 0.25;
-  int frames = 24;
+  int frames = 24, samples = 6;
+
+  bool takes(const std::string& caption) const { return method.empty() || caption == method; }
 };
 
 /// A column of the tables.
@@ -111,7 +113,7 @@ void print_speeds(const std::vector<ShadowStand>& stands, const Arguments& argum
     std::printf("| method | 625, 1 thread | 2,500 | 10,000 | 625, 2 threads | 2,500 | 10,000 |\n");
     std::printf("| --- | --- | --- | --- | --- | --- | --- |\n");
     for (const MethodSetup& setup : setups) {
-      if (!setup.is_timed) continue;
+      if (!setup.is_timed || !arguments.takes(setup.caption)) continue;
       std::printf("| %s |", setup.caption);
       for (const int threads : {1, 2})
         for (const int directions : {625, 2500, 10000}) {
@@ -168,7 +170,7 @@ struct Film {
 
 /// Prints the largest change between two frames of slow motion through the place where the truth changes most, by every
 /// method, and that of its difference from the truth, which is what flickers.
-void print_jumps(const ShadowStand& stand, const Film& film) {
+void print_jumps(const ShadowStand& stand, const Film& film, const Arguments& arguments) {
   const auto frames = static_cast<double>(film.truth.size());
   std::size_t most = 1;
   for (std::size_t k = 1; k < film.truth.size(); ++k)
@@ -183,7 +185,7 @@ void print_jumps(const ShadowStand& stand, const Film& film) {
   std::printf("\nIn 32 steps where the truth changes most, by at most %.2f %% a step:\n\n", 100 * of_truth.worst);
   std::printf("| method | largest step | largest step of the error |\n| --- | --- | --- |\n");
   for (const MethodSetup& setup : setups) {
-    if (setup.error_directions == 0) continue;
+    if (setup.error_directions == 0 || !arguments.takes(setup.caption)) continue;
     MovingShadows shadows = shadows_of(stand, settings_of(setup, setup.error_directions, 0));
     FrameErrors step, of_error;
     FrameRadiance before, error_before;
@@ -199,7 +201,7 @@ void print_jumps(const ShadowStand& stand, const Film& film) {
   }
 }
 
-void print_errors(const ShadowStand& stand, int frames) {
+void print_errors(const ShadowStand& stand, int frames, const Arguments& arguments) {
   for (const double half_angle : {6.0, 12.0, 30.0}) {
     const Film film(stand, half_angle, frames, 0, 1, 0);
     FrameErrors of_bands, shadow;
@@ -213,7 +215,7 @@ void print_errors(const ShadowStand& stand, int frames) {
     std::printf("| method | error, mean | worst frame | from five bands, mean | worst frame |\n");
     std::printf("| --- | --- | --- | --- | --- |\n");
     for (const MethodSetup& setup : setups) {
-      if (setup.error_directions == 0) continue;
+      if (setup.error_directions == 0 || !arguments.takes(setup.caption)) continue;
       MovingShadows shadows = shadows_of(stand, settings_of(setup, setup.error_directions, 0));
       FrameErrors error, added;
       for (std::size_t k = 0; k < film.poses.size(); ++k) {
@@ -226,7 +228,7 @@ void print_errors(const ShadowStand& stand, int frames) {
                   100 * error.worst, 100 * added.mean, 100 * added.worst);
       std::fflush(stdout);
     }
-    if (half_angle == 12 && stand.receivers.size() < 10) print_jumps(stand, film);
+    if (half_angle == 12 && stand.receivers.size() < 10) print_jumps(stand, film, arguments);
   }
 }
 
@@ -255,7 +257,7 @@ void print_growth(const StandBodies& bodies, const Arguments& arguments) {
   for (std::size_t k = 0; k <= counts.size(); ++k) std::printf(" --- |");
   std::printf("\n");
   for (const MethodSetup& setup : setups) {
-    if (!setup.is_timed) continue;
+    if (!setup.is_timed || !arguments.takes(setup.caption)) continue;
     std::printf("| %s |", setup.caption);
     double x = 0, y = 0, xx = 0, xy = 0;
     for (const int count : counts) {
@@ -308,19 +310,22 @@ void print_scene(const Arguments& arguments) {
 void run(const Arguments& arguments) {
   if (!arguments.scene.empty()) return print_scene(arguments);
   TriangleMesh ground = shapes::plane(16);
-  const StandBodies bodies{stand_object(shapes::icosphere(3), true),
-                           stand_object(load_body(arguments.mesh, 2000), false), stand_object(ground, true)};
+  const StandBodies bodies{stand_object(shapes::icosphere(3), true, arguments.samples),
+                           stand_object(load_body(arguments.mesh, 2000), false, arguments.samples),
+                           stand_object(ground, true)};
   std::printf(
-      "Ball: %zu vertices; bunny: %zu; ground: %zu. Six samples of incident light a node, but one for each vertex\n"
-      "of C's bunny and D's ground.\n",
-      bodies.ball.mesh.positions.size(), bodies.bunny.mesh.positions.size(), bodies.ground.mesh.positions.size());
+      "Ball: %zu vertices; bunny: %zu; ground: %zu. %d samples of incident light a node (-1: vertices), but one for "
+      "each\n"
+      "vertex of C's bunny and D's ground.\n",
+      bodies.ball.mesh.positions.size(), bodies.bunny.mesh.positions.size(), bodies.ground.mesh.positions.size(),
+      arguments.samples);
   std::vector<ShadowStand> stands = {stand_a(bodies), stand_b(bodies), stand_c(bodies, true), stand_c(bodies, false),
                                      stand_d(bodies, 30)};
   if (!arguments.stand.empty())
     std::erase_if(stands, [&](const ShadowStand& stand) { return stand.name != arguments.stand; });
   if (arguments.only != "speed")
     for (const ShadowStand& stand : stands)
-      print_errors(stand, stand.receivers.size() > 10 ? std::min(arguments.frames, 8) : arguments.frames);
+      print_errors(stand, stand.receivers.size() > 10 ? std::min(arguments.frames, 8) : arguments.frames, arguments);
   if (arguments.only != "errors") {
     print_goals(stands, arguments);
     print_speeds(stands, arguments);
@@ -339,6 +344,9 @@ int main(int argc, char** argv) {
   app.add_option("--only", arguments.only, "What is measured")->check(CLI::IsMember({"all", "errors", "speed"}));
   app.add_option("--stand", arguments.stand, "Only this scene")
       ->check(CLI::IsMember({"A", "B", "C", "C, 6 samples", "D, 30"}));
+  app.add_option("--method", arguments.method, "Only this method, by its caption");
+  app.add_option("--samples", arguments.samples, "Samples of incident light a node: 1 to 8, or -1 for all vertices")
+      ->check(CLI::IsMember({-1, 1, 2, 3, 4, 5, 6, 7, 8}));
   app.add_option("--scene", arguments.scene, "A scene.yaml, played in place of all else")->check(CLI::ExistingFile);
   CLI11_PARSE(app, argc, argv);
   run(arguments);

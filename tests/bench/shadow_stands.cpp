@@ -103,11 +103,11 @@ void append_placed(TriangleMesh& whole, const TriangleMesh& mesh, const Placemen
 
 }  // namespace
 
-StandObject stand_object(TriangleMesh mesh, bool convex) {
+StandObject stand_object(TriangleMesh mesh, bool convex, int samples) {
   StandObject object;
   object.mesh = std::move(mesh);
   if (object.mesh.normals.empty()) compute_vertex_normals(object.mesh);
-  object.samples = place_incident_samples(object.mesh, 6);
+  object.samples = place_incident_samples(object.mesh, samples);
   const float lift = 1e-4f * bounding_box(object.mesh).diagonal();
   for (const Triangle& triangle : object.mesh.triangles) {
     Eigen::Vector3f place = Eigen::Vector3f::Zero(), normal = Eigen::Vector3f::Zero();
@@ -169,7 +169,7 @@ ShadowStand stand_a(const StandBodies& bodies) {
   stand.tree = root_alone();
   const int still = add_node(stand.tree, 0, 0), moving = add_node(stand.tree, 0, 0);
   stand.objects = {&bodies.ball};
-  stand.per_vertex = {false};
+  stand.per_vertex = {bodies.ball.samples.are_vertices()};
   stand.towards_light = {8, 8, 8};
   // The large one is above the origin; the other goes round below it and passes its shadow.
   stand.poses = [](double share) {
@@ -188,7 +188,7 @@ ShadowStand stand_b(const StandBodies& bodies) {
   const int pair = add_node(stand.tree, 0, -1), third = add_node(stand.tree, 0, 0),
             first = add_node(stand.tree, pair, 0), second = add_node(stand.tree, pair, 0);
   stand.objects = {&bodies.bunny};
-  stand.per_vertex = {false};
+  stand.per_vertex = {bodies.bunny.samples.are_vertices()};
   stand.towards_light = {0, 0, 1};
   stand.poses = [](double share) {
     const auto round = [&](double turns, double radius) {

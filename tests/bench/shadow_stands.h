@@ -21,13 +21,13 @@ struct StandObject {
   TriangleMesh mesh;
   std::vector<Eigen::Vector3f> places, normals;  ///< of the triangles' middles; object space
   std::vector<std::vector<float>> transfer;      ///< by place
-  IncidentSamples samples;                       ///< six of them
+  IncidentSamples samples;
 };
 
 inline constexpr int stand_bands = 5;
 
-/// Makes an object; a convex one does not shadow itself.
-StandObject stand_object(TriangleMesh mesh, bool convex);
+/// Makes an object with so many samples of incident light, or samples_at_vertices; a convex one does not shadow itself.
+StandObject stand_object(TriangleMesh mesh, bool convex, int samples = 6);
 
 /// Loads a mesh and simplifies it to `faces` triangles, one unit in height, centred.
 TriangleMesh load_body(const std::filesystem::path& file, int faces);
@@ -37,7 +37,7 @@ struct ShadowStand {
   std::string name;
   SceneTree tree;
   std::vector<const StandObject*> objects;  ///< by asset
-  std::vector<bool> per_vertex;             ///< by asset: light at all vertices, not at six samples
+  std::vector<bool> per_vertex;             ///< by asset: light at all vertices, not at samples
   Eigen::Vector3d towards_light = {1, 1, 1};
   std::function<ScenePoses(double)> poses;  ///< at a share of the period, 0 to 1
   std::vector<int> receivers;               ///< nodes whose error is measured
@@ -76,7 +76,7 @@ struct TrueFrame {
 /// Casts about 256 rays, stratified at random, of a cone of light from each place.
 TrueFrame true_frame(const ShadowStand& stand, const ScenePoses& poses, const LightSpec& light, unsigned seed);
 
-/// Exit radiance by a method's light, at least 0: interpolated by the six samples' contributions, or between the three
+/// Exit radiance by a method's light, at least 0: interpolated by the samples' contributions, or between the three
 /// vertices around a place.
 FrameRadiance frame_of(const ShadowStand& stand, const MovingShadows& shadows);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <Eigen/Geometry>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
 #include <vector>
@@ -48,6 +49,8 @@ TEST(LocalLight, ContributionsReproduceLinearLight) {
     const TriangleMesh mesh = shapes::icosphere(3, 2.5f);
     const IncidentSamples samples = place_incident_samples(mesh, count);
     ASSERT_EQ(samples.count(), count);
+    if (count > 1)
+      for (const Eigen::Vector3f& point : samples.points) EXPECT_NEAR(point.norm(), 2.5 / std::sqrt(2.0), 1e-3);
     double error = 0;
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
       double sum = 0;

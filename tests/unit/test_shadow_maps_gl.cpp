@@ -236,7 +236,7 @@ TEST(VisibilityMaps, RaysEndAtBallsOfLight) {
 }
 
 /// Many nodes, points and lights: no bit depends on how many maps are drawn at once, nor on what was kept; more texels
-/// come nearer to rays.
+/// come nearer to rays, though a third of the sky is far below vertices' horizons, where few directions stand for all.
 TEST(VisibilityMaps, NoBitDependsOnBatches) {
   const TriangleMesh ball = shapes::icosphere(1), wall = shapes::plane(3);
   const std::vector<ShadowObject> objects = {{&ball, ball.positions, 4, ball.normals}, {&wall, wall.positions, 3, {}}};
