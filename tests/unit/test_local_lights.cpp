@@ -49,8 +49,8 @@ TEST(LocalLight, ContributionsReproduceLinearLight) {
     const TriangleMesh mesh = shapes::icosphere(3, 2.5f);
     const IncidentSamples samples = place_incident_samples(mesh, count);
     ASSERT_EQ(samples.count(), count);
-    if (count > 1)
-      for (const Eigen::Vector3f& point : samples.points) EXPECT_NEAR(point.norm(), 2.5 / std::sqrt(2.0), 1e-3);
+    for (const Eigen::Vector3f& point : samples.points)
+      EXPECT_NEAR(point.norm(), count > 1 ? 2.5 / std::sqrt(2.0) : 0, 1e-3);
     double error = 0;
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
       double sum = 0;
