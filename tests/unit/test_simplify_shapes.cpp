@@ -230,7 +230,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, EachQuality, testing::ValuesIn(all_shapes()),
 class ManyParts : public testing::Test, protected Scratch {};
 
 TEST_F(ManyParts, AreTheSameOnOneThreadAndTwo) {
-  const TriangleMesh high = shapes::character(12, 3), bowl = shapes::thin_bowl(48, 12, 0.002f);
+  const TriangleMesh high = shapes::character(12, 2), bowl = shapes::thin_bowl(48, 12, 0.002f);
   const auto bytes = [&](std::size_t threads, const TriangleMesh& mesh, const SimplifySettings& settings) {
     const ThreadLimit limit(threads);
     LowFile file(folder() / "low.drc");
