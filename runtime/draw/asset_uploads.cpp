@@ -63,6 +63,20 @@ std::vector<float> looked_up_transfer(const PrtAsset& asset) {
   return vectors;
 }
 
+/// Uploads a picture of one byte a texel; none where it is empty.
+UploadedTexture upload_bytes(const Image<std::uint8_t>& picture, GLenum stored_as, GLenum given_as, GLint filter) {
+  if (picture.values().empty()) return {};
+  require_at_most(GL_MAX_TEXTURE_SIZE, std::max(picture.width(), picture.height()), "textures with a side");
+  UploadedTexture map{make_texture(GL_TEXTURE_2D), picture.values().size()};
+  glTextureStorage2D(map.texture.name(), 1, stored_as, picture.width(), picture.height());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTextureSubImage2D(map.texture.name(), 0, 0, 0, picture.width(), picture.height(), given_as, GL_UNSIGNED_BYTE,
+                      picture.values().data());
+  set_sampling(map.texture, filter);
+  check_gl("uploading a map of bytes");
+  return map;
+}
+
 }  // namespace
 
 int layer_count(std::size_t planes) { return static_cast<int>((planes + planes_per_layer - 1) / planes_per_layer); }
@@ -185,29 +199,11 @@ UploadedTexture upload_color_table(const ColorTable& table) {
 }
 
 UploadedTexture upload_opacity(const Image<std::uint8_t>& picture) {
-  if (picture.values().empty()) return {};
-  require_at_most(GL_MAX_TEXTURE_SIZE, std::max(picture.width(), picture.height()), "textures with a side");
-  UploadedTexture map{make_texture(GL_TEXTURE_2D), picture.values().size()};
-  glTextureStorage2D(map.texture.name(), 1, GL_R8, picture.width(), picture.height());
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTextureSubImage2D(map.texture.name(), 0, 0, 0, picture.width(), picture.height(), GL_RED, GL_UNSIGNED_BYTE,
-                      picture.values().data());
-  set_sampling(map.texture, GL_LINEAR);
-  check_gl("uploading the opacity");
-  return map;
+  return upload_bytes(picture, GL_R8, GL_RED, GL_LINEAR);
 }
 
 UploadedTexture upload_material_numbers(const Image<std::uint8_t>& numbers) {
-  if (numbers.values().empty()) return {};
-  require_at_most(GL_MAX_TEXTURE_SIZE, std::max(numbers.width(), numbers.height()), "textures with a side");
-  UploadedTexture map{make_texture(GL_TEXTURE_2D), numbers.values().size()};
-  glTextureStorage2D(map.texture.name(), 1, GL_R8UI, numbers.width(), numbers.height());
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTextureSubImage2D(map.texture.name(), 0, 0, 0, numbers.width(), numbers.height(), GL_RED_INTEGER, GL_UNSIGNED_BYTE,
-                      numbers.values().data());
-  set_sampling(map.texture, GL_NEAREST);
-  check_gl("uploading the numbers of materials");
-  return map;
+  return upload_bytes(numbers, GL_R8UI, GL_RED_INTEGER, GL_NEAREST);
 }
 
 UploadedTexture upload_measured_colors(const LightReaders& materials) {
