@@ -106,8 +106,8 @@ bool may_see(const ShadowPoint& point, const BoundingBall& ball, const LightSour
 /// zonal coefficients of that closed form. Seven directions of it say what share is not taken already by meshes and
 /// caps before it.
 ///
-/// Of directions of the sky far below the point's horizon, one stands for its seven neighbours, and meshes that are
-/// wholly there are not looked at.
+/// One direction of the sky stands for its seven neighbours far below the point's horizon, and meshes that are wholly
+/// there are not looked at.
 ///
 /// `known` is what a VisibilityEngine found at the point; then no rays are cast but those of caps. `layer` is read, and
 /// written where other occluders stand still now than it holds.

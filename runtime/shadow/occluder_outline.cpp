@@ -22,8 +22,8 @@ namespace kiln {
 namespace {
 
 constexpr std::size_t most_boxes = 8, most_flats = 8, most_corners = 8;
-/// Of the mesh's radius: how far the vertices of a flat part may be off its plane, and those of its rim off its
-/// outline.
+/// Distance, as a part of the mesh's radius, that the vertices of a flat part may be off its plane, and those of its
+/// rim off its outline.
 constexpr double flat_tolerance = 1e-4;
 /// Cosine of the angle between neighbouring triangles of a flat part: what rounded positions turn small ones by.
 constexpr double flat_cosine = 0.9999;

@@ -21,7 +21,7 @@ PathShares shares_of(const Eigen::Vector3f& color);
 /// measured surface reflects what was measured, and any other what its albedo there is lifted to.
 class PathAlbedo {
  public:
-  /// Of no surface, for paths that never bounce.
+  /// Makes the albedo of no surface, for paths that never bounce.
   PathAlbedo() = default;
 
   /// `surfaces` have an albedo each; without wavelengths paths carry red, green and blue. Throws MachineLacks.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "base/command_line.h"
-#include "base/errors.h"
 #include "base/json.h"
 #include "base/stopwatch.h"
 #include "lights/light_command.h"
@@ -44,8 +43,7 @@ int main(int argc, char** argv) {
     setup.say = [&](const std::string& line) { command.say(line); };
     setup.folders = find_asset_folders(folder, compressed);
     setup.lights = chosen_lights(setup.lights, light_file);
-    if (!setup.shader.empty() && are_spectral(setup.lights, setup.lamps))
-      throw WrongUsage("shader: found one by lamps; expected it without lamps, since shaders are RGB");
+    check_shader(setup);
     ViewScene scene = load_view_scene(setup.folders, setup.lights, setup.lamps);
     first_state(scene, setup.lights, setup.look);
     const std::vector<ScriptStep> steps = script.empty() ? std::vector<ScriptStep>() : read_script(script);

@@ -39,6 +39,11 @@ bool same_kind(const ViewState& a, const ViewState& b) {
 
 }  // namespace
 
+void check_shader(const ViewerSetup& setup) {
+  if (!setup.shader.empty() && are_spectral(setup.lights, setup.lamps))
+    throw WrongUsage("shader: found one by lamps; expected it without lamps, since shaders are RGB");
+}
+
 OptionSet viewer_options(ViewerSetup& setup) {
   OptionSet options;
   options.text("screenshots", setup.screenshots, "The folder that screenshots go to");

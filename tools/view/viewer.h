@@ -30,6 +30,9 @@ struct ViewerSetup {
 /// Makes the options that concern the window alone.
 OptionSet viewer_options(ViewerSetup& setup);
 
+/// Throws WrongUsage for a shader beside lamps: shaders are RGB.
+void check_shader(const ViewerSetup& setup);
+
 /// Makes the state that the settings describe. Throws WrongUsage for invalid settings, and if the asset cannot be drawn
 /// so.
 ViewState first_state(const ViewScene& scene, const LightSettings& lights, const RenderSettings& look);
