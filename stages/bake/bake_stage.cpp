@@ -4,6 +4,7 @@
 #include "asset/format.h"
 #include "bake/bake_settings.h"
 #include "base/asset_layout.h"
+#include "material/material_settings.h"
 
 namespace kiln {
 
@@ -130,17 +131,8 @@ StageRun run(const AssetPlan& plan) {
 }  // namespace
 
 const StageInfo& bake_stage() {
-  static const StageInfo info = {.name = "bake",
-                                 .options = options,
-                                 .rivals = {{"albedo", "albedo-texture"},
-                                            {"albedo", "reflectance"},
-                                            {"albedo-texture", "reflectance"},
-                                            {"albedo", "reflectance-of"},
-                                            {"albedo-texture", "reflectance-of"},
-                                            {"reflectance", "reflectance-of"},
-                                            {"opacity", "opacity-texture"}},
-                                 .metrics = metric_groups(),
-                                 .run = run};
+  static const StageInfo info = {
+      .name = "bake", .options = options, .rivals = material_rivals(), .metrics = metric_groups(), .run = run};
   return info;
 }
 

@@ -2,6 +2,7 @@
 #include "normals/normals_stage.h"
 
 #include "base/asset_layout.h"
+#include "material/material_settings.h"
 #include "normals/normals_settings.h"
 
 namespace kiln {
@@ -55,15 +56,7 @@ const StageInfo& normals_stage() {
   static const StageInfo info = {.name = "normals",
                                  .for_texels = true,
                                  .options = options,
-                                 .rivals = {{"albedo", "albedo-texture"},
-                                            {"albedo", "reflectance"},
-                                            {"albedo-texture", "reflectance"},
-                                            {"albedo", "reflectance-of"},
-                                            {"albedo-texture", "reflectance-of"},
-                                            {"reflectance", "reflectance-of"},
-                                            {"opacity", "opacity-texture"},
-                                            {"cage", "cage-mesh"},
-                                            {"part-cage", "cage-mesh"}},
+                                 .rivals = material_rivals({{"cage", "cage-mesh"}, {"part-cage", "cage-mesh"}}),
                                  .metrics = {{metric_names}},
                                  .run = run};
   return info;

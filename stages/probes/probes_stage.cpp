@@ -4,6 +4,7 @@
 #include "asset/format.h"
 #include "base/asset_layout.h"
 #include "import/import_settings.h"
+#include "material/material_settings.h"
 #include "probes/probes_settings.h"
 
 namespace kiln {
@@ -59,15 +60,7 @@ const StageInfo& probes_stage() {
   static const StageInfo info = {.name = "probes",
                                  .on_request = true,
                                  .options = options,
-                                 .rivals = {{"points", "grid"},
-                                            {"points", "box"},
-                                            {"albedo", "albedo-texture"},
-                                            {"albedo", "reflectance"},
-                                            {"albedo-texture", "reflectance"},
-                                            {"albedo", "reflectance-of"},
-                                            {"albedo-texture", "reflectance-of"},
-                                            {"reflectance", "reflectance-of"},
-                                            {"opacity", "opacity-texture"}},
+                                 .rivals = material_rivals({{"points", "grid"}, {"points", "box"}}),
                                  .metrics = {{metric_names}},
                                  .run = run};
   return info;

@@ -78,4 +78,15 @@ void add_material_options(OptionSet& options, MaterialSettings& settings) {
                          "Opacity below which nothing is there; auto: the file's, or 0.5");
 }
 
+std::vector<std::pair<std::string, std::string>> material_rivals(
+    const std::vector<std::pair<std::string, std::string>>& own) {
+  std::vector<std::pair<std::string, std::string>> rivals = {
+      {"albedo", "albedo-texture"},         {"albedo", "reflectance"},
+      {"albedo-texture", "reflectance"},    {"albedo", "reflectance-of"},
+      {"albedo-texture", "reflectance-of"}, {"reflectance", "reflectance-of"},
+      {"opacity", "opacity-texture"}};
+  rivals.insert(rivals.end(), own.begin(), own.end());
+  return rivals;
+}
+
 }  // namespace kiln

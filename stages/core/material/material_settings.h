@@ -39,4 +39,8 @@ std::vector<std::pair<std::string, std::string>> reflectances_of_materials(const
 /// Adds the options of albedo and opacity to a stage's options.
 void add_material_options(OptionSet& options, MaterialSettings& settings);
 
+/// Returns the pairs of these options that exclude each other, and then a stage's `own` pairs.
+std::vector<std::pair<std::string, std::string>> material_rivals(
+    const std::vector<std::pair<std::string, std::string>>& own = {});
+
 }  // namespace kiln
